@@ -129,8 +129,8 @@ def with_files(case: Any) -> Ran:
 
 def reason_without(case: Any, reduction: str) -> str:
     """Why a reduction does not apply to a case, as known before its run; empty if it may."""
-    from dembound.disks.elastic_again import never_elastic_again
-    from dembound.disks.reduction import one_half, one_of_rows
+    from dembound.disks.contacts.elastic_again import never_elastic_again
+    from dembound.disks.reduced.reduction import one_half, one_of_rows
     from dembound.disks.scene import DiskScene
     from dembound.kinds import kind_of
 

@@ -25,8 +25,8 @@ from timing import in_one_line, machine, show, write
 from dembound import api
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
-from dembound.disks.homogenise import Network
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.material.homogenise import Network
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build, ground_of
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation

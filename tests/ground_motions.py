@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.disks.ground_waves import GroundWaves
+from dembound.disks.beyond.ground_waves import GroundWaves
 from dembound.outside.medium import Medium
 from dembound.outside.plane_waves import incident_wave, reflected_waves
 

@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 
 import dembound
 from dembound.casefile.disks import DiskCase
-from dembound.disks.cut_bonds import CutBonds
+from dembound.disks.beyond.cut_bonds import CutBonds
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.exact import Solid, buried_explosion

@@ -10,8 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
+from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.scene import DiskScene
-from dembound.disks.surroundings import Surroundings
 from dembound.kernels.wall import tie_forces
 from dembound.outside.body import GridBody
 from dembound.outside.layer import Profile

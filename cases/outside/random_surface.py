@@ -19,8 +19,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dembound.casefile import Case
-from dembound.disks import surroundings, wall
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.beyond import surroundings, wall
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import loads

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from scenes import DENSITY, PERIODIC, RADIUS, SPEED, disks, section
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
 from dembound.kernels.elastic import contact_forces
 from dembound.motion.kind import StalledError
 from dembound.motion.simulation import Simulation

@@ -1,4 +1,4 @@
-"""A side beyond which the ground goes on as a continuum, tied to the bonds that it cuts (disks/surroundings.py)."""
+"""A side beyond which the ground is a continuum, tied to the bonds that it cuts (disks/beyond/surroundings.py)."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
@@ -12,7 +12,7 @@ from dembound.boundaries.sides import OPPOSITE, SIDES
 class Outside(Drivable):
     """A continuum of the packing's moduli, whose far part absorbs; its settings are those of the table ``[outside]``.
 
-    Through the bottom of a body that is periodic sideways plane waves may enter from below (disks/incident.py).
+    Through the bottom of a body that is periodic sideways plane waves may enter from below (disks/beyond/incident.py).
     """
 
     is_outside: ClassVar[bool] = True

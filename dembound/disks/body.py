@@ -10,15 +10,13 @@ import numpy as np
 from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
-from dembound.disks.body_sides import sides_of, tied_of
-from dembound.disks.contacts import ContactList
-from dembound.disks.ground_motion import GroundMotion
-from dembound.disks.ground_waves import GroundWaves
-from dembound.disks.layout import Rows
-from dembound.disks.loads import steady
-from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.row_plan import RowPlan, plan_rows
-from dembound.disks.surroundings import Surroundings
+from dembound.disks.beyond.ground_motion import GroundMotion
+from dembound.disks.beyond.ground_waves import GroundWaves
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.contacts.layout import Rows
+from dembound.disks.contacts.row_plan import RowPlan, plan_rows
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.tables import LaneRows
 from dembound.motion.between import Between
 from dembound.motion.layout import Layout
@@ -219,16 +217,6 @@ class DiskBody(Scene):
             return None
         return np.concatenate([self.seam.twin, np.arange(self.disk_count, self.count)])
 
-    @cached_property
-    def sides(self) -> dict[str, Edge]:  # type: ignore[override]  # computed once
-        """The edges of the body, of its column bottom and top, as ``bottom.free_field``, and those of continua."""
-        return sides_of(self)
-
-    @cached_property
-    def tied(self) -> dict[str, np.ndarray]:  # type: ignore[override]  # computed once
-        """Nodes (k,) that ties act on, by side: particles beside a free field or a continuum, nodes of continua."""
-        return tied_of(self)
-
     @property
     def damp(self) -> float:
         """Local damping coefficient."""
@@ -252,11 +240,6 @@ class DiskBody(Scene):
     def cell_fraction(self) -> np.ndarray:
         """(n,) part of a particle's cell inside the scene: 1, on a side of half cells ½, where two such meet ¼."""
         return mass_factor(self.disk_count, self.edges, self.case.boundary)
-
-    @cached_property
-    def steady_load(self) -> np.ndarray:
-        """(3, n) forces and moments (N, N·m) of the loads without a wave."""
-        return steady(self)
 
     @cached_property
     def free(self) -> np.ndarray:

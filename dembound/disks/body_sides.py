@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from dembound.boundaries import normal_axis
 from dembound.boundaries.support import Edge
 from dembound.casefile.disks.monitor import FREE_FIELD
-
-if TYPE_CHECKING:
-    from dembound.disks.body import DiskBody
+from dembound.disks.body import DiskBody
 
 T = TypeVar("T")
 

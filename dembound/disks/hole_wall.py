@@ -12,22 +12,18 @@ lattice a staircase, and not the outline.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from dembound.boundaries.half_mass import half_contacts, half_edges
-from dembound.disks.cut_bonds import CutBonds
-from dembound.disks.outside_mesh import Box, box_of
+from dembound.casefile.disks.load import Load
+from dembound.disks.beyond.cut_bonds import CutBonds
+from dembound.disks.beyond.mesh import Box, box_of
+from dembound.disks.body import DiskBody
 from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.holes.outline import Outline
 from dembound.packings.cut import CutContacts, contacts_into
 from dembound.packings.tiling import Assembly
-
-if TYPE_CHECKING:
-    from dembound.casefile.disks.load import Load
-    from dembound.disks.body import DiskBody
 
 FAR = 4.0
 """Largest distance from a disk to the ends of its part of an outline, in largest diameters.

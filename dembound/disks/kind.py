@@ -8,25 +8,25 @@ from typing import TYPE_CHECKING, Any, cast
 
 from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
-from dembound.disks.breaks import first_break
-from dembound.disks.contact_mesh import contact_mesh
-from dembound.disks.continuum_mesh import continuum_mesh
-from dembound.disks.facts import disk_facts
-from dembound.disks.load_factor import LoadFactor, least_load_factor
+from dembound.disks.contacts.breaks import first_break
+from dembound.disks.material.wave_front import front_of
 from dembound.disks.memory import expected_bytes
-from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
-from dembound.disks.outcome import disk_outcome
-from dembound.disks.reduction import reduced
+from dembound.disks.reduced.reduction import reduced
+from dembound.disks.reports.contact_mesh import contact_mesh
+from dembound.disks.reports.continuum_mesh import continuum_mesh
+from dembound.disks.reports.facts import disk_facts
+from dembound.disks.reports.mesh import VIEW_SCRIPT, disk_mesh
+from dembound.disks.reports.outcome import disk_outcome
+from dembound.disks.reports.storage import storage_of
+from dembound.disks.reports.summary import asked_stress, describe_static, summarise_disks
+from dembound.disks.reports.warnings import disk_warnings, warnings_after_disks
+from dembound.disks.rest.settled import Settled, settling_keys
+from dembound.disks.rest.stage import settle, stage_names
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.settled import Settled, settling_keys
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle, stage_names
-from dembound.disks.storage import storage_of
-from dembound.disks.summary import asked_stress, describe_static, summarise_disks
-from dembound.disks.system import DiskSystem
-from dembound.disks.warnings import disk_warnings, warnings_after_disks
-from dembound.disks.wave_front import front_of
+from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
+from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
 from dembound.motion.moving_picture import MovingPicture
 from dembound.motion.paths import Front, Source

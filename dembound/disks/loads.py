@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.casefile.disks.load import Load
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.body import DiskBody
 from dembound.disks.hole_wall import pressure_on
-from dembound.disks.surroundings import Surroundings
 from dembound.errors import CaseError
 from dembound.nearest import nearest
 from dembound.outside.traction import Traction, traction_in
 from dembound.packings.tiling import Assembly
 from dembound.table import EVERYWHERE
-
-if TYPE_CHECKING:
-    from dembound.disks.body import DiskBody
-
-"""The region (m) of the whole plane."""
 
 ROUNDING = 1e-6
 """Part of an element by which a traction's part of the surface may be shorter."""

@@ -10,24 +10,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.reach import is_in
 from dembound.casefile.types import LAWS
-from dembound.disks.outside_settings import expected_tops, mesh_of, settings_of, signals_of
-from dembound.disks.packed_material import nominal_moduli
+from dembound.disks.beyond.settings import expected_tops, mesh_of, settings_of, signals_of
+from dembound.disks.contacts.forces import PIECE
+from dembound.disks.contacts.layout import LEAST_FILL
+from dembound.disks.contacts.row_plan import columns_of
+from dembound.disks.material.packed_material import nominal_moduli
 from dembound.kernels.lanes import LANES
 from dembound.motion.memory import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
 from dembound.outside.medium import Medium
 from dembound.outside.memory import GridSizes, body_bytes, header_bytes, snapshot_bytes
 from dembound.packings.base import TYPED
-
-if TYPE_CHECKING:
-    from dembound.disks.scene import DiskScene
-
-PIECE = 2**18
-"""Number of pairs whose stresses are evaluated at once: this limits the temporary arrays of large scenes."""
 
 NEAR = 1.08
 """Listed pairs over contacts: those with a gap below `contacts.SKIN` are listed, too. In random bricks 1.07 to 1.08."""
@@ -58,9 +54,6 @@ class SceneSizes:
     @classmethod
     def expected(cls, case: DiskCase) -> SceneSizes:
         """Those of a case that has not been built, without its holes: of random bricks within some 3 %."""
-        from dembound.disks.layout import LEAST_FILL
-        from dembound.disks.row_plan import columns_of
-
         packing = case.packing
         across, up = packing.copies
         disks = packing.expected_disks
@@ -80,21 +73,6 @@ class SceneSizes:
             in_rows=in_rows,
             grid=_expected_grid(case),
             probes=_expected_probes(case),
-        )
-
-    @classmethod
-    def of(cls, scene: DiskScene) -> SceneSizes:
-        """Those of a scene."""
-        continua = scene.continua
-        return cls(
-            disks=scene.disk_count,
-            slots=scene.disk_count if scene.slots is None else scene.slots.count,
-            contacts=len(scene.assembly.pairs),
-            supported=len(scene.supports),
-            in_rows=not (scene.slots is None or scene.slots.is_plain),
-            grid=GridSizes.all_of([each.body.mesh for each in continua]) if continua else None,
-            ties=sum(len(each.wall.element) for each in continua),
-            probes=len(scene.probes),
         )
 
 

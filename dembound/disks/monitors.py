@@ -4,7 +4,7 @@ The packing goes on in the continuum beyond a body. The disk i that would be nea
 
     u_i = U(x_i) + χ_i : ∇U(x_i),    θ_i = χ^θ_i : ∇U(x_i)
 
-with U the continuum's displacement and χ the correctors of the brick (disks/homogenise.py); those of a lattice are
+with U the continuum's displacement and χ the correctors of the brick (material/homogenise.py); those of a lattice are
 χ = 0 and θ = ½(∂U_y/∂x − ∂U_x/∂y). Beside a free-field column U is the scattered motion only, to which that of the
 column's disk at the same place of the brick is added.
 """
@@ -19,10 +19,10 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.disks.reach import is_in, reach
-from dembound.disks.ground_waves import GroundWaves
-from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.surroundings import Surroundings
-from dembound.disks.wave_front import INDEX
+from dembound.disks.beyond.ground_waves import GroundWaves
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.wave_front import INDEX
 from dembound.errors import CaseError
 from dembound.motion.between import Between
 from dembound.nearest import nearest

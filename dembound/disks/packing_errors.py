@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dembound.boundaries.sides import normal_axis
-from dembound.disks import bragg
+from dembound.disks.material import bragg
 from dembound.disks.scene import DiskScene
 from dembound.outside import choice
 from dembound.outside.choice import Signal

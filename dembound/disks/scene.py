@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -10,25 +11,27 @@ from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
+from dembound.disks.beyond.edges import edges_beside_column, find_edges
+from dembound.disks.beyond.ground_waves import ground_waves, rising_waves
+from dembound.disks.beyond.hollowed import hollowed
+from dembound.disks.beyond.incident import let_in, let_in_below, power_through
+from dembound.disks.beyond.mesh import NO_FLOORS, Outline
+from dembound.disks.beyond.surroundings import Surroundings, surroundings_of
 from dembound.disks.body import DiskBody, parts_of
-from dembound.disks.contact_arrays import plain_contacts
-from dembound.disks.edges import edges_beside_column, find_edges
-from dembound.disks.ground_waves import ground_waves, rising_waves
-from dembound.disks.hollowed import hollowed
-from dembound.disks.incident import let_in, let_in_below, power_through
-from dembound.disks.layout import lay_out
-from dembound.disks.loads import drive
+from dembound.disks.body_sides import sides_of, tied_of
+from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.contacts.layout import lay_out
+from dembound.disks.loads import drive, steady
+from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
-from dembound.disks.outside_mesh import NO_FLOORS, Outline
-from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.side_forces import side_forces
-from dembound.disks.stress import particle_stress
-from dembound.disks.surroundings import Surroundings, surroundings_of
-from dembound.disks.system import DiskSystem
+from dembound.disks.stepping.stress import particle_stress
+from dembound.disks.stepping.system import DiskSystem
 from dembound.holes.floor import Floor
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.layout import Layout
+from dembound.outside.memory import GridSizes
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
@@ -49,6 +52,21 @@ class DiskScene(DiskBody):
 
     before: "DiskScene | None" = None
     kept: np.ndarray | None = None
+
+    @cached_property
+    def sides(self) -> dict[str, Edge]:  # type: ignore[override]  # computed once
+        """The edges of the body, of its column bottom and top, as ``bottom.free_field``, and those of continua."""
+        return sides_of(self)
+
+    @cached_property
+    def tied(self) -> dict[str, np.ndarray]:  # type: ignore[override]  # computed once
+        """Nodes (k,) that ties act on, by side: particles beside a free field or a continuum, nodes of continua."""
+        return tied_of(self)
+
+    @cached_property
+    def steady_load(self) -> np.ndarray:
+        """(3, n) forces and moments (N, N·m) of the loads without a wave."""
+        return steady(self)
 
     def elastic_stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (n, 3) xx, yy, xy in Pa at displacements (3, n) under the elastic law, see `particle_stress`."""
@@ -76,8 +94,22 @@ class DiskScene(DiskBody):
     @property
     def largest_memory(self) -> float:
         """Largest memory (bytes) of a run of it, or of the scene it is stepped in place of."""
-        before = None if self.before is None else SceneSizes.of(self.before)
-        return run_bytes(self.case, [SceneSizes.of(scene) for scene in self.chain], before)
+        before = None if self.before is None else self.before.sizes
+        return run_bytes(self.case, [scene.sizes for scene in self.chain], before)
+
+    @property
+    def sizes(self) -> SceneSizes:
+        """Numbers of its disks, contacts and nodes, from which memory is counted."""
+        return SceneSizes(
+            disks=self.disk_count,
+            slots=self.disk_count if self.slots is None else self.slots.count,
+            contacts=len(self.assembly.pairs),
+            supported=len(self.supports),
+            in_rows=not (self.slots is None or self.slots.is_plain),
+            grid=GridSizes.all_of([each.body.mesh for each in self.continua]) if self.continua else None,
+            ties=sum(len(each.wall.element) for each in self.continua),
+            probes=len(self.probes),
+        )
 
     @property
     def chain(self) -> "tuple[DiskScene, ...]":

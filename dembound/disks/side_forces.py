@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.disks.beyond.cut_bonds import CutBonds
 from dembound.disks.body import DiskBody
-from dembound.disks.constants import brick_constants
-from dembound.disks.contact_forces import Piece
-from dembound.disks.cut_bonds import CutBonds
-from dembound.disks.memory import PIECE
+from dembound.disks.contacts.forces import PIECE, Piece
+from dembound.disks.material.constants import brick_constants
 from dembound.packings.cut import CutContacts, cut_contacts
 
 

@@ -11,9 +11,9 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.disks import step_cost
-from dembound.disks.hollowed import BAND as FLOOR
-from dembound.disks.outside_mesh import medium_of
-from dembound.disks.outside_settings import expected_tops, extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.beyond.hollowed import BAND as FLOOR
+from dembound.disks.beyond.mesh import medium_of
+from dembound.disks.beyond.settings import expected_tops, extents, least_element, mesh_of, settings_of, signals_of
 from dembound.disks.packing_errors import in_percent
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError

@@ -7,10 +7,10 @@ import numpy as np
 from dembound.boundaries import axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.disks.ground_waves import incident_in
-from dembound.disks.outside_mesh import medium_of
-from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.wave_front import front_of, slowest_speed
+from dembound.disks.beyond.ground_waves import incident_in
+from dembound.disks.beyond.mesh import medium_of
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.wave_front import front_of, slowest_speed
 from dembound.motion.paths import Source
 from dembound.table import EVERYWHERE, Box
 

@@ -5,8 +5,8 @@ from functools import partial
 
 import numpy as np
 
+from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.scene import DiskScene
-from dembound.disks.surroundings import Surroundings
 from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces

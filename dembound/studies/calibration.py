@@ -20,7 +20,7 @@ import numpy as np
 from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import factors_in, homogenised_beta
-from dembound.disks.reduction import reduced
+from dembound.disks.reduced.reduction import reduced
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, RunError

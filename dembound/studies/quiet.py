@@ -18,7 +18,7 @@ from dembound.casefile.model import as_kind
 from dembound.casefile.types import LAWS
 from dembound.disks import stability as of_disks
 from dembound.disks.scene import DiskScene, build, ground_of
-from dembound.disks.system import DiskSystem, Start
+from dembound.disks.stepping.system import DiskSystem, Start
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 

@@ -16,8 +16,8 @@ from typer.main import get_command
 from dembound import cli
 from dembound.casefile import Case
 from dembound.cli import compiling
+from dembound.disks.contacts.rows import contact_rows
 from dembound.disks.kind import Disks
-from dembound.disks.rows import contact_rows
 from dembound.disks.scene import DiskScene
 from dembound.kinds import loads, with_changes
 from dembound.motion.energy import Ledger

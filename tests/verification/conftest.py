@@ -14,12 +14,12 @@ import tomli_w
 from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.casefile import Case
-from dembound.disks.edges import find_edges
-from dembound.disks.packed_material import make_packed_material
-from dembound.disks.rows import contact_rows
+from dembound.disks.beyond.edges import find_edges
+from dembound.disks.contacts.rows import contact_rows
+from dembound.disks.material.packed_material import make_packed_material
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
-from dembound.disks.system import DiskSystem, Start
+from dembound.disks.stepping.system import DiskSystem, Start
 from dembound.kernels.elastic import contact_forces
 from dembound.kinds import loads, with_changes
 from dembound.motion.simulation import Simulation

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene
-from dembound.disks.static import settle
 from dembound.motion.simulation import Simulation
 
 DISKS, RADIUS = 4, 0.25

@@ -12,7 +12,7 @@ the rotation of a Timoshenko beam, and its deflection but for D²/4L², as the r
 import numpy as np
 import pytest
 
-from dembound.disks.static import settle
+from dembound.disks.rest.stage import settle
 
 DISKS, RADIUS = 12, 0.25
 EMOD, PB_EMOD, PB_KRATIO = 2e9, 1e9, 2.5

@@ -7,9 +7,9 @@ vertical stress is half of W over the width, ρgH/2.
 import numpy as np
 import pytest
 
-from dembound.disks.contacts import ContactList
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene
-from dembound.disks.static import settle
 
 WIDTH, HEIGHT = 5.0, 10.0
 LARGEST = 0.3  # m, radius

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
-from dembound.disks.outside_settings import signals_of
+from dembound.disks.beyond.settings import signals_of
 from dembound.disks.packing_errors import lattice_errors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step

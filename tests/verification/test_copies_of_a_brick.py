@@ -9,8 +9,8 @@ density, or 2/T, the first zero of its spectrum, where nothing comes back but wh
 import numpy as np
 import pytest
 
-from dembound.disks.bragg import coupling, sent_back
-from dembound.disks.outside_settings import signals_of
+from dembound.disks.beyond.settings import signals_of
+from dembound.disks.material.bragg import coupling, sent_back
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import with_changes

@@ -8,7 +8,7 @@ wave.
 import numpy as np
 import pytest
 
-from dembound.disks.tractions import Tractions
+from dembound.disks.rest.tractions import Tractions
 
 ROWS, LENGTH = 4, 20.0
 """Number of rows, with which whole dashpots would reflect a seventh, and length in m."""

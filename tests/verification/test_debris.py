@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dembound.disks.static import settle
+from dembound.disks.rest.stage import settle
 from dembound.motion.simulation import Simulation
 
 SPEED = 100.0

@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.disks.elastic_again import elastic_again, never_elastic_again, settled_slip
-from dembound.disks.reduction import reduced
+from dembound.disks.contacts.elastic_again import elastic_again, never_elastic_again, settled_slip
+from dembound.disks.reduced.reduction import reduced
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
-from dembound.disks.system import DiskSystem
+from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import SHEAR
 from dembound.kinds import with_changes
 from dembound.motion.energy import Ledger

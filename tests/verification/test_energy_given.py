@@ -6,7 +6,7 @@ of what boundaries and weight bring in then stays below zero, and measured by th
 
 import numpy as np
 
-from dembound.disks.static import settle
+from dembound.disks.rest.stage import settle
 from dembound.motion.energy import Ledger
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from dembound.disks.reduction import reduced
+from dembound.disks.reduced.reduction import reduced
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
-from dembound.disks.system import DiskSystem
+from dembound.disks.stepping.system import DiskSystem
 from dembound.kinds import with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.disks.frequencies import frequencies_of
+from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation

@@ -14,9 +14,9 @@ The square lattice with k_s = k_n = K is isotropic with ν = 0 and G = K/2.
 import numpy as np
 import pytest
 
+from dembound.disks.rest.settled import Settled
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.settled import Settled
-from dembound.disks.static import settle
 from dembound.kinds import with_changes
 
 DISKS = 6  # in the hole's radius

@@ -7,10 +7,10 @@ that of m·Δv/Δt, less all loads.
 import numpy as np
 import pytest
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
-from dembound.disks.system import DiskSystem
+from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.simulation import Simulation
 
 GRAVITY = 9.81

@@ -8,8 +8,8 @@ with its sides.
 import numpy as np
 import pytest
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.stability import OPENING, choose_step
-from dembound.disks.static import settle
 from dembound.kernels.contacts import CLOSING
 from dembound.motion.simulation import Simulation
 

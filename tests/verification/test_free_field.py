@@ -7,9 +7,9 @@ part and moment included, so nothing is calibrated and nothing is left over.
 import numpy as np
 import pytest
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
 from dembound.kinds import with_changes
 from dembound.motion.simulation import Simulation
 

@@ -6,7 +6,7 @@ A weak pulse runs along a bar of random disks under a low locked-in stress and m
 import numpy as np
 
 from dembound.disks.scene import build
-from dembound.disks.system import Start
+from dembound.disks.stepping.system import Start
 
 EPS = np.finfo(float).eps
 CONTACT_MODULUS = 1.25e9

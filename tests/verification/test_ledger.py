@@ -6,9 +6,9 @@ A pulse enters a block of random disks through a viscous side, is reflected by f
 import numpy as np
 import pytest
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.disks.edges import find_edges
-from dembound.disks.rows import contact_rows
+from dembound.disks.beyond.edges import find_edges
+from dembound.disks.contacts.rows import contact_rows
 from dembound.disks.scene import with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.kernels.tables import NeighbourTable

@@ -8,9 +8,9 @@ return (2πD/λ)²/16 = 8e-5. The velocity of the pulse has twice that curvature
 import numpy as np
 import pytest
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 

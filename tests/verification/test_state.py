@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import tomli_w
 
-from dembound.disks import static
+from dembound.disks.rest import stage as static
 from dembound.kinds import kind_of, loads
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
-from dembound.disks.static import settle
 from dembound.kinds import with_changes
 
 ROLLERS = {"left": {"type": "roller"}, "right": {"type": "roller"}, "bottom": {"type": "fixed"}}

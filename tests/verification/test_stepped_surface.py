@@ -7,11 +7,11 @@ large that nothing returns, in which the bench and the floor in front of the slo
 import numpy as np
 import pytest
 
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
-from dembound.disks.system import DiskSystem
+from dembound.disks.stepping.system import DiskSystem
 from dembound.kinds import with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from dembound.disks.rest.settled import Settled
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.settled import Settled
-from dembound.disks.static import settle
 from dembound.kinds import with_changes
 
 STRESS = (-5e6, -9e6, 2e6)

@@ -6,8 +6,8 @@ A disk that is pushed by F from both sides has Σ f l = −F·2R, whatever its n
 import numpy as np
 import pytest
 
-from dembound.disks.contact_arrays import plain_contacts
-from dembound.disks.stress import particle_stress
+from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.stepping.stress import particle_stress
 from dembound.kernels.contacts import REFERENCE, UPDATED
 
 RADII = np.array([0.25, 0.1, 0.4, 0.3, 0.15, 0.25])

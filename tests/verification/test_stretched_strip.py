@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import LinearOperator, cg
 
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import fill_forces
 from dembound.kinds import with_changes

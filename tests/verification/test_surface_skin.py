@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from dembound.casefile import Case
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation

@@ -7,7 +7,7 @@ to different ones, and the body then left its twins by 1.9 % of the peak.
 import numpy as np
 import pytest
 
-from dembound.disks.static import settle
+from dembound.disks.rest.stage import settle
 
 GRAVITY = [{"acceleration": [0.0, -9.81]}]
 SIDES = {"left": "free_field", "right": "free_field", "bottom": {"type": "viscous_input", "wave_s": "pulse"}}

@@ -4,8 +4,8 @@ import grains
 import numpy as np
 import pytest
 
+from dembound.disks.reports.warnings import LARGEST_PULL
 from dembound.disks.stability import OPENING
-from dembound.disks.warnings import LARGEST_PULL
 
 
 @pytest.mark.parametrize(("pattern", "delay", "loss"), [("A", 0.0056, 0.023), ("B", 0.0115, 0.14), ("C", 0.0152, 0.30)])

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from dembound.disks.rest.settled import Settled
+from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.settled import Settled
-from dembound.disks.static import settle
 
 WEIGHT = [{"acceleration": (0.0, -9.81)}]
 RATIO = 3e-6

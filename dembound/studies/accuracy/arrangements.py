@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
-from dembound.disks.outside_settings import extents
+from dembound.disks.beyond.settings import extents
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.smallest_box import box_tables, boxes, may_be_boxed
 from dembound.errors import CaseError

@@ -12,7 +12,7 @@ import numpy as np
 from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
-from dembound.disks.breaks import BREAK_TIME
+from dembound.disks.contacts.breaks import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError

@@ -23,10 +23,10 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import HISTORY_KEYS, STRENGTH_KEYS
 from dembound.casefile.types import LAWS
-from dembound.disks.load_factor import LOAD_FACTOR
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
+from dembound.disks.stepping.load_factor import LOAD_FACTOR
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import with_changes
 from dembound.motion.kind import Plan

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene
-from dembound.disks.wave_front import slowest_speed
 from dembound.studies.accuracy.load_places import middle_of_forces
 from dembound.studies.estimate.causes import Recorded
 

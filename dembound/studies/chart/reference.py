@@ -13,7 +13,7 @@ from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.chart import ReferenceName
 from dembound.casefile.disks import DiskCase
-from dembound.disks.breaks import BREAK_TIME, BREAK_X, BREAK_Y
+from dembound.disks.contacts.breaks import BREAK_TIME, BREAK_X, BREAK_Y
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import with_changes
 from dembound.motion.kind import Finding

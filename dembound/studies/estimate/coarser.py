@@ -22,7 +22,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static
 from dembound.disks.loads import forces_of
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.laws import Moduli
 from dembound.packings.square import Square

@@ -12,7 +12,7 @@ import numpy as np
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
 from dembound.casefile.disks import DiskCase
-from dembound.disks.continuum_facts import expected_errors
+from dembound.disks.reports.continuum_facts import expected_errors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.errors import DemboundError

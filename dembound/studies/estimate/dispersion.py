@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from dembound.boundaries import Motion
-from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.wave_front import plane_wave_frequencies
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.wave_front import plane_wave_frequencies
 from dembound.packings.square import Square
 from dembound.studies.estimate.delays import Delay
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.boundaries import Motion
-from dembound.disks.frequencies import frequencies_of
+from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.scene import DiskScene, with_boundaries
 from dembound.errors import CaseError

@@ -10,10 +10,10 @@ import numpy as np
 
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.disks.outside_settings import signals_of
+from dembound.disks.beyond.settings import signals_of
+from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.wave_front import slowest_speed
 from dembound.errors import CaseError
 from dembound.outside import choice
 from dembound.running import Progress

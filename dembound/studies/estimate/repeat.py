@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile import Case
-from dembound.disks.outcome import MANY
+from dembound.disks.reports.outcome import MANY
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.results.compare import on_common_clock, relative_errors

@@ -10,7 +10,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.disks.ground_waves import ground_waves
+from dembound.disks.beyond.ground_waves import ground_waves
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.exact.scattering import PlaneWave, scattered_motion

@@ -10,10 +10,10 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.casefile.run import Run
 from dembound.disks.loads import forces_of
+from dembound.disks.material.wave_front import front_of
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
-from dembound.disks.wave_front import front_of
 from dembound.errors import CaseError
 from dembound.holes import Hole, Rectangle
 from dembound.motion.paths import Front, Source, plane_needed

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.disks.constants import brick_constants, strength_of
-from dembound.disks.load_factor import limit_in_words, limit_lines
+from dembound.disks.material.constants import brick_constants, strength_of
 from dembound.disks.scene import DiskScene, build
+from dembound.disks.stepping.load_factor import limit_in_words, limit_lines
 from dembound.errors import CaseError
 from dembound.results.reader import open_record
 from dembound.studies.library.library import Library

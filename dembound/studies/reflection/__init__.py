@@ -10,7 +10,7 @@ import numpy as np
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
-from dembound.disks.frequencies import frequencies_of
+from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step

@@ -11,7 +11,7 @@ import numpy as np
 
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.sources import place_of
 from dembound.studies.reflection.bricks import is_outwards
 from dembound.studies.reflection.meter import Kind, Reflections

@@ -18,8 +18,8 @@ import numpy as np
 
 from dembound.boundaries import Boundary, Periodic, normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.disks.homogenise import Network
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.material.homogenise import Network
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.laws import Stiffness

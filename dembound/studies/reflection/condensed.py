@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dembound.disks.homogenise import Network
+from dembound.disks.material.homogenise import Network
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix

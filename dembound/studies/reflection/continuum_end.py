@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dembound.boundaries import normal_axis
-from dembound.disks.cut_bonds import CutBonds
-from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.surroundings import Surroundings
-from dembound.disks.wall import Wall
+from dembound.disks.beyond.cut_bonds import CutBonds
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.beyond.wall import Wall
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.outside.layer import Profile
 from dembound.outside.mesh import Around, Mesh
 from dembound.packings.brick import Brick

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.boundaries import normal_axis
-from dembound.disks.homogenise import GRADIENTS
-from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.material.homogenise import GRADIENTS
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.studies.reflection.bricks import is_outwards
 from dembound.studies.reflection.meter import Kind, Reflections, homogenised_wave

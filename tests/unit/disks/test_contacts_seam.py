@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from dembound.disks.contacts import ContactList
+from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build, column_alone
-from dembound.disks.system import DiskSystem
+from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
 from dembound.motion.cracks import joined
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, PUSHED, small
 
-from dembound.disks.facts import disk_facts
 from dembound.disks.hole_wall import shares_of
 from dembound.disks.loads import forces_of
+from dembound.disks.reports.facts import disk_facts
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.holes.outline import EllipseOutline, PolygonOutline

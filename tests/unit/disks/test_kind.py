@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.kind import Disks
-from dembound.disks.static import settle
+from dembound.disks.rest.stage import settle
 from dembound.errors import CaseError
 from dembound.running import preflight
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.disks.matching import homogenised_beta, reflected
+from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import build
-from dembound.disks.wave_front import slowest_speed
 from dembound.running import plan, warnings_before
 
 

@@ -3,7 +3,7 @@
 import pytest
 from small_cases import SURROUNDED, small
 
-from dembound.disks import layout
+from dembound.disks.contacts import layout
 from dembound.disks.memory import SceneSizes, expected_bytes, pairs_bytes, run_bytes, scene_bytes
 from dembound.disks.scene import build
 from dembound.errors import CaseError
@@ -28,7 +28,7 @@ def scene(bar, request):
 
 
 def test_sizes_are_known_before_the_scene_is_built(scene) -> None:
-    expected, sizes = SceneSizes.expected(scene.case), SceneSizes.of(scene)
+    expected, sizes = SceneSizes.expected(scene.case), scene.sizes
 
     # bricks of 80 disks have a few more or less than the mean of large ones, and regular rows have fewer contacts
     assert expected.disks == pytest.approx(sizes.disks, rel=0.15)
@@ -42,7 +42,7 @@ def test_the_lines_of_supports_are_known_before_the_scene_is_built(bar) -> None:
     scene = build(bar({**FREE, "packing": PATTERNS["A"], "boundary": sides, "motion.held": []}))
 
     # three components of fixed disks and of none more of viscous ones, whose rotation is free
-    supported = SceneSizes.of(scene).supported
+    supported = scene.sizes.supported
     assert supported <= SceneSizes.expected(scene.case).supported <= 1.6 * supported
 
 
@@ -56,7 +56,7 @@ def test_a_scene_is_the_sum_of_its_arrays(bar, monkeypatch, in_rows) -> None:
     arrays += [places.node] if in_rows else [rows.start, rows.neighbour, rows.contact_type]
 
     # rows that are shared by all copies, 40 times as few, are not counted
-    assert scene_bytes(scene.case, SceneSizes.of(scene)) == pytest.approx(sum(each.nbytes for each in arrays), rel=1e-3)
+    assert scene_bytes(scene.case, scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=1e-3)
 
 
 @pytest.mark.parametrize("in_rows", [True, False])
@@ -75,7 +75,7 @@ def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows) -> None:
         arrays += [plan.row, plan.column, plan.lane]
 
     # numbers of listed pairs differ between bricks
-    assert pairs_bytes(SceneSizes.of(scene)) == pytest.approx(sum(each.nbytes for each in arrays), rel=0.04)
+    assert pairs_bytes(scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=0.04)
 
 
 def test_what_is_recorded_counts(bar) -> None:
@@ -113,7 +113,7 @@ OUTSIDE = {
 def test_the_continuum_is_known_before_the_scene_is_built(bar) -> None:
     case = bar(OUTSIDE | {"outside": {"element": 5.0, "margin": 20}})
     scene = build(case)
-    expected, sizes = SceneSizes.expected(case), SceneSizes.of(scene)
+    expected, sizes = SceneSizes.expected(case), scene.sizes
 
     assert expected.grid == sizes.grid
     assert sizes.grid.nodes == scene.outside.count == scene.count - sizes.disks
@@ -125,7 +125,7 @@ def test_the_continuum_is_known_before_the_scene_is_built(bar) -> None:
 def test_an_automatic_size_is_that_of_a_medium_of_the_nominal_speed(bar) -> None:
     """S waves have half of the speed of P waves here, or more: the elements are no fewer."""
     case = bar(OUTSIDE | {"outside.accuracy": 1e-2, "material.contact_share": 0.0})
-    expected, sizes = SceneSizes.expected(case), SceneSizes.of(build(case))
+    expected, sizes = SceneSizes.expected(case), build(case).sizes
 
     assert sizes.grid.nodes <= expected.grid.nodes < 3.0 * sizes.grid.nodes
 
@@ -151,4 +151,4 @@ def test_a_monitor_in_a_continuum_records_the_nodes_of_an_element() -> None:
     waves = {"boundary.bottom.wave_s": "pulse", "wave.pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}
     for changes, probes in (({}, 17), (waves, 20)):
         case = small(SURROUNDED, changes={"monitor": places, **changes})
-        assert SceneSizes.expected(case).probes == SceneSizes.of(build(case)).probes == probes
+        assert SceneSizes.expected(case).probes == build(case).sizes.probes == probes

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.disks.facts import disk_facts
 from dembound.disks.monitors import monitors_of
+from dembound.disks.reports.facts import disk_facts
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from dembound.casefile import Case
-from dembound.disks.rows import contact_rows
+from dembound.disks.contacts.rows import contact_rows
 from dembound.disks.scene import DiskScene, boundary_medium, build, with_boundaries
 from dembound.errors import CaseError, PackingError
 

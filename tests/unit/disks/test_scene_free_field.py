@@ -5,7 +5,7 @@ import pytest
 
 from dembound.casefile import Case
 from dembound.disks.scene import DiskScene, build, column_alone, with_boundaries
-from dembound.disks.system import DiskSystem
+from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.motion.supports import NodeSupports
 

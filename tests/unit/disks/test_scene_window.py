@@ -7,14 +7,14 @@ import pytest
 from small_cases import GROUND, Tables, small
 
 from dembound.casefile import Case
-from dembound.disks.continuum_ties import TwinTie
-from dembound.disks.facts import disk_facts
-from dembound.disks.outside_mesh import ElementSizes, box_of
-from dembound.disks.outside_settings import least_element
+from dembound.disks.beyond.mesh import ElementSizes, box_of
+from dembound.disks.beyond.settings import least_element
+from dembound.disks.reports.facts import disk_facts
+from dembound.disks.rest.settled import among, settling_keys
+from dembound.disks.rest.static_scene import without_own_continua
 from dembound.disks.scene import DiskScene, build, column_alone, ground_of
-from dembound.disks.settled import among, settling_keys
-from dembound.disks.static_scene import without_own_continua
-from dembound.disks.system import DiskSystem
+from dembound.disks.stepping.continuum_ties import TwinTie
+from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 

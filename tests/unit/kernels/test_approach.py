@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.disks.neighbours import CELL, cells_of
+from dembound.disks.contacts.neighbours import CELL, cells_of
 from dembound.kernels.approach import approach, moved
 
 COUNT, SIZE, RADIUS = 3000, (60.0, 20.0), 0.25

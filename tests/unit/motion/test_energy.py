@@ -11,7 +11,7 @@ from dembound.bar import stability as bar_stability
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.system import DiskSystem, Start
+from dembound.disks.stepping.system import DiskSystem, Start
 from dembound.errors import RunError
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import REFERENCE, UPDATED

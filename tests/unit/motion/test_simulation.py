@@ -8,7 +8,7 @@ import pytest
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step, step_limit
-from dembound.disks.system import DiskSystem, Start
+from dembound.disks.stepping.system import DiskSystem, Start
 from dembound.errors import RunError
 from dembound.motion.scene import FASTEST
 from dembound.motion.simulation import Simulation

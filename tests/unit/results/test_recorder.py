@@ -6,11 +6,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from dembound.disks.system import DiskSystem, Start
 
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.system import DiskSystem, Start
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.simulation import Simulation
 from dembound.results import recorder as module

@@ -6,9 +6,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from dembound.disks.warnings import warnings_after_disks
 
 from dembound.disks.scene import build
-from dembound.disks.warnings import warnings_after_disks
 
 TIME = np.linspace(0.0, 1.0, 1001)
 

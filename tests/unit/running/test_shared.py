@@ -7,7 +7,7 @@ import pytest
 from filelock import FileLock
 from small_cases import PUSHED, small
 
-from dembound.disks import static
+from dembound.disks.rest import stage as static
 from dembound.interrupts import Interrupts, Stopped
 from dembound.results.results import Results
 from dembound.running import Shared, run_case

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, SURROUNDED, Tables, small
 
-from dembound.disks.continuum_facts import expected_errors
+from dembound.disks.reports.continuum_facts import expected_errors
 from dembound.disks.scene import build
 from dembound.studies.estimate.causes import GRID, STEP, Recorded
 from dembound.studies.estimate.disks import causes_of_disks, reflected_motion

@@ -1,0 +1,40 @@
+"""The frequencies of the waves and forces of a case."""
+
+import math
+
+import numpy as np
+
+from dembound.casefile.disks import DiskCase
+from dembound.disks.beyond.settings import signals_of
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.outside import choice
+from dembound.outside.choice import Signal
+
+LENGTHS = (200.0, 20.0)
+"""Longest and shortest wave, in mean diameters, where a case has no waves with a spectrum of finite energy."""
+
+
+def frequencies_of(case: DiskCase, ground: PackedMaterial, count: int) -> np.ndarray:
+    """So many frequencies (Hz), each for an equal share of the energy of the case's waves and forces.
+
+    Without a spectrum of finite energy they are those of waves from `LENGTHS` diameters long, evenly spaced.
+    """
+    signals = [signal for signal in signals_of(case) if not choice.jumps(signal)]
+    highest = float(np.nanmax(ground.wave_speeds(0))) / (LENGTHS[1] * ground.brick.mean_diameter)
+    if not signals:
+        return np.linspace(LENGTHS[1] / LENGTHS[0], 1.0, count) * highest
+    return np.sort(np.mean([_quantiles(signal, count) for signal in signals], axis=0))
+
+
+def mean_frequency(case: DiskCase) -> float:
+    """Mean frequency (Hz) of the energy of the case's waves and forces; nan without a spectrum of finite energy."""
+    spectra = [choice.energies(signal) for signal in signals_of(case) if not choice.jumps(signal)]
+    means = [float(frequencies @ energy / energy.sum()) for frequencies, energy in spectra if energy.sum() > 0.0]
+    return sum(means) / len(means) if means else math.nan
+
+
+def _quantiles(signal: Signal, count: int) -> np.ndarray:
+    """Frequencies (count,) in the middle of equal shares of a signal's energy."""
+    frequencies, energy = choice.energies(signal)
+    share = np.concatenate([[0.0], np.cumsum(energy) / energy.sum()])
+    return np.interp((np.arange(count) + 0.5) / count, share, np.concatenate([[0.0], frequencies]))

@@ -1,0 +1,228 @@
+"""The motion of the undisturbed ground under plane waves.
+
+It consists of plane waves of its medium (outside/plane_waves.py): of one that comes at an angle, and below a free
+surface those that this sends back; or of waves that run straight up, with velocities given along x and y. In the
+undisturbed packing a disk i at x_i moves by u(x_i) + χ_i : ∇u, with the correctors χ of homogenise.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.boundaries.support import Incident
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.incident import IncidentWave
+from dembound.disks.beyond.cut_bonds import GRADIENT
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.errors import CaseError
+from dembound.outside.gll import Rule
+from dembound.outside.medium import Medium
+from dembound.outside.plane_waves import PlaneWave, critical_angle, incident_wave, reflected_waves
+
+DELAYS = 8
+"""Delays at which a wave is computed for the ties of an element.
+
+Elements of order 3 and 4 are at most two thirds as long as the shortest wave that counts: along a side it differs by
+(2π/3)⁸/(2⁷·8!) = 7e-5 from the polynomial at most, its gradient by some ten times as much; of order 5 and 6 they are up
+to as long as this wave, where gradients have errors of 3e-4 measured (cosine pulse of 0.1 s). With six, disks of an
+undisturbed lattice in elements of 30 m deviate by 0.020 %, with eight by 0.009 %, as far as the lattice disperses
+(cosine pulse of 0.5 s).
+"""
+
+NO_PART = 1e-12
+"""Part of a wave below which it is rounding: S waves have none of P waves in an isotropic medium."""
+
+
+@dataclass(frozen=True, eq=False)
+class GroundWaves:
+    """The motion of the undisturbed ground.
+
+    Attributes
+    ----------
+    medium : of the ground. waves : the plane waves that it consists of. signals : g of each. grain : mean diameter of
+    the disks, m.
+    """
+
+    medium: Medium
+    waves: tuple[PlaneWave, ...]
+    signals: tuple[Incident, ...]
+    grain: float
+
+    def near(self, places: np.ndarray) -> NearPlaces:
+        """The same near places (k, 2) m."""
+        spans = []
+        for wave in self.waves:
+            delays, more = wave.delays(places), 0.5 * self.grain * float(np.hypot(*wave.slowness))
+            spans.append((float(delays.min()) - more, float(delays.max()) + more))
+        return NearPlaces(self, tuple(spans))
+
+    def motion(self, of: str, times: np.ndarray, places: np.ndarray, corrector: np.ndarray | None = None) -> np.ndarray:
+        """Motion (k, d, 3) of disks at places (d, 2) m with correctors (3, 4, d), by default none, at times (k,) s.
+
+        of : "displacement" (m and rad) or "velocity" (m/s and rad/s).
+        """
+        moved = np.zeros((len(times), len(places), 3))
+        for wave, signal in zip(self.waves, self.signals, strict=True):
+            at, g = times[:, None] - wave.delays(places), getattr(signal, of)
+            moved[:, :, :2] += g(at)[:, :, None] * np.array(wave.motion)
+            if corrector is not None:
+                step = 0.5 * self.grain * float(np.hypot(*wave.slowness))  # waves have no accelerations
+                change = (g(at + step) - g(at - step)) / (2.0 * step)
+                moved -= change[:, :, None] * np.einsum("cgd,g->dc", corrector, _gradient(wave))
+        return moved
+
+
+def _gradient(wave: PlaneWave) -> np.ndarray:
+    """(4,) gradients ∂u_a/∂b by their numbers in `homogenise.GRADIENTS`, per unit of −ġ."""
+    gradient = np.zeros(4)
+    gradient[np.array(GRADIENT)] = np.outer(wave.motion, wave.slowness)
+    return gradient
+
+
+@dataclass(frozen=True, eq=False)
+class NearPlaces:
+    """The motion of the undisturbed ground near some places, as a sum of amplitudes: g at some delays of each wave.
+
+    Attributes
+    ----------
+    ground : the motion. spans : smallest and largest delay (s) of each of its waves.
+    """
+
+    ground: GroundWaves
+    spans: tuple[tuple[float, float], ...]
+
+    @cached_property
+    def _rule(self) -> Rule:
+        """The points of the delays."""
+        return Rule(DELAYS - 1)
+
+    @cached_property
+    def _delays(self) -> np.ndarray:
+        """Delays (w, DELAYS) s of each wave."""
+        low, high = np.array(self.spans).T[:, :, None]
+        return 0.5 * (low + high) + 0.5 * (high - low) * self._rule.points
+
+    @property
+    def count(self) -> int:
+        """Number of amplitudes."""
+        return DELAYS * len(self.spans)
+
+    def amplitudes(self, times: np.ndarray) -> np.ndarray:
+        """Displacements g (k, count) m at times (k,) s and the delays."""
+        each = zip(self.ground.signals, self._delays, strict=True)
+        return np.hstack([signal.displacement(times[:, None] - delays) for signal, delays in each])
+
+    def velocities(self, behind: float) -> np.ndarray:
+        """(count, count) 1/s, from the amplitudes to ġ at the same delays, `behind` (s) before."""
+        matrix = np.zeros((self.count, self.count))
+        for number, (low, high) in enumerate(self.spans):
+            own = slice(DELAYS * number, DELAYS * (number + 1))
+            scale = 2.0 / (high - low)
+            matrix[own, own] = -scale * self._rule.slope(self._rule.points + scale * behind)
+        return matrix
+
+    def strained(self, places: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """What values (3, 4, d) per unit gradient become at places (d, 2) m: (3, d, count)."""
+        each = []
+        for wave, (low, high) in zip(self.ground.waves, self.spans, strict=True):
+            slope = self._rule.slope(self._places(wave, places, low, high)) * (2.0 / (high - low))
+            each.append(np.einsum("cgd,g->cd", values, _gradient(wave))[:, :, None] * slope)
+        return np.concatenate(each, axis=2)
+
+    def motion(self, places: np.ndarray, corrector: np.ndarray) -> np.ndarray:
+        """Motion (3, d, count) of disks at places (d, 2) m with correctors (3, 4, d), per unit of amplitudes."""
+        each = []
+        for wave, (low, high) in zip(self.ground.waves, self.spans, strict=True):
+            each.append(np.array(wave.motion)[:, None, None] * self._rule.shape(self._places(wave, places, low, high)))
+        moved = self.strained(places, corrector)
+        moved[:2] += np.concatenate(each, axis=2)
+        return moved
+
+    @staticmethod
+    def _places(wave: PlaneWave, places: np.ndarray, low: float, high: float) -> np.ndarray:
+        """Delays of a wave at places (d, 2) m as −1 … 1 within its span."""
+        return (2.0 * wave.delays(places) - low - high) / (high - low)
+
+
+def rising_waves(
+    medium: Medium, height: float, signals: tuple[Incident | None, Incident | None], grain: float
+) -> GroundWaves:
+    """Waves that run straight up: the two of the medium that together move as given at a height.
+
+    signals : whose velocities are those along x and y at y = height (m); None for none. grain : mean diameter, m.
+    """
+    speeds, polarisations = medium.plane_waves((0.0, 1.0))
+    waves, own = [], []
+    for signal, parts in zip(signals, polarisations, strict=True):
+        for speed, polarisation, part in zip(speeds.tolist(), polarisations.T, parts.tolist(), strict=True):
+            if signal is not None and abs(part) > NO_PART:
+                x, y = (part * polarisation).tolist()
+                waves.append(PlaneWave((0.0, 1.0 / speed), (x, y), -height / speed))
+                own.append(signal)
+    return GroundWaves(medium, tuple(waves), tuple(own), grain)
+
+
+def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -> GroundWaves | None:
+    """The motion of the ground under the incident wave of a case, None without one.
+
+    Raises CaseError for an angle beyond the critical one, and for a wave that is in the body before the run begins.
+    """
+    table, medium = case.incident, outside.body.medium
+    if table is None:
+        return None
+    wave = incident_in(case, medium)
+    waves = [wave]
+    if (surface := outside.free_surface) is not None:
+        if (reflected := reflected_waves(medium, wave, *surface)) is None:
+            raise CaseError([_beyond(medium, table)])
+        waves += reflected
+    signals = (case.wave[table.wave],) * len(waves)
+    found = GroundWaves(medium, tuple(waves), signals, ground.brick.mean_diameter)
+    _must_not_be_there(case, found, outside)
+    return found
+
+
+def incident_in(case: DiskCase, medium: Medium) -> PlaneWave:
+    """The incident wave of a case that has one, in the medium of its ground."""
+    assert case.incident is not None
+    wave = incident_wave(medium, case.incident.type, case.incident.angle)
+    return wave.shifted(-float(wave.delays(np.array([reference_point(case)]))[0]))
+
+
+def reference_point(case: DiskCase) -> tuple[float, float]:
+    """Where (m) the incident wave of a case has the velocity of its wave: as given, or the first corner of the ground.
+
+    That is the lower one on the side that it comes from.
+    """
+    assert case.incident is not None
+    return case.incident.point or (0.0 if case.incident.angle >= 0.0 else case.size[0], 0.0)
+
+
+def _beyond(medium: Medium, table: IncidentWave) -> str:
+    """That an angle is not below the critical one."""
+    sign = float(np.copysign(1.0, table.angle))
+    critical = sign * critical_angle(medium, table.type, sign)
+    return (
+        f"incident.angle: is {table.angle:g}; from the critical angle of this packing on, {critical:.5g} degrees, the "
+        f"free surface changes the form of the wave; must be {'below' if sign > 0.0 else 'above'} that"
+    )
+
+
+def _must_not_be_there(case: DiskCase, found: GroundWaves, outside: Surroundings) -> None:
+    """Raise CaseError if the incident wave has reached the body at the beginning of the run."""
+    assert case.incident is not None
+    left, bottom, right, top = outside.box
+    first = float(found.waves[0].delays(np.array([(left, bottom), (right, bottom), (left, top), (right, top)])).min())
+    begins = case.wave[case.incident.wave].start
+    earliest = found.grain * float(np.hypot(*found.waves[0].slowness))  # ties are within a diameter of the box
+    if begins + first < -earliest:
+        raise CaseError(
+            [
+                f"incident.point: the wave would reach the disks {-(begins + first):.3g} s before the run begins; give "
+                f"wave.{case.incident.wave}.start = {-first:.3g} (s) or more, or a point that it passes earlier"
+            ]
+        )

@@ -1,0 +1,111 @@
+"""Bodies with holes: the disks in them are removed, but for those that the ground beyond a side holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from dembound.boundaries.sides import SIDES
+from dembound.boundaries.support import Edge
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.messages import numbered
+from dembound.disks.beyond.edges import edge_without
+from dembound.errors import CaseError
+from dembound.holes import Hole
+from dembound.holes.floor import Floor
+from dembound.packings.brick import Brick
+from dembound.packings.cut import cut_contacts
+from dembound.packings.tiling import Assembly
+
+BAND = 4.0
+"""Least width of a floor beside a side beyond which the ground is as high, in diameters."""
+
+ON_IT = 1e-6
+"""Part of a diameter by which a disk whose centre is on a floor may be above it: of rounding."""
+
+
+def hollowed(
+    case: DiskCase,
+    brick: Brick,
+    body: Assembly,
+    edges: Mapping[str, Edge],
+    holes: tuple[Hole, ...],
+    floors: Mapping[str, Floor],
+) -> tuple[Assembly, dict[str, Edge], np.ndarray]:
+    """A body and its sides without the particles in holes, and the indices (m,) of the remaining particles.
+
+    The surface of a hole is free: no particles are added to a side.
+
+    floors : those that these holes leave, together with any made before.
+
+    Raises CaseError for holes that reach a side beyond which the ground goes on, but for floors beside a continuum.
+    """
+    removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
+    left, kept = body.without(removed)
+    beyond = {"free field": case.free_field_sides, "continuum": case.outside_sides}
+    below = {"free field": {}, "continuum": floors}
+    problems = [
+        line for what in beyond for line in _at_sides(case, brick, body, kept, holes, what, beyond[what], below[what])
+    ]
+    if problems:
+        raise CaseError(problems)
+    return left, {side: edge_without(edge, kept) for side, edge in edges.items()}, kept
+
+
+def _at_sides(
+    case: DiskCase,
+    brick: Brick,
+    body: Assembly,
+    kept: np.ndarray,
+    holes: tuple[Hole, ...],
+    beyond: str,
+    sides: tuple[str, ...],
+    floors: Mapping[str, Floor],
+) -> list[str]:
+    """Mistakes of holes that take disks beside some sides, beyond which there is a free field or continuum.
+
+    kept : (m,) indices of the disks that remain.
+    """
+    cut = cut_contacts(brick, body, sides, case.periodic)
+    remains, diameter = np.isin(cut.node, kept), brick.mean_diameter
+    wrong = np.zeros(len(cut.node), dtype=np.bool_)
+    uneven = {}
+    for number, side in enumerate(SIDES):
+        here, up = cut.side == number, body.positions[cut.node, 1]
+        lost = here & ~remains
+        if (floor := floors.get(side)) is None:
+            wrong |= lost
+        elif floor.width < BAND * diameter:
+            uneven[side] = floor
+            wrong |= lost
+        elif np.any(up[here & remains] > floor.height + ON_IT * diameter):
+            wrong |= lost
+        else:  # of random packings a floor also leaves disks without connection
+            wrong |= lost & (up < floor.height - diameter)
+    lost = cut.only(wrong)
+    problems, inside = [], np.zeros(len(lost.node), dtype=np.bool_)
+    for place, hole in numbered("hole", case.hole):
+        if hole in holes:
+            taken = hole.contains(body.positions[lost.node])
+            problems += _mistakes(f"{place}: reaches", lost.side[taken], beyond, uneven, diameter)
+            inside |= taken
+    return problems or _mistakes("hole: cuts off disks at", lost.side[~inside], beyond, {}, diameter)
+
+
+def _mistakes(what: str, sides: np.ndarray, beyond: str, uneven: Mapping[str, Floor], diameter: float) -> list[str]:
+    """The mistakes of a hole at some sides, by their numbers (k,); none without any. uneven : at these, by side."""
+    names = [SIDES[number] for number in np.unique(sides)]
+    flat, others = [name for name in names if name in uneven], [name for name in names if name not in uneven]
+    problems = [
+        f"{what} boundary.{name}, beyond which the ground is level: beside it the hole must take all disks down to one "
+        f"height, over at least {BAND * diameter:.4g} m (now {uneven[name].width:.3g} m at y = "
+        f"{uneven[name].height:.4g} m); make it level there, or leave disks between them"
+        for name in flat
+    ]
+    if others:
+        problems.append(
+            f"{what} {' and '.join(f'boundary.{name}' for name in others)}, where the {beyond} has no hole; leave "
+            "disks between them: make the hole smaller, or the body larger (packing.size)"
+        )
+    return problems

@@ -1,0 +1,132 @@
+"""Pairs of disks as arrays for the kernels: each has a place, and each disk a row of contact ends."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.disks.contacts.pair_rows import PairPlan
+from dembound.disks.material.constants import brick_constants
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels.contacts import INTACT, NONE
+from dembound.kernels.tables import Contacts
+from dembound.packings.tiling import Assembly
+
+NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
+"""Constants of a place without a pair: far apart, without stiffness."""
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Pairs: first, second (b,) particles, image (b, 2) int8 whole periods between them, contact_type (b,)."""
+
+    first: np.ndarray
+    second: np.ndarray
+    image: np.ndarray
+    contact_type: np.ndarray
+
+
+class History(NamedTuple):
+    """The history of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds."""
+
+    state: np.ndarray
+    shear: np.ndarray
+    slip: np.ndarray
+    closed: np.ndarray
+    cracked: np.ndarray
+    place: np.ndarray | None = None
+
+
+class Placed(NamedTuple):
+    """Pairs in their places.
+
+    arrays, live, image : see `ContactList`. in_rows : (k,) places of those in rows of copies, ascending. strays : the
+    ends of others, see there; None without rows.
+    """
+
+    arrays: Contacts
+    live: np.ndarray
+    image: np.ndarray
+    in_rows: np.ndarray
+    strays: tuple[np.ndarray, np.ndarray, np.ndarray] | None
+
+
+def in_places(pairs: Pairs, history: History, slot: np.ndarray, constants: np.ndarray, plan: PairPlan | None) -> Placed:
+    """Give pairs their places, and list the contact ends of each particle.
+
+    slot : (m,) of each particle. constants : (p, 12) of the types of contacts. plan : rows of copies, whose places come
+    first; None: there are none.
+    """
+    first, second = (slot[particles].astype(np.int32) for particles in (pairs.first, pairs.second))
+    in_rows = np.full(len(first), -1)
+    if plan is not None:
+        in_rows = plan.place(pairs.first, pairs.second, pairs.contact_type)
+    order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], second, first, in_rows, in_rows < 0))
+    first, second, in_rows = first[order], second[order], in_rows[order]
+    places = 0 if plan is None else plan.count
+    shared = int(np.count_nonzero(in_rows >= 0))
+    live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
+    count, begin, stop = places + len(order) - shared, int(slot.min()), int(slot.max()) + 1
+    owner = np.concatenate([first, second])
+    end = np.concatenate([2 * live, 2 * live + 1]).astype(np.uint32)
+    start = np.zeros(stop + 1, dtype=np.uint32)
+    np.cumsum(np.bincount(owner - begin, minlength=stop - begin), out=start[begin + 1 :])
+
+    def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
+        """Values of the pairs in their places."""
+        column = np.full((count, *values.shape[1:]), empty, dtype=values.dtype)
+        column[live] = values
+        return column
+
+    arrays = Contacts(
+        begin=begin,
+        first=placed(first.astype(np.uint32), int(slot[0])),
+        second=placed(second.astype(np.uint32), int(slot[0])),
+        contact_type=placed(pairs.contact_type[order].astype(np.uint32), len(constants)),
+        constants=constants if plan is None else np.vstack([constants, NOTHING]),
+        state=placed(history.state[order], NONE),
+        shear=placed(history.shear[order]),
+        slip=placed(history.slip[order]),
+        closed=placed(history.closed[order]),
+        cracked=placed(history.cracked[order], -1),
+        place=np.zeros((count, 2)) if history.place is None else placed(history.place[order]),
+        force=np.zeros((4, count)),
+        start=start,
+        end=end[np.lexsort((end, owner))],
+    )
+    strays = None if plan is None else _ends_apart(owner, end, 2 * places)
+    return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays)
+
+
+def _ends_apart(owner: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Owners (k,) of ends (e,) from number `first` on, where each one's begin (k + 1,), and these ends."""
+    others = end >= first
+    order = np.lexsort((end[others], owner[others]))
+    slot, start = np.unique(owner[others][order], return_index=True)
+    return slot, np.append(start, len(order)), end[others][order]
+
+
+def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray) -> Contacts:
+    """The contacts of the elastic law, without history, forces and rows, for its strain energy.
+
+    slot : (n,) in which kernels hold the assembly's particles.
+    """
+    first, second = slot[assembly.pairs.T].astype(np.uint32, order="C")
+    bonded = INTACT if ground.moduli.pb_emod > 0.0 else NONE
+    nothing = np.zeros(0)
+    return Contacts(
+        begin=int(slot.min()),
+        first=first,
+        second=second,
+        contact_type=assembly.contact_type.astype(np.uint32),
+        constants=brick_constants(ground, gaps_close=False, locked_in=0.0),
+        state=np.full(len(first), bonded, dtype=np.uint8),
+        shear=nothing,
+        slip=nothing,
+        closed=np.zeros(0, dtype=np.uint8),
+        cracked=np.zeros(0, dtype=np.int64),
+        place=np.zeros((0, 2)),
+        force=np.zeros((4, 0)),
+        start=first[:0],
+        end=first[:0],
+    )

@@ -1,0 +1,275 @@
+"""The pairs of a scene: particles in contact or nearly in contact, listed anew as particles move."""
+
+from dataclasses import fields
+
+import numpy as np
+
+from dembound.casefile.disks.material import Material
+from dembound.disks.contacts.arrays import History, Pairs
+from dembound.disks.contacts.forces import acting
+from dembound.disks.contacts.neighbours import near_pairs, pair_keys
+from dembound.disks.contacts.pair_list import PairList
+from dembound.disks.contacts.pair_rows import PairPlan
+from dembound.disks.contacts.row_plan import RowPlan
+from dembound.disks.material.constants import brick_constants, limits_of, shared_constants
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels import contacts as kernel
+from dembound.kernels.approach import approach
+from dembound.kernels.common import CHUNKS
+from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
+from dembound.motion.cracks import Cracks, joined
+from dembound.motion.layout import Layout
+from dembound.motion.state import Arrays
+from dembound.packings.tiling import Assembly
+
+SKIN = 0.05
+"""Pairs are listed while their gap is below this share of the mean diameter.
+
+The list is renewed once a particle has moved by half of it.
+"""
+
+_HISTORY = ("state", "shear", "slip", "closed", "cracked")
+"""The arrays of the pairs that are their history, in the order of `History`."""
+
+_KEPT = ("first", "second", "contact_type", *_HISTORY)
+"""The arrays of the pairs, beside their forces, that memory() returns."""
+
+
+class ContactList(PairList):
+    """All pairs of a part that are in contact or may soon be, with their history.
+
+    Displacements (3, n) are those of all nodes of the scene.
+
+    Parameters
+    ----------
+    ground : brick and material.
+    material : gives the limits of the law.
+    assembly : the part's particles at the start.
+    periods : length (m) of the part along x and y where it is periodic, else None.
+    begin : number of its first particle in the scene.
+    held : first, second (k,) particles of the part and vectors (k, 2) m of pairs that stay listed at any distance.
+    layout : the slots in which kernels hold the scene's particles; None: in their order. Nodes of continua, which
+        follow the particles, are not among them, as there may be fewer of these in a static stage.
+    plan : the rows of copies in which the part's particles are held, and their first block; None: one by one.
+
+    Attributes
+    ----------
+    Beside those of `PairList`:
+
+    limits : strengths and friction.
+    skin : m, gap up to which it is complete.
+    keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
+    arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
+    """
+
+    def __init__(
+        self,
+        ground: PackedMaterial,
+        material: Material,
+        assembly: Assembly,
+        periods: tuple[float | None, float | None],
+        begin: int = 0,
+        held: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
+        layout: Layout | None = None,
+        plan: tuple[RowPlan, int] | None = None,
+    ) -> None:
+        super().__init__(assembly, periods, begin, layout)
+        self.ground = ground
+        self.limits = limits_of(material)
+        self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
+        self.searches = self.limits.geometry != REFERENCE
+        self.skin = SKIN * ground.brick.mean_diameter
+        self._set_origin(np.zeros((2, len(assembly.radii))))
+        self.keeps_slip = False
+        self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
+        first, second = assembly.pairs.T.astype(np.int64)
+        images = self.images(first, second, self.bonds[assembly.contact_type, :2])
+        pairs = Pairs(first, second, images, assembly.contact_type)
+        bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
+        zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
+        self._constants = self.bonds
+        self._list(pairs, History(bonded, zero, zero, none, np.full(len(first), -1)))
+        widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
+        self.arms = np.zeros(self.layout.count)
+        self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
+        self._cracks: list[Cracks] = []
+        self._held = held
+        if self.searches:
+            self.search(np.zeros((3, len(self.layout.slot))))
+        if plan is not None:
+            self.bonds = self._constants  # near pairs of the start are the same in all copies, as contacts are
+            first, second = self.pairs
+            pairs = Pairs(first, second, self.image, self.of("contact_type"))
+            self._plan = PairPlan.of(first, second, pairs.contact_type, len(self.bonds), *plan)
+            self._list(pairs, History(*(self.of(name) for name in _HISTORY)))
+
+    def start_from_displacements(self, displacement: np.ndarray) -> None:
+        """Set the pairs to the state of the elastic law at displacements (3, n), without any slip or with that kept."""
+        kernel.start_from_displacements(self.spread(displacement), self.arrays, self.keeps_slip)
+
+    def use_elastic_law_with(self, slip: np.ndarray) -> None:
+        """Keep a slip (places of `arrays`), see `elastic_again.settled_slip`, under the elastic law."""
+        self.arrays.slip[:] = slip
+        self.keeps_slip = True
+
+    def push(self, displacement: np.ndarray, *, reference: bool = False) -> None:
+        """Compute the forces of the pairs at displacements (3, n) at rest, and store them in `arrays`.
+
+        reference : with the geometry of the start, as under the elastic law.
+        """
+        elastic = self.limits._replace(geometry=REFERENCE, tension=np.inf, cohesion=np.inf)
+        limits = elastic if reference else self.limits
+        u = self.spread(displacement)
+        still = np.zeros_like(u)
+        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 4)), 0) > 0:
+            kernel.note_places(u, 0, self.arrays)
+
+    def add_forces(self, total: np.ndarray) -> None:
+        """Add the pairs' last forces and moments to those of all nodes, total (3, n)."""
+        force = np.empty((3, self.layout.count))
+        kernel.sum_forces(self.arrays, force)
+        total[:, self.nodes] += force[:, self._slot]
+
+    def is_old(self, displacement: np.ndarray) -> bool:
+        """Whether at displacements (3, n) a particle has moved so far that pairs may be missing."""
+        u = self.spread(displacement)
+        return self.skin - approach(u, self._slots.start, self.origin, self.cells) < 0.0
+
+    def search(self, displacement: np.ndarray) -> None:
+        """List the pairs anew for displacements (3, n): add near pairs, remove distant ones without bond."""
+        self.note_cracks()
+        moved = displacement[:2, self.nodes].T
+        if not np.isfinite(moved).all():
+            return  # the `Watch` of the run raises the error
+        kept = self._remaining(moved)
+        met, constants = self._met(moved, kept)
+        # rows of earlier searches that are still in use are moved up to follow those of the brick
+        own = len(self.bonds)
+        used, row = np.unique(self.of("contact_type")[kept], return_inverse=True)
+        extra = used >= own
+        place = used.astype(np.int64)
+        place[extra] = own + np.arange(np.count_nonzero(extra))
+        self._constants = np.vstack([self.bonds, self._constants[used[extra]], constants])
+        first, second = self.pairs
+        pairs = Pairs(
+            np.concatenate([first[kept], met.first]),
+            np.concatenate([second[kept], met.second]),
+            np.concatenate([self.image[kept], met.image]),
+            np.concatenate([place[row], own + np.count_nonzero(extra) + met.contact_type]),
+        )
+        del first, second, row
+        history = History(
+            np.concatenate([self.of("state")[kept], np.full(len(met.first), NONE, dtype=np.uint8)]),
+            np.concatenate([self.of("shear")[kept], np.zeros(len(met.first))]),
+            np.concatenate([self.of("slip")[kept], np.zeros(len(met.first))]),
+            np.concatenate([self.of("closed")[kept], np.zeros(len(met.first), dtype=np.uint8)]),
+            np.concatenate([self.of("cracked")[kept], np.full(len(met.first), -1)]),
+        )
+        self._list(pairs, history)
+        self._set_origin(displacement[:2, self.nodes])
+
+    def _remaining(self, moved: np.ndarray) -> np.ndarray:
+        """Which pairs (b,) bool remain listed when particles have moved (m, 2) m: intact, near or held ones."""
+        radii, (first, second) = self.assembly.radii, self.pairs
+        vectors = moved[second] - moved[first] + self._constants[self.of("contact_type"), :2]
+        kept = (self.of("state") == INTACT) | (np.hypot(*vectors.T) - radii[first] - radii[second] <= self.skin)
+        if self._held is not None:
+            kept[self.find(*self._held)[1]] = True
+        return kept
+
+    def _met(self, moved: np.ndarray, kept: np.ndarray) -> tuple[Pairs, np.ndarray]:
+        """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m.
+
+        Their types are rows of constants (p, 12), which are returned too.
+        """
+        positions, radii = self.assembly.positions, self.assembly.radii
+        near, image = near_pairs(positions + moved, radii, self.skin, self.periods)
+        first, second = (particles[kept] for particles in self.pairs)
+        keys = pair_keys(first, second, self.image[kept], len(radii))
+        fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, len(radii)), keys)
+        (first, second), image = near[fresh].T, image[fresh]
+        vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
+        constants = self.ground.law.pair_constants(
+            self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
+        )
+        constants, row_of = shared_constants(constants, self.skin)
+        return Pairs(first, second, image, row_of), constants
+
+    def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:
+        """Copy the pairs, with their history, from a list of more particles, of which this list has `kept` (m,)."""
+        number = np.full(len(other.assembly.radii), -1)
+        number[kept] = np.arange(len(kept))
+        first, second = (number[particles] for particles in other.pairs)
+        left = (first >= 0) & (second >= 0)
+        self._constants = other._constants
+        self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
+        pairs = Pairs(first[left], second[left], other.image[left], other.of("contact_type")[left])
+        self._list(pairs, History(*(other.of(name)[left] for name in History._fields)))
+
+    def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
+        """Copy the history of each pair's twin from a free-field column settled alone, at displacements (3, n).
+
+        twin : (m,) the column's particle for each of this list. Bonds that broke in the column count here as broken
+        before the first step.
+        """
+        self.search(displacement)
+        pairs = self.arrays
+        first, second = (twin[particles] for particles in self.pairs)
+        found, at = column.find(first, second, self._constants[self.of("contact_type"), :2])
+        for name in ("state", "shear", "slip"):
+            getattr(pairs, name)[self.live[found]] = column.of(name)[at[found]]
+        pairs.cracked[(pairs.state == TENSION) | (pairs.state == SHEAR)] = 0
+        first, second = self.pairs
+        moved = displacement[:2, self.nodes].T
+        pairs.place[self.live] = 0.5 * (moved[first] + moved[second])
+        self.note_cracks()
+
+    def note_cracks(self) -> None:
+        """Record the bonds that broke since the last call, with their positions."""
+        if not (self.arrays.cracked >= 0).any():
+            return
+        cracked, state = self.of("cracked"), self.of("state")
+        broken = np.flatnonzero(cracked >= 0)
+        first, second = (particles[broken] for particles in self.pairs)
+        order = np.lexsort((second, first, cracked[broken]))
+        broken, first, second = broken[order], first[order], second[order]
+        half = 0.5 * self._constants[self.of("contact_type")[broken], :2]
+        middle = self.assembly.positions[first] + half + self.of("place")[broken]
+        both = np.column_stack([first, second]) + self.nodes.start
+        self._cracks.append(Cracks(cracked[broken], both, middle, state[broken] == SHEAR))
+        self.arrays.cracked[:] = -1
+
+    def take_cracks(self) -> Cracks:
+        """The bonds that broke since this was last called."""
+        self.note_cracks()
+        noted, self._cracks = self._cracks, []
+        return joined(noted)
+
+    def freshly_torn(self) -> np.ndarray:
+        """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
+        return self._counted(self.of("cracked") >= 0) > 0
+
+    def coordination(self, geometry: int) -> np.ndarray:
+        """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""
+        return self._counted(acting(self.arrays, geometry)[self.live])
+
+    def memory(self) -> Arrays:
+        """The pairs with their history, and cracks not yet recorded."""
+        self.note_cracks()
+        memory = {name: self.of(name) for name in _KEPT} | {"force": self.force}
+        memory |= {"image": self.image, "constants": self._constants, "origin": self.origin}
+        memory["keeps_slip"] = np.array(self.keeps_slip)
+        cracks = joined(self._cracks)
+        return memory | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
+
+    def recall(self, memory: Arrays) -> None:
+        """Restore what `memory` has returned in another run of the same case."""
+        self._constants = memory["constants"]
+        self._set_origin(memory["origin"][:, self._slot - self._slots.start])
+        self.keeps_slip = bool(memory["keeps_slip"])
+        begin, node = self.nodes.start, self.layout.node
+        first, second = (node[memory[name]] - begin for name in ("first", "second"))
+        pairs = Pairs(first, second, memory["image"], memory["contact_type"])
+        self._list(pairs, History(*(memory[name] for name in _HISTORY)))
+        self.arrays.force[:, self.live] = memory["force"].T
+        self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]

@@ -1,0 +1,104 @@
+"""Pairs of particles of a part, in the places where kernels hold them, by columns and by their numbers."""
+
+import numpy as np
+
+from dembound.disks.contacts.arrays import History, Pairs, in_places
+from dembound.disks.contacts.neighbours import cells_of, pair_keys
+from dembound.disks.contacts.pair_rows import PairPlan
+from dembound.kernels.tables import PairRows
+from dembound.motion.layout import Layout
+from dembound.packings.tiling import Assembly
+
+
+class PairList:
+    """Pairs of a part's particles, with their history, in the arrays of the kernels.
+
+    Parameters
+    ----------
+    assembly, periods, begin, layout : as of `ContactList`.
+
+    Attributes
+    ----------
+    arrays : the pairs for the kernels, by slots. In rows of copies some places hold no pair; these have no stiffness.
+    live : (b,) the places of the pairs in `arrays`, ascending; `pairs`, `image` and `of` have these alone.
+    rows : the pairs in rows of copies, which come first in `arrays`; None: there are none. With rows, strays : slots of
+        the disks (k,) that have ends of other pairs, where each one's begin (k + 1,), and these ends (e,); extra :
+        (3, slots) work space of the kernels.
+    origin : (2, m) m, displacements of the part's m slots at which the list was made.
+    cells : of the particles there.
+    bonds : (p, 12) constants of the contacts of the brick.
+    """
+
+    bonds: np.ndarray
+    _constants: np.ndarray
+
+    def __init__(
+        self, assembly: Assembly, periods: tuple[float | None, float | None], begin: int, layout: Layout | None
+    ) -> None:
+        self.assembly = assembly
+        self.periods = periods
+        self.nodes = slice(begin, begin + len(assembly.radii))
+        self.layout = Layout.plain(self.nodes.stop) if layout is None else layout
+        self._slot = self.layout.slot[self.nodes]
+        self._slots = slice(int(self._slot.min()), int(self._slot.max()) + 1)
+        self._plan: PairPlan | None = None
+        self.rows: PairRows | None = None
+
+    def spread(self, displacement: np.ndarray) -> np.ndarray:
+        """Displacements (3, n) of all nodes as those (3, slots) of the particles."""
+        return self.layout.spread(displacement[:, : len(self.layout.slot)])
+
+    @property
+    def pairs(self) -> tuple[np.ndarray, np.ndarray]:
+        """First and second particle (b,) int64 of every pair, numbered from the part's first one."""
+        begin, node = self.nodes.start, self.layout.node
+        return node[self.of("first")] - begin, node[self.of("second")] - begin
+
+    def of(self, name: str) -> np.ndarray:
+        """A column of `arrays` for the pairs alone, (b,) or (b, …)."""
+        return getattr(self.arrays, name)[self.live]
+
+    @property
+    def force(self) -> np.ndarray:
+        """Last forces (b, 4) of the pairs, see kernels/contacts.py."""
+        return self.arrays.force[:, self.live].T
+
+    def images(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+        """Whole periods (b, 2) int8 that a pair's vector goes beyond the difference of its positions."""
+        inside = self.assembly.positions[second] - self.assembly.positions[first]
+        periods = np.broadcast_to([length or 0.0 for length in self.periods], inside.shape)
+        wraps = np.divide(vectors - inside, periods, out=np.zeros_like(inside), where=periods > 0.0)
+        return np.rint(wraps).astype(np.int8)
+
+    def find(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Find pairs (b,) of particles with vectors (b, 2) m between them in this list.
+
+        Returns whether they are listed (b,), and their indices (b,), for either order of the two particles.
+        """
+        count = len(self.assembly.radii)
+        listed = pair_keys(*self.pairs, self.image, count)
+        order = np.argsort(listed)
+        keys = pair_keys(first, second, self.images(first, second, vectors), count)
+        at = order[np.minimum(np.searchsorted(listed, keys, sorter=order), len(order) - 1)]
+        return listed[at] == keys, at
+
+    def _counted(self, chosen: np.ndarray) -> np.ndarray:
+        """Number (m,) of the chosen pairs (b,) that each particle has."""
+        ends = np.concatenate([particles[chosen] for particles in self.pairs])
+        return np.bincount(ends, minlength=len(self.assembly.radii))
+
+    def _set_origin(self, displacement: np.ndarray) -> None:
+        """Count from displacements (2, m) m of the part's particles."""
+        self.origin = np.zeros((2, self._slots.stop - self._slots.start))
+        slot = self._slot - self._slots.start
+        self.origin[:, slot] = displacement
+        self.cells = cells_of(self.assembly.positions + displacement.T, self.assembly.radii, slot, self.periods)
+
+    def _list(self, pairs: Pairs, history: History) -> None:
+        """Give the pairs their places, and list the contact ends of each particle."""
+        placed = in_places(pairs, history, self._slot, self._constants, self._plan)
+        self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image
+        if self._plan is not None:
+            assert placed.strays is not None
+            self.rows, self.strays = self._plan.rows(placed.in_rows, self.bonds), placed.strays
+            self.extra = np.zeros((3, self.layout.count))

@@ -1,0 +1,60 @@
+"""Contact data for the history-dependent law: constants, and the limits of contacts and bonds."""
+
+import numpy as np
+
+from dembound.casefile.disks.material import Material
+from dembound.casefile.types import LAWS
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
+from dembound.kernels.tables import Limits
+
+
+def strength_of(material: Material) -> Limits:
+    """Strengths and friction of a material in the geometry of the start, whatever its law."""
+    return Limits(
+        friction=float(material.fric),
+        tension=np.inf if material.pb_ten is None else material.pb_ten,
+        cohesion=np.inf if material.pb_coh is None else material.pb_coh,
+        tan_fa=float(np.tan(np.radians(material.pb_fa))) if material.pb_coh is not None else 0.0,
+        geometry=REFERENCE,
+    )
+
+
+def limits_of(material: Material) -> Limits:
+    """The same as its law has them; bonds without limits for a law without history."""
+    strength = strength_of(material)
+    if not LAWS[material.law].has_history:
+        return strength._replace(tension=np.inf, cohesion=np.inf)
+    return strength._replace(geometry={"updated": UPDATED, "reference": BONDED}[material.geometry])
+
+
+def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
+    """Constants (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
+
+    Arguments as for `pair_constants`.
+    """
+    brick = ground.brick
+    first, second = brick.radii[brick.pairs].T
+    constants = ground.law.pair_constants(
+        ground.moduli,
+        first,
+        second,
+        brick.vectors,
+        bonded=ground.moduli.pb_emod > 0.0,
+        gaps_close=gaps_close,
+        locked_in=locked_in,
+    )
+    half = constants.copy()
+    half[:, 5:10] *= 0.5  # stiffnesses
+    half[:, 10:] *= 2.0  # and areas and section moduli too, so that stresses do not change
+    return np.vstack([constants, half])
+
+
+def shared_constants(constants: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Constants (p, 12) of pairs, equal rows (to rounding) only once, and the row of each pair (b,).
+
+    Pairs at the same place of different bricks then share a row; length (m) is the scale for rounding errors.
+    """
+    places = np.round(constants[:, :5] / (1e-6 * length))
+    _, first, row_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
+    return constants[first], row_of.reshape(-1)

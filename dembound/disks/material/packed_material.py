@@ -1,0 +1,190 @@
+"""A brick with its material: masses, contact constants, and the equivalent continuum.
+
+Everything here is computed from one brick, before any scene is built. The homogenised stiffness comes from one periodic
+linear solve and gives wave speeds without a dynamic run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from dembound.boundaries.sides import SIDES
+from dembound.casefile.disks.material import Material
+from dembound.casefile.types import LAWS
+from dembound.disks.material.free_surface import cut_at, skin_depths
+from dembound.disks.material.homogenise import Continuum, homogenise
+from dembound.errors import CaseError
+from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
+from dembound.packings.brick import Brick
+
+LARGEST_OVERLAP = 0.1
+"""Largest locked-in pressure over the contact modulus: the largest pressure at which bricks are packed."""
+
+NO_STIFFNESS = 1e-9
+"""Stiffness over the largest one below which no wave runs: rounding of the homogenised one leaves some 1e-13."""
+
+AXES = {"x": 0, "y": 1, "rotation": 2}
+
+
+@dataclass(frozen=True)
+class PackedMaterial:
+    """A brick with its material.
+
+    Attributes
+    ----------
+    brick : the packed periodic body.
+    density : bulk density, kg/m³.
+    moduli : micro-parameters in use, after any scaling to a wave speed.
+    law : the bond law.
+    held : components (0 x, 1 y, 2 rotation) that are held for all particles.
+    """
+
+    brick: Brick
+    density: float
+    moduli: Moduli
+    law: Law
+    held: tuple[int, ...] = ()
+    _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _continua: dict[tuple[int, ...], Continuum] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @cached_property
+    def stiffness(self) -> Stiffness:
+        """Constants of the brick's contacts."""
+        first, second = self.brick.radii[self.brick.pairs].T
+        return self.law.stiffness(self.moduli, first, second, np.hypot(*self.brick.vectors.T))
+
+    @cached_property
+    def mass(self) -> np.ndarray:
+        """Disk masses (n,) kg; all disks have the same density, which gives the brick the bulk density of the case."""
+        area = self.brick.radii**2
+        return self.density * float(np.prod(self.brick.size)) * area / area.sum()
+
+    @cached_property
+    def inertia(self) -> np.ndarray:
+        """Moments of inertia of the disks (n,) kg·m², mR²/2."""
+        return 0.5 * self.mass * self.brick.radii**2
+
+    @property
+    def packed_pressure(self) -> float:
+        """Pressure (Pa) at which the brick was packed, for the present stiffness of its contacts."""
+        return 0.0 - 0.5 * self.moduli.emod * float(self.brick.stress[0] + self.brick.stress[1])
+
+    @cached_property
+    def bond_share(self) -> float:
+        """Share of the stiffness, the smaller of x and y, that remains in tension, where contacts are open."""
+        if self.moduli.pb_emod == 0.0:
+            return 0.0
+        first, second = self.brick.radii[self.brick.pairs].T
+        bonds = self.law.stiffness(replace(self.moduli, emod=0.0), first, second, np.hypot(*self.brick.vectors.T))
+        alone = homogenise(self.brick, bonds, tuple(component for component in self.held if component == 2)).tensor
+        return min(float(alone[axis, axis] / self.material_tensor[axis, axis]) for axis in (0, 1))
+
+    @property
+    def tensor(self) -> np.ndarray:
+        """Homogenised stiffness (4, 4) Pa with the scene's held motions; see `homogenise`."""
+        return self._continuum(self.held).tensor
+
+    @property
+    def material_tensor(self) -> np.ndarray:
+        """Homogenised stiffness (4, 4) Pa with both translations free, a property of the material."""
+        return self.continuum.tensor
+
+    @property
+    def continuum(self) -> Continuum:
+        """The continuum that the brick is equivalent to, with both translations free."""
+        return self._continuum(tuple(component for component in self.held if component == 2))
+
+    def skin(self, side: str) -> float:
+        """Depth (m) of the continuum's free surface at a side that cuts no brick, see `skin_depths`."""
+        axis, last = divmod(SIDES.index(side), 2)
+        if axis not in self._skins:
+            self._skins[axis] = skin_depths(self.brick, self.stiffness, self.material_tensor, axis)
+        return self._skins[axis][last]
+
+    def cut(self, height: float) -> tuple[float, float]:
+        """Where the mass of the packing and where its continuum end below a cut at a height, m above the brick's edge.
+
+        Both are m above the cut, the second usually negative: see `Brick.mass_offset` and `skin_depths`.
+        """
+        height %= float(self.brick.size[1])
+        if height not in self._cuts:
+            brick = cut_at(self.brick, height)
+            depth = skin_depths(brick, self.stiffness, self.material_tensor)[1]
+            self._cuts[height] = float(brick.mass_offset[1]), -depth
+        return self._cuts[height]
+
+    def _continuum(self, held: tuple[int, ...]) -> Continuum:
+        """The continuum with some components held, computed once."""
+        if held not in self._continua:
+            self._continua[held] = homogenise(self.brick, self.stiffness, held)
+        return self._continua[held]
+
+    def wave_speeds(self, axis: int) -> tuple[float, float]:
+        """c_p and c_s (m/s) of plane waves along x (axis 0) or y (1) in the scene, held motions included.
+
+        The roots of the Christoffel equation det(Γ − ρc²) = 0; P is the one that moves mostly along the axis. A wave
+        that does not run has speed nan: its motion is held, or no stiffness resists it.
+        """
+        pair = [0, 3] if axis == 0 else [1, 2]
+        christoffel = self.tensor[np.ix_(pair, pair)] / self.density
+        held = np.array([axis in self.held, 1 - axis in self.held])
+        if held.any():
+            squares = np.where(held, np.nan, np.diag(christoffel))
+        else:
+            roots, shapes = np.linalg.eigh(christoffel)
+            p = int(np.argmax(np.abs(shapes[0])))
+            squares = roots[[p, 1 - p]]
+        least = NO_STIFFNESS * np.abs(self.tensor).max() / self.density
+        p_square, s_square = np.where(squares > least, squares, np.nan)  # nan > least is false
+        return float(np.sqrt(p_square)), float(np.sqrt(s_square))
+
+
+def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
+    """Combine a brick with its material; if match is "assembly", the moduli are scaled to the given wave speed.
+
+    Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
+    """
+    ground = _scaled(brick, material, held)
+    if material.locked_in is not None:
+        most = LARGEST_OVERLAP * ground.moduli.emod
+        if ground.packed_pressure <= 0.0:
+            raise CaseError(["material.locked_in: needs disks that were packed under stress; use static.stress"])
+        if material.locked_in > most:
+            allowed = f"at most {most:.3g} Pa, {LARGEST_OVERLAP:g} of the contact modulus"
+            raise CaseError([f"material.locked_in: is {material.locked_in:g} Pa, must be {allowed}"])
+    return ground
+
+
+def _scaled(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
+    """A brick with its material; if match is "assembly", the moduli are scaled to the case's wave speed."""
+    ground = PackedMaterial(
+        brick=brick,
+        density=material.density,
+        moduli=nominal_moduli(material),
+        law=LAWS[material.law],
+        held=tuple(AXES[name] for name in held),
+    )
+    if material.p_wave_speed is None or material.match == "lattice":
+        return ground
+    axis = 1 if 0 in ground.held else 0
+    factor = (material.p_wave_speed / ground.wave_speeds(axis)[0]) ** 2
+    moduli = replace(ground.moduli, emod=ground.moduli.emod * factor, pb_emod=ground.moduli.pb_emod * factor)
+    return replace(ground, moduli=moduli)
+
+
+def nominal_moduli(material: Material) -> Moduli:
+    """Micro-parameters as the case gives them, or by Z eq. 11 from its wave speed."""
+    if material.p_wave_speed is not None:
+        emod, pb_emod = lattice_moduli(
+            material.density, material.p_wave_speed, material.contact_share, material.pb_rmul
+        )
+    else:
+        assert material.emod is not None
+        assert material.pb_emod is not None
+        emod, pb_emod = material.emod, material.pb_emod
+    return Moduli(emod, pb_emod, material.kratio, material.pb_kratio, material.pb_rmul, material.fric)

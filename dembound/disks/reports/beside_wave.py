@@ -1,0 +1,319 @@
+"""What sides along a plane wave take from it that do not move as ground beyond them would, without a run.
+
+Ground that goes on beyond a side moves with the wave; dashpots, springs and walls hold the side back instead, and a
+free one lacks its traction. With u the motion of the undisturbed ground, which depends on the coordinate along the wave
+alone, and t(u) the traction that the ground beyond has on the side, the error e by a side with dashpots C and springs K
+obeys the equations of the body, into which no wave enters, under the force −C ė − K e − (C u̇ + K u + t(u)) per length
+of the side. Where a wall holds a component, e = −u.
+
+Ground and error are computed with linear and bilinear elements of the homogenised packing and central differences.
+Holes are left out. Components and axes are 0 across the wave and 1 along it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dembound.boundaries import SIDES, Motion, normal_axis
+from dembound.disks.beyond.frequencies import mean_frequency
+from dembound.disks.matching import Held
+from dembound.disks.scene import DiskScene
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+PER_WAVELENGTH = 30.0
+"""Elements in a wave of the mean frequency at the slowest speed."""
+
+FEWEST, MOST = 12, 100
+"""Smallest and largest number of elements along an axis."""
+
+WORK = 2e7
+"""Largest number of nodes times steps; of longer runs only the beginning is computed, from the wave's start on."""
+
+SAFETY = 0.9
+"""Time step over the largest stable one."""
+
+ALONG, BESIDE = [2, 1], [0, 3]
+"""The gradients of both components along the wave, and those whose stresses act on planes along it; see GRADIENTS."""
+
+
+class End(NamedTuple):
+    """What acts on a side: dashpots (2,) N·s/m² and springs (2,) N/m² per length, and which components (2,) move."""
+
+    damping: np.ndarray
+    stiffness: np.ndarray
+    moves: np.ndarray
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The body of a scene as a grid of elements.
+
+    Attributes
+    ----------
+    axis : of the wave in the scene. origin, size : (2,) m. cells : (2,) numbers of elements. density : kg/m³.
+    tensor : (4, 4) Pa, see `homogenise.GRADIENTS`. free : (2,) components that are not held. ends : what acts on each
+    side.
+    """
+
+    axis: int
+    origin: np.ndarray
+    size: np.ndarray
+    cells: np.ndarray
+    density: float
+    tensor: np.ndarray
+    free: np.ndarray
+    ends: Mapping[str, End]
+
+    @classmethod
+    def of(cls, scene: DiskScene, axis: int) -> Grid:
+        """That of a scene for a wave along an axis."""
+        order, gradients = ([0, 1], [0, 1, 2, 3]) if axis == 1 else ([1, 0], [1, 0, 3, 2])
+        ground, box = scene.ground, np.array(scene.case.packing.box)
+        size = (box[2:] - box[:2])[order]
+        frequency, speeds = mean_frequency(scene.case), np.array(ground.wave_speeds(axis))
+        known = math.isfinite(frequency) and (speeds > 0.0).any()
+        wanted = size * PER_WAVELENGTH * frequency / speeds[speeds > 0.0].min() if known else np.full(2, MOST / 2)
+        cells = np.clip(np.ceil(wanted), FEWEST, MOST).astype(int)
+        free = np.array([component not in ground.held for component in order])
+        ends = {side: _end(scene, side, order, free) for side in SIDES}
+        tensor = ground.material_tensor[np.ix_(gradients, gradients)]
+        return cls(axis, box[:2][order], size, cells, ground.density, tensor, free, ends)
+
+    @property
+    def spacing(self) -> np.ndarray:
+        """Sides (2,) m of the elements."""
+        return self.size / self.cells
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes, row after row across the wave."""
+        return int(np.prod(self.cells + 1))
+
+    def row(self, side: str) -> np.ndarray:
+        """The nodes of a side."""
+        numbers = np.arange(self.nodes).reshape(self.cells[1] + 1, self.cells[0] + 1)
+        last = -1 if side in ("right", "top") else 0
+        return numbers[last] if normal_axis(side) == self.axis else numbers[:, last]
+
+    def weights(self, side: str) -> np.ndarray:
+        """Length (m) of a side that belongs to each of its nodes, (k, 1)."""
+        spacing = self.spacing[0 if normal_axis(side) == self.axis else 1]
+        weights = np.full((len(self.row(side)), 1), spacing)
+        weights[[0, -1]] *= 0.5
+        return weights
+
+    def around(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Nodes (m, 4) round places (m, 2) m of the scene, their weights (m, 4), and heights (m,) in elements."""
+        places = (positions[:, [0, 1] if self.axis == 1 else [1, 0]] - self.origin) / self.spacing
+        places = np.clip(places, 0.0, self.cells)
+        first = np.minimum(places.astype(int), self.cells - 1)
+        (x, y), row = (places - first).T, self.cells[0] + 1
+        nodes = (first @ [1, row])[:, None] + np.array([0, 1, row, row + 1])
+        weights = np.stack([(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y], axis=1)
+        return nodes, weights, places[:, 1]
+
+    @property
+    def time_step(self) -> float:
+        """A stable step (s): the eigenvalue of one element bounds those of all, to which springs at sides add."""
+        largest = np.linalg.eigvalsh(_element(self.tensor, self.spacing))[-1]
+        mass = 0.25 * self.density * float(np.prod(self.spacing))
+        springs = max(float(end.stiffness.max()) for end in self.ends.values())
+        return SAFETY * 2.0 / math.sqrt(largest / mass + 4.0 * springs / (self.density * float(self.spacing.min())))
+
+
+def _end(scene: DiskScene, side: str, order: list[int], free: np.ndarray) -> End:
+    """What acts on a side: its supports, or the dashpots of the ground beyond; order : of the scene's axes."""
+    table, axis, none = scene.case.side(side), normal_axis(side), np.zeros(2)
+    if table.is_outside:
+        p, s = np.nan_to_num(scene.ground.wave_speeds(axis)) * scene.ground.density
+        return End(np.array([p, s] if axis == order[0] else [s, p]), none, free)
+    if table.is_mirror:
+        return End(none, none, free & (np.array(order) != axis))
+    if side not in scene.edges:
+        return End(none, none, free)
+    held = Held.of(scene, side)
+    return End(held.damping[order], held.stiffness[order], free & ~np.isin(order, table.prescribed(axis)))
+
+
+def _element(tensor: np.ndarray, spacing: np.ndarray) -> np.ndarray:
+    """Stiffness matrix (8, 8) N/m of a bilinear element; nodes in the order (0, 0), (1, 0), (0, 1), (1, 1)."""
+    found, points = np.zeros((8, 8)), 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0)
+    for x in points:
+        for y in points:
+            slopes = np.array([[y - 1.0, 1.0 - y, -y, y], [x - 1.0, -x, 1.0 - x, x]]) / spacing[:, None]
+            gradients = np.zeros((4, 8))
+            gradients[0, 0::2], gradients[1, 1::2], gradients[2, 0::2], gradients[3, 1::2] = slopes[[0, 1, 1, 0]]
+            found += 0.25 * float(np.prod(spacing)) * gradients.T @ tensor @ gradients
+    return found
+
+
+def _stiffness(grid: Grid) -> csr_matrix:
+    """Stiffness matrix of all elements, of both components of every node beside each other."""
+    from scipy.sparse import coo_matrix
+
+    element, (across, along) = _element(grid.tensor, grid.spacing), grid.cells
+    first = (np.arange(along)[:, None] * (across + 1) + np.arange(across)).reshape(-1, 1)
+    nodes = first + np.array([0, 1, across + 1, across + 2])
+    dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(-1, 8)
+    rows, columns = np.repeat(dofs, 8, axis=1).ravel(), np.tile(dofs, 8).ravel()
+    values = np.tile(element.ravel(), len(first))
+    return coo_matrix((values, (rows, columns)), shape=(2 * grid.nodes, 2 * grid.nodes)).tocsr()
+
+
+class Ground(NamedTuple):
+    """The undisturbed ground: displacements (n, k, 2) m of rows at steps, velocities (n, k, 2) half a step later."""
+
+    u: np.ndarray
+    v: np.ndarray
+
+
+def undisturbed(grid: Grid, driven: str, incoming: np.ndarray, shifts: np.ndarray, step: float) -> Ground:
+    """The ground under a wave that enters through a side; incoming, shifts : (n, 2) m/s and m, its motion at steps.
+
+    A side that prescribes a component of the motion has that of the wave.
+    """
+    low, high = ("left", "right") if grid.axis == 0 else ("bottom", "top")
+    count, height = grid.cells[1] + 1, grid.spacing[1]
+    mass, damping, springs = np.full((count, 1), grid.density * height), np.zeros((count, 2)), np.zeros((count, 2))
+    mass[[0, -1]] *= 0.5
+    moves = np.tile(grid.free, (count, 1))
+    for side, row in ((low, 0), (high, -1)):
+        damping[row], springs[row], moves[row] = grid.ends[side]
+    at, moduli = (0 if driven == low else -1), grid.tensor[np.ix_(ALONG, ALONG)] / height
+    enters = 2.0 * damping[at] * incoming + springs[at] * shifts
+    taken, kept = mass / step + 0.5 * damping, mass / step - 0.5 * damping
+    u, v = np.zeros((len(incoming), count, 2)), np.zeros((len(incoming), count, 2))
+    now, speed = np.zeros((count, 2)), np.zeros((count, 2))
+    for n in range(len(incoming)):
+        stress = np.diff(now, axis=0) @ moduli.T
+        force = -springs * now
+        force[:-1] += stress
+        force[1:] -= stress
+        force[at] += enters[n]
+        speed = np.where(moves, (kept * speed + force) / taken, 0.0)
+        speed[at] = np.where(moves[at], speed[at], grid.free * incoming[n])
+        u[n], v[n] = now, speed
+        now = now + step * speed
+    return Ground(u, v)
+
+
+def error_beside(
+    grid: Grid, sides: Sequence[str], ground: Ground, nodes: np.ndarray, weights: np.ndarray, step: float
+) -> np.ndarray:
+    """Velocities (n, m, 2) that sides along the wave add to those of the undisturbed ground.
+
+    nodes, weights : (m, 4) of the places, see `Grid.around`.
+    """
+    matrix, shape = _stiffness(grid), (grid.nodes, 2)
+    mass, damping, springs, moves = (
+        np.zeros((grid.nodes, 1)),
+        np.zeros(shape),
+        np.zeros(shape),
+        np.tile(grid.free, (grid.nodes, 1)),
+    )
+    numbers = np.arange(grid.nodes).reshape(grid.cells[1] + 1, -1)
+    for corner in (numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, :-1], numbers[1:, 1:]):
+        mass[corner.ravel()] += 0.25 * grid.density * float(np.prod(grid.spacing))
+    for side, end in grid.ends.items():
+        row = grid.row(side)
+        damping[row] += end.damping * grid.weights(side)
+        springs[row] += end.stiffness * grid.weights(side)
+        moves[row] &= end.moves
+    walls = [(grid.row(side), grid.free & ~grid.ends[side].moves) for side in sides]
+    taken, kept = mass / step + 0.5 * damping, mass / step - 0.5 * damping
+    loads, weights = _loads(grid, sides, ground), weights[:, :, None]
+    found = np.zeros((len(ground.u), len(nodes), 2))
+    now, speed = np.zeros(shape), np.zeros(shape)
+    for n in range(len(found)):
+        force = -(matrix @ now.ravel()).reshape(shape) - springs * now
+        for side, load in loads.items():
+            force[grid.row(side)] += load[n]
+        speed = np.where(moves, (kept * speed + force) / taken, 0.0)
+        for row, held in walls:
+            speed[row] = np.where(held, -ground.v[n], speed[row])
+        now += step * speed
+        found[n] = np.sum(weights * speed[nodes], axis=1)
+    return found
+
+
+def _loads(grid: Grid, sides: Sequence[str], ground: Ground) -> dict[str, np.ndarray]:
+    """The forces −(C u̇ + K u + t(u)) on the nodes of sides along the wave at steps, (n, k, 2) N."""
+    half = 0.5 * np.diff(ground.u, axis=1) @ grid.tensor[np.ix_(BESIDE, ALONG)].T
+    traction, speed = np.zeros_like(ground.u), ground.v.copy()
+    traction[:, :-1] += half
+    traction[:, 1:] += half
+    speed[1:] += ground.v[:-1]
+    found = {}
+    for side in sides:
+        end, outward = grid.ends[side], 1.0 if side in ("right", "top") else -1.0
+        motion = end.damping * 0.5 * speed + end.stiffness * ground.u
+        found[side] = -(grid.weights(side) * motion + outward * traction)
+    return found
+
+
+class Taken(NamedTuple):
+    """What sides along a wave take from it.
+
+    driven : the side through which it enters. waves : their names. sides : those along it. shares : RMS of the error
+    over that of the undisturbed ground's velocity, in the component that moves most, by place in words.
+    """
+
+    driven: str
+    waves: list[str]
+    sides: list[str]
+    shares: dict[str, float]
+
+
+def taken_from_waves(scene: DiskScene) -> Iterator[Taken]:
+    """What sides along the waves of driven sides take from them; the ground beyond free-field sides moves."""
+    case = scene.case
+    for driven, waves in case.driving.items():
+        sides = [side for side in SIDES if normal_axis(side) != normal_axis(driven) and _takes(scene, side)]
+        if sides and (shares := _shares(scene, driven, waves, sides)):
+            yield Taken(driven, list(waves.values()), sides, shares)
+
+
+def _takes(scene: DiskScene, side: str) -> bool:
+    """Whether a side stands in for ground beyond it that would move with a wave along it, and does not move so itself.
+
+    Mirror planes do so, too, as the image moves the other way. Sides are free where a case does not give them: of
+    upright ones that is taken as forgotten.
+    """
+    table = scene.case.side(side)
+    if side not in scene.edges or table.needs_column or table.is_outside or table.waves:
+        return False
+    forgotten = side not in scene.case.boundary and normal_axis(side) == 0
+    return table.is_artificial or table.is_mirror or forgotten
+
+
+def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: Sequence[str]) -> dict[str, float]:
+    """The shares at the monitors, without any in the middle of the body; empty where nothing moves."""
+    case, grid = scene.case, Grid.of(scene, normal_axis(driven))
+    left, bottom, right, top = case.packing.box
+    places = {f"monitor {monitor.name}": np.array(scene.monitored[monitor.name]) for monitor in case.monitor}
+    places = places or {"the middle": 0.5 * np.array([left + right, bottom + top])}
+    chosen = {motion: case.wave[name] for motion, name in waves.items()}
+    start, step = min(wave.start for wave in chosen.values()), grid.time_step
+    steps = math.ceil(min((case.run.duration - start) / step, WORK / grid.nodes))
+    times, incoming, shifts = start + step * np.arange(max(steps, 0)), *np.zeros((2, max(steps, 0), 2))
+    for motion, wave in chosen.items():
+        component = 1 if motion == "p" else 0
+        incoming[:, component], shifts[:, component] = wave.velocity(times), wave.displacement(times)
+    ground = undisturbed(grid, driven, incoming, shifts, step)
+    nodes, weights, heights = grid.around(np.array(list(places.values())))
+    error, found = error_beside(grid, sides, ground, nodes, weights, step), {}
+    for number, (name, height) in enumerate(zip(places, heights, strict=True)):
+        low = min(int(height), int(grid.cells[1]) - 1)
+        moved = ground.v[:, low] + (height - low) * (ground.v[:, low + 1] - ground.v[:, low])
+        whole = np.sum(moved**2, axis=0)
+        if whole.any():
+            most = int(np.argmax(whole))
+            found[name] = math.sqrt(float(np.sum(error[:, number, most] ** 2)) / float(whole[most]))
+    return found

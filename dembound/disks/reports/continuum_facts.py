@@ -1,0 +1,294 @@
+"""The continuum round a body in words: its elements, the errors to expect, its share of the cost, and warnings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from dembound.boundaries.sides import normal_axis
+from dembound.casefile.disks.outside import OutsideTable
+from dembound.disks import step_cost
+from dembound.disks.beyond.settings import (
+    ROUNDING,
+    buried,
+    clearance,
+    fastest,
+    lasting_time,
+    least_element,
+    margin_below_surface,
+    signals_of,
+)
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.packing_errors import in_percent, lattice_errors, packing_facts
+from dembound.disks.scene import DiskScene
+from dembound.outside import choice
+from dembound.outside.choice import Signal
+from dembound.outside.layer import Profile
+
+SHOWN = 5e-4
+"""Depth (m) of a skin below which it is printed as zero."""
+
+QUIET_STEPS, FLAT = 10_000, 31.0
+"""Steps up to which noise has not been seen to grow, and width over height up to which it was seen to decay, with ν =
+0.25 and 0.4 and elements as wide as high, see `Settings.sides`."""
+
+LARGE = 0.01
+"""Error of elements as small as is useful, above which there is a warning."""
+
+LEEWAY = 1.05
+"""Part of an accuracy by which an error may exceed it without a word: spectra are sums over steps of the frequency."""
+
+ANGLES = (0.0, 45.0, 60.0)
+"""Angles of incidence (degrees) for which reflections are printed."""
+
+
+def continuum_facts(scene: DiskScene) -> dict[str, str]:
+    """Facts about the continuum of a scene that has one."""
+    outside = scene.outside
+    assert outside is not None
+    signals = signals_of(scene.case)
+    facts = {"continuum": _elements(outside)}
+    if signals:
+        facts["continuum waves"] = _waves(scene, outside, signals)
+    if outside.levels:
+        facts["ground beyond"] = _levels(outside)
+    if any(abs(depth) >= SHOWN for depth in outside.skins.values()):
+        facts["its free edges"] = _skins(outside)
+    if scene.foot is not None:
+        facts["below the column"] = f"{_elements(scene.foot)}; through it waves enter and leave"
+    facts |= {"absorbing layers": _layers(outside, signals), "continuum cost": _cost(scene)}
+    if signals and not any(choice.jumps(signal) for signal in signals):
+        facts |= packing_facts(scene, signals)
+    return facts
+
+
+def _elements(outside: Surroundings) -> str:
+    """Nodes, elements and ties."""
+    mesh = outside.body.mesh
+    absorbing = 100.0 * float(mesh.absorbs.any(axis=1).mean())
+    width, height = (_from_to(sizes) for sizes in mesh.element_sizes.T)
+    return (
+        f"{outside.count:,} nodes in {len(mesh.elements):,} elements of order {mesh.order}, {width} m × "
+        f"{height} m, {absorbing:.0f} % of which absorb; {len(outside.wall.element):,} ties"
+    )
+
+
+def _from_to(sizes: np.ndarray) -> str:
+    """The least and the largest of some sizes (m), one number if they are equal."""
+    return "–".join(dict.fromkeys(f"{size:.4g}" for size in (sizes.min(), sizes.max())))
+
+
+def _skins(outside: Surroundings) -> str:
+    """How far inside those of the body the continuum's free edges lie."""
+    return ", ".join(f"{depth:.3f} m inside the {side} side" for side, depth in outside.skins.items())
+
+
+def _levels(outside: Surroundings) -> str:
+    """Heights of the ground beyond left and right sides where it is lower, and where the continuum ends there."""
+    return ", ".join(
+        f"up to y = {level.floor:.4g} m at the {side}" + _less(level.floor - level.surface)
+        for side, level in outside.levels.items()
+    )
+
+
+def _less(depth: float) -> str:
+    """That the continuum ends below or above a floor, if it does."""
+    if abs(depth) < SHOWN:
+        return ""
+    return f" (the continuum {abs(depth):.3f} m {'below' if depth > 0.0 else 'above'} that)"
+
+
+def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -> str:
+    """Nodes in the shortest wave and the error of the elements."""
+    body, order, side = outside.body, outside.settings.order, _largest(outside)
+    if any(choice.jumps(signal) for signal in signals):
+        shortest = side * choice.NODES[order] / order
+        return f"begin or end at once; elements return those shorter than {shortest:.3g} m"
+    length = choice.shortest_wave(signals, body.medium)
+    beyond = choice.slowest(body.medium) / length
+    error = max(choice.element_error(signals, body.medium, order, side), _near_error(scene, outside))
+    return (
+        f"{order * length / side:.3g} nodes in the shortest wavelength, {length:.3g} m ({100.0 * choice.SHARE:g} % of "
+        f"the energy is above {beyond:.3g} Hz); expected error of velocities {in_percent(error)}"
+        f"{_as_small(scene, error)}"
+    )
+
+
+def _as_small(scene: DiskScene, error: float) -> str:
+    """That elements chosen for a case are not small enough for its accuracy, as smaller ones gain nothing."""
+    keys = scene.case.outside
+    if keys.element is not None or error <= LEEWAY * keys.accuracy:
+        return ""
+    least = least_element(scene.case, scene.ground.brick.mean_diameter)
+    return f", above outside.accuracy, as elements smaller than {least:.3g} m shorten the time step"
+
+
+def expected_errors(scene: DiskScene) -> tuple[float, float] | None:
+    """Errors of velocities and displacements by elements, layers and ties of a continuum, RMS over RMS.
+
+    None without a continuum, and for waves that jump. Displacements have longer waves than velocities, of which
+    elements and ties return less; those longer than the run are as one.
+    """
+    outside, signals = scene.outside, signals_of(scene.case)
+    if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
+        return None
+    settings, medium = outside.settings, outside.body.medium
+    floor = _near_error(scene, outside), choice.layer_error(settings.order, settings.layers)
+    found = []
+    for lowest in (math.inf, 1.0 / scene.case.run.duration):
+        elements = choice.element_error(signals, medium, settings.order, _largest(outside), lowest)
+        found.append(math.hypot(*floor, elements, lattice_errors(scene, signals, lowest)[0]))
+    return found[0], found[1]
+
+
+def _largest(outside: Surroundings) -> float:
+    """The largest side of its elements, m."""
+    return float(outside.body.mesh.element_sizes.max())
+
+
+def _near_error(scene: DiskScene, outside: Surroundings) -> float:
+    """Error of elements beside forces and holes."""
+    near = clearance(scene.case, outside.box, outside.sides)
+    return 0.0 if near == 0.0 else choice.near_error(near, outside.settings.order, _largest(outside))
+
+
+def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
+    """Where layers begin, their depth, and what they reflect."""
+    settings = outside.settings
+    begin, depth = (_lengths(outside, count) for count in (settings.margin, settings.layers))
+    angles = ", ".join(f"{angle:g}" for angle in ANGLES)
+    p, s = (", ".join(f"{100.0 * each:.2g}" for each in returned) for returned in _reflections(outside, signals))
+    floor = choice.layer_error(settings.order, settings.layers)
+    return (
+        f"begin {begin} m beyond the sides and are {depth} m deep, {settings.layers} elements, R0 = "
+        f"{settings.absorption.reflection:.3g}; at {angles}° they return at most {p} % of P and {s} % of S waves, "
+        f"the elements themselves about {in_percent(floor)}"
+    )
+
+
+def _lengths(outside: Surroundings, count: int) -> str:
+    """Lengths of a number of elements along the axes on which there are sides, in words."""
+    axes = sorted({normal_axis(side) for side in outside.sides})
+    lengths = dict.fromkeys(f"{count * outside.body.mesh.axes[axis].sizes[0]:.4g}" for axis in axes)
+    return " and ".join(lengths)
+
+
+def _reflections(outside: Surroundings, signals: Sequence[Signal]) -> tuple[list[float], list[float]]:
+    """Of P and S waves at `ANGLES`, at the lowest dominant frequency of the waves; of several axes the largest."""
+    body = outside.body
+    lowest = min((signal.wave.dominant_frequency() for signal in signals), default=math.inf)
+    found = []
+    for axis in sorted({normal_axis(side) for side in outside.sides}):
+        slow, fast = body.medium.plane_waves((1.0 - axis, float(axis)))[0]
+        profile = Profile(max(body.mesh.axes[axis].thickness), float(fast), body.mesh.inner, body.absorption)
+        frequency = lowest if 0.0 < lowest < math.inf else float(fast) / body.mesh.inner
+        found.append([[profile.expected_reflection(frequency, a, float(c)) for a in ANGLES] for c in (fast, slow)])
+    p, s = np.max(found, axis=0).tolist()
+    return p, s
+
+
+def _cost(scene: DiskScene) -> str:
+    """Shares of a step's time."""
+    costs = step_cost.of_scene(scene)
+    whole = sum(costs.values())
+    shares = [f"{name} {100.0 * cost / whole:.0f} %" for name, cost in costs.items() if cost > 0.0]
+    return f"of the stepping about: {', '.join(shares)}"
+
+
+def continuum_warnings(scene: DiskScene, steps: float) -> Iterator[str]:
+    """Settings given in the case that are poorer than its accuracy, and layers that may amplify noise in many steps."""
+    outside, keys = scene.outside, scene.case.outside
+    if outside is None:
+        return
+    asked = f"outside.accuracy = {in_percent(keys.accuracy)}"
+    yield from _poor_elements(scene, outside, keys, asked)
+    settings, order = outside.settings, keys.order
+    if (error := choice.layer_error(order, settings.layers)) > keys.accuracy:
+        enough = choice.layer_count(order, keys.accuracy)
+        yield (
+            f"outside.layers: {settings.layers} elements of order {order} return about {in_percent(error)} of the "
+            f"displacement, more than {asked}; {enough} are enough"
+        )
+    if settings.absorption.reflection > keys.accuracy:
+        yield (
+            f"outside.reflection: is {settings.absorption.reflection:g}, above {asked}; give at most "
+            f"{choice.reflection(keys.accuracy):g}"
+        )
+    yield from _lasting(scene, outside, keys, asked)
+    yield from _from_the_surface(scene, outside, keys, asked)
+    if steps > QUIET_STEPS and _is_flat(outside):
+        yield (
+            f"outside: the layers of such flat ground may amplify noise in tens of thousands of steps, this run has "
+            f"{steps:,.0f}; a larger outside.margin helps, and runs that gain energy are stopped"
+        )
+
+
+def _is_flat(outside: Surroundings) -> bool:
+    """Whether the ground within the layers, which is not periodic, is very flat."""
+    mesh = outside.body.mesh
+    shorter, longer = sorted(axis.inner for axis in mesh.axes)
+    return not any(mesh.periodic) and longer > FLAT * shorter
+
+
+def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
+    """Elements too large for waves or for what is near, or too small for the disks."""
+    order, side = keys.order, _largest(outside)
+    signals, medium = signals_of(scene.case), outside.body.medium
+    error = choice.element_error(signals, medium, order, side) if signals else 0.0
+    if keys.element is None:
+        if error > max(LEEWAY * keys.accuracy, LARGE):
+            yield (
+                f"outside: elements of {side:.4g} m, the smallest useful ones beside these disks, return short waves, "
+                f"about {in_percent(error)} of the velocity, more than {asked}; the disks disperse these waves, too"
+            )
+        return
+    if error > LEEWAY * keys.accuracy:
+        enough = choice.element_size(signals, medium, order, keys.accuracy)
+        needed = max(enough, least_element(scene.case, scene.ground.brick.mean_diameter))
+        if needed < side:
+            yield (
+                f"outside.element: elements of {side:.4g} m return short waves, about {in_percent(error)} of the "
+                f"velocity, more than {asked}; {needed:.3g} m are small enough"
+            )
+    if (error := _near_error(scene, outside)) > LEEWAY * keys.accuracy:
+        yield (
+            f"outside.element: elements of {side:.4g} m are too large beside a load or hole, with an error of about "
+            f"{in_percent(error)}, more than {asked}"
+        )
+    least = least_element(scene.case, scene.ground.brick.mean_diameter)
+    if (smallest := float(outside.body.mesh.element_sizes.min())) < (1.0 - ROUNDING) * least:
+        yield (
+            f"outside.element: elements of {smallest:.4g} m shorten the time step, and below {least:.3g} m nothing is "
+            "gained, as the disks themselves disperse shorter waves"
+        )
+
+
+def _lasting(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
+    """A margin that is too small for a force that stays."""
+    lasting, body = lasting_time(scene.case), outside.body
+    speed = fastest(body.medium)
+    error = choice.missing(lasting, speed, keys.shift, body.mesh.inner)
+    if error > keys.accuracy:
+        inner = choice.inner_length(lasting, speed, keys.shift, keys.accuracy)
+        yield (
+            f"outside.margin: under a load that stays for {lasting:.3g} s about {in_percent(error)} of the "
+            f"displacement will be missing, more than {asked}; {inner:.4g} m within the layers are enough, now "
+            f"{body.mesh.inner:.4g} m"
+        )
+
+
+def _from_the_surface(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
+    """A margin that is too small for waves that the free surface sends back along the layers."""
+    settings, medium, axis = outside.settings, outside.body.medium, outside.body.mesh.axes[0]
+    sources = buried(scene.case, outside.box, outside.sides)
+    error = max((each.error(settings, medium, settings.margin) for each in sources), default=0.0)
+    if keys.margin is not None and error > LEEWAY * keys.accuracy:
+        enough = max(margin_below_surface(settings, each, medium, keys.accuracy) for each in sources)
+        yield (
+            f"outside.margin: waves that the free surface sends back run along layers "
+            f"{keys.margin * axis.sizes[0]:.4g} m beside the disks, and about {in_percent(error)} of the velocity "
+            f"returns from these, more than {asked}; "
+            f"{enough} elements are enough"
+        )

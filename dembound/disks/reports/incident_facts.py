@@ -1,0 +1,79 @@
+"""A plane wave at an angle in words: its speed along the surface, what this sends back, and where monitors err."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from dembound.disks.beyond.ground_waves import GroundWaves, reference_point
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.scene import DiskScene
+from dembound.outside.plane_waves import GRAZING, PlaneWave, critical_angle
+
+NAMES = {"sv": "SV", "p": "P"}
+
+STRAIGHT = 1e-9
+"""Degrees from the vertical up to which a wave runs straight up."""
+
+
+def incident_facts(scene: DiskScene) -> dict[str, str]:
+    """Facts about the wave at an angle of a scene that has one."""
+    waves, table, outside = scene.ground_waves, scene.case.incident, scene.outside
+    assert waves is not None
+    assert table is not None
+    assert outside is not None
+    x, y = reference_point(scene.case)
+    facts = {
+        "incident wave": f"{NAMES[table.type]}, {_way(table.angle)}, with the velocity of wave {table.wave} at "
+        f"({x:.10g}, {y:.10g}) m{_along(waves.waves[0], outside)}; reaches the disks at {arrival(scene, waves):.4g} s",
+    }
+    if outside.free_surface is None:
+        return facts | {"reflected waves": "none, as the ground has no surface"}
+    critical = critical_angle(waves.medium, table.type, math.copysign(1.0, table.angle))
+    below = "no critical angle" if critical == GRAZING else f"critical from {critical:.4g}° on"
+    facts["reflected waves"] = f"{'; '.join(_reflected(waves))}; {below}"
+    if corners := _corners(scene):
+        facts["less exact monitors"] = f"near the corners where layers begin: {', '.join(corners)} m"
+    return facts
+
+
+def _way(angle: float) -> str:
+    """The direction of a wave."""
+    if abs(angle) < STRAIGHT:
+        return "straight up"
+    return f"{abs(angle):g}° from the vertical to the {'right' if angle > 0.0 else 'left'}"
+
+
+def _along(wave: PlaneWave, outside: Surroundings) -> str:
+    """The speed of its trace along the surface, or along x where there is none."""
+    slowness, where = abs(wave.slowness[0]), "x" if outside.free_surface is None else "the surface"
+    return f", at {1.0 / slowness:.5g} m/s along {where}" if slowness > STRAIGHT * abs(wave.slowness[1]) else ""
+
+
+def arrival(scene: DiskScene, waves: GroundWaves) -> float:
+    """Time (s) at which the wave reaches the first of the disks."""
+    assert scene.case.incident is not None
+    first = float(waves.waves[0].delays(scene.assembly.positions).min())
+    return scene.case.wave[scene.case.incident.wave].start + first
+
+
+def _reflected(waves: GroundWaves) -> Iterator[str]:
+    """Kind, angle and amplitude of the waves that the surface sends back, the slower one first."""
+    each: dict[tuple[float, float], np.ndarray] = {}
+    for wave in waves.waves[1:]:
+        each[wave.slowness] = each.get(wave.slowness, np.zeros(2)) + wave.motion
+    for slowness, motion in each.items():
+        is_along = abs(motion @ slowness) > np.hypot(*motion) * np.hypot(*slowness) * math.sqrt(0.5)
+        angle = math.degrees(math.atan2(slowness[0], -slowness[1]))
+        yield f"{'P' if is_along else 'SV'} at {abs(angle):.4g}° with {np.hypot(*motion):.3g} of the amplitude"
+
+
+def _corners(scene: DiskScene) -> list[str]:
+    """Corners (m) of what lies within the layers, at which two layers begin."""
+    assert scene.outside is not None
+    mesh = scene.outside.body.mesh
+    (left, bottom), (right, top) = mesh.between_layers
+    each = [(x, y) for y, there in ((bottom, mesh.layer.bottom), (top, mesh.layer.top)) if there for x in (left, right)]
+    return [f"({x:.4g}, {y:.4g})" for x, y in each]

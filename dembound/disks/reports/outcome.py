@@ -1,0 +1,82 @@
+"""The results of a run of disks in words, from its summary."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from dembound.disks.packing_errors import in_percent
+from dembound.disks.stepping.load_factor import load_factor_in_words
+from dembound.results.reader import laws_in_words
+
+MANY = 10
+"""Bonds broken in a run up to which it is not said to be one draw of many."""
+
+SHOWN = 1e-3
+"""Share of the stress below which what differs in the packing itself is not told."""
+
+
+def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
+    """Reductions, the static stage, changes of law, broken bonds and the energy error."""
+    facts = [*summary["reduced"], *summary["not_reduced"]]
+    if (static := summary["static"]) is not None:
+        if (before := static["before"]) is not None:
+            facts += _settled(before, "settled")
+        facts += _settled(static, "settled" if before is None else "after the excavation")
+    if summary["has_history"]:
+        facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
+        facts += _broken(summary["cracks"], static)
+        if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
+            facts.append(f"energy closes to {100.0 * error:.2g} %")
+    if (found := summary["load_factor"]) is not None:
+        facts.append(load_factor_in_words(found))
+    return facts
+
+
+def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list[str]:
+    """Number of all broken bonds and their modes, after those of the static stages, which have their own numbers."""
+    count = cracks["tension"] + cracks["shear"]
+    if count == 0:
+        return []
+    modes = f"({cracks['tension']:,} tension, {cracks['shear']:,} shear)"
+    stages = [] if static is None else [each["cracks"] for each in (static, static["before"]) if each is not None]
+    if [count] == stages:
+        return [f"bonds broke only while settling {modes}"]
+    draw = ", one draw of many: see dembound estimate --repeat" if count - sum(stages) > MANY else ""
+    return [f"{count:,} bonds broke{' in all' if any(stages) else ''} {modes}{draw}"]
+
+
+def _settled(static: Mapping[str, Any], words: str) -> list[str]:
+    """Results of a static stage, after those of its free-field column if there is one."""
+    column = [] if static["column"] is None else [f"column settled in {_stage(static['column'])}"]
+    return [*column, f"{words} in {_stage(static)}"]
+
+
+def _stage(static: Mapping[str, Any]) -> str:
+    """Results of a static stage in words, from its summary."""
+    reached = ""
+    if (asked := static["asked"]) is not None:  # supports may have prevented it
+        reached = f" and a stress of {_in_mpa(static['stress'])} where {_in_mpa(asked)} MPa was asked for"
+        reached += _even(static["uniformity"])
+    broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
+    return f"{static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{reached}{broken}"
+
+
+def _even(uniformity: Mapping[str, Any]) -> str:
+    """How far blocks are from the stress asked for, in words."""
+    own, beyond, near = (uniformity[key] for key in ("packing", "beyond", "near_holes"))
+    return (
+        f", to {in_percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
+        f"{f', to {in_percent(beyond)} beside what the packing has by itself' if own >= SHOWN else ''}"
+        f"{f', {in_percent(near)} beside holes' if near is not None else ''}"
+    )
+
+
+def block_in_words(uniformity: Mapping[str, Any]) -> str:
+    """The blocks of a summary's `uniformity`."""
+    width, height = uniformity["block"]
+    return f"blocks of {width:.3g} m × {height:.3g} m"
+
+
+def _in_mpa(stress: Sequence[float]) -> str:
+    """A stress xx, yy, xy in Pa as text in MPa; components negligible compared with the largest are printed as 0."""
+    least = 1e-3 * max(map(abs, stress))
+    return f"({', '.join(f'{value / 1e6 if abs(value) > least else 0.0:.3g}' for value in stress)})"

@@ -1,0 +1,50 @@
+"""What a scene of disks takes on disk, for n disks with b contacts."""
+
+from __future__ import annotations
+
+from dembound.disks.memory import SceneSizes, checkpoint_bytes
+from dembound.disks.scene import DiskScene
+from dembound.motion.storage import POINT, Storage, mesh_bytes
+from dembound.outside.memory import memories_bytes
+
+CHANGING, CONSTANT = 44.0, 21.0
+"""Bytes of the motion of a disk for ParaView, and of those fields that remain; the numbers of broken bonds are among
+the latter, as most remain."""
+
+NODE_HEADER, NODE_CHANGING = 92.0, 52.0
+"""Bytes of a node of a continuum written once, positions and cells, and of its motion and stress for ParaView."""
+
+NODE_SNAPSHOT = 72.0 + mesh_bytes(1.0, NODE_CHANGING + 1.0, 1.0, 4, 0.0) + POINT + NODE_CHANGING
+"""Bytes of a node of a continuum in a snapshot, with a cell for each."""
+
+
+def storage_of(scene: DiskScene) -> Storage:
+    """Bytes on disk of a scene."""
+    sizes, output = scene.sizes, scene.case.output
+    own = 4.0 * scene.has_history + 24.0 * output.stress
+    record = 48.0 + 8.0 * scene.has_history + 24.0 * output.stress
+    vtu = mesh_bytes(1.0, CHANGING + CONSTANT + own + 4.0 * output.peaks, 1.0, 1, 0.0)
+    snapshot = sizes.disks * (record + vtu + POINT + CHANGING + own)
+    if output.contacts:
+        snapshot += sizes.contacts * _contact_bytes()
+    header = 90.0 * sizes.disks  # positions, radii, twins, bonds; in the VTKHDF file what remains
+    if sizes.grid is not None:
+        snapshot += sizes.grid.nodes * NODE_SNAPSHOT
+        header += sizes.grid.nodes * NODE_HEADER
+    return Storage(header, snapshot, _checkpoint_bytes(scene, sizes))
+
+
+def _checkpoint_bytes(scene: DiskScene, sizes: SceneSizes) -> float:
+    """Of a checkpoint: besides motion and pairs, the datum, both loads, and speeds (104 n); memories of a continuum.
+
+    Under a history-dependent law also the velocity at its change, the state at the last entry of the ledger and origins
+    (88 n); after a static stage the forces that balance the stress, before and after, and their datum (98 n).
+    """
+    own = 104.0 + 88.0 * scene.has_history + 98.0 * (scene.case.static is not None)
+    beyond = 0.0 if sizes.grid is None else 104.0 * sizes.grid.nodes + memories_bytes(sizes.grid)
+    return checkpoint_bytes(sizes, history=scene.has_history) + own * sizes.disks + beyond
+
+
+def _contact_bytes() -> float:
+    """Of a contact in a snapshot: in the record 41 bytes; a line between two points of its own with two forces."""
+    return 41.0 + mesh_bytes(2.0, 0.0, 1.0, 2, 17.0) + 2.0 * POINT + 8.0

@@ -1,0 +1,127 @@
+"""Disks and the results of their run as numbers, for scripts."""
+
+from typing import Any
+
+import numpy as np
+
+from dembound.disks.rest.block_stress import Uniformity
+from dembound.disks.rest.settled import Settled
+from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.stepping.load_factor import load_factor_of
+from dembound.disks.stepping.near_ties import OPENED
+from dembound.disks.stepping.system import DiskSystem
+from dembound.motion.trackers import Run
+
+
+def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
+    """Entries of a summary of disks in addition to those of every run: plain JSON values, SI units."""
+    return {
+        "particles": scene.disk_count,
+        "has_history": scene.has_history,
+        "contacts": len(scene.assembly.pairs),
+        "loose_disks_left_out": scene.assembly.loose,
+        "packing": describe_packing(scene),
+        "load_factor": _describe_load_factor(run),
+        "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
+    }
+
+
+def _describe_load_factor(run: Run) -> dict[str, Any] | None:
+    """The load factor and where it is reached, see `LoadFactor.describe`; None if it has not been asked for."""
+    found = load_factor_of(run)
+    return None if found is None else found.describe(run) or {"factor": None}
+
+
+def asked_stress(scene: DiskScene) -> list[float] | None:
+    """The target stress (Pa) of the static stage, if any."""
+    static = scene.case.static
+    return None if static is None or static.stress is None else list(static.stress)
+
+
+def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
+    """The static stage: steps, force ratio, mean reaction of supports and tractions and mean residual (N), stress (Pa).
+
+    Also whether it ended under the elastic law, how far the stress in blocks is from the one asked for, and the same
+    for the free-field column alone, if there is one, and before an excavation, if there was one. asked : target stress,
+    Pa.
+    """
+    return {
+        "steps": settled.steps,
+        "ratio": settled.ratio,
+        "mean_reaction": settled.mean_reaction,
+        "mean_residual": settled.mean_residual,
+        "stress": settled.stress.tolist(),
+        "asked": asked,
+        "uniformity": None if settled.uniformity is None else _describe_uniformity(settled.uniformity),
+        "elastic": not settled.start.has_history,
+        "cracks": len(settled.cracks),
+        "column": None if settled.column is None else describe_static(settled.column, None),
+        "before": None if settled.before is None else describe_static(settled.before, asked),
+    }
+
+
+def _describe_uniformity(found: Uniformity) -> dict[str, Any]:
+    """How far the stress in blocks is from the one asked for, see `Uniformity`."""
+    return {
+        "block": found.block.tolist(),
+        "deviation": found.deviation,
+        "place": found.place.tolist(),
+        "packing": found.packing,
+        "beyond": found.beyond,
+        "near_holes": None if np.isnan(found.near_holes) else found.near_holes,
+    }
+
+
+def describe_packing(scene: DiskScene) -> dict[str, Any]:
+    """The brick in numbers: stresses and stiffnesses in Pa, speeds along x in m/s (null where the motion is held)."""
+    ground, brick = scene.ground, scene.ground.brick
+    tensor = ground.material_tensor
+    p_speed, s_speed = ground.wave_speeds(0)
+    return {
+        "disks_per_brick": len(brick.radii),
+        "mean_diameter": brick.mean_diameter,
+        "solid_fraction": brick.solid_fraction,
+        "coordination": brick.coordination,
+        "residual_ratio": brick.residual_ratio,
+        "stress": (brick.stress * ground.moduli.emod).tolist(),
+        "emod": ground.moduli.emod,
+        "pb_emod": ground.moduli.pb_emod,
+        "C11": tensor[0, 0],
+        "C22": tensor[1, 1],
+        "C12": tensor[0, 1],
+        "C66": tensor[3, 3],
+        "p_wave_speed": None if np.isnan(p_speed) else p_speed,
+        "s_wave_speed": None if np.isnan(s_speed) else s_speed,
+    }
+
+
+def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
+    """One side in numbers: type, particles, diameters (m), ΣD/H, and the numbers of its table."""
+    table = scene.case.side(side)
+    edge = (scene.sides if table.is_outside else scene.edges)[side]
+    medium = boundary_medium(scene.case, scene.ground, edge.axis)
+    described: dict[str, Any] = {
+        "type": table.type,
+        "particles": len(edge.nodes),
+        "length": edge.length,
+        "diameter_min": edge.diameters.min(),
+        "diameter_mean": edge.diameters.mean(),
+        "diameter_max": edge.diameters.max(),
+        "diameter_sum_ratio": edge.diameter_sum_ratio,
+    }
+    return described | table.describe(edge, medium)
+
+
+def _describe_edge(scene: DiskScene, run: Run, side: str) -> dict[str, Any]:
+    """A side in numbers, with mean and standard deviation of its particles' largest |velocity| in x and y.
+
+    With a continuum also when and where the first contacts near its ties opened or slid.
+    """
+    described = describe_side(scene, side)
+    largest = np.abs(run.edge_peaks(side)[:, :2]).max(axis=2)
+    watch = run.system.near_ties if isinstance(run.system, DiskSystem) else None
+    if watch is not None and scene.case.side(side).is_outside:
+        described[OPENED] = watch.describe(side, run.time_step)
+    described["peak_velocity"] = largest.mean(axis=0).tolist()
+    described["peak_velocity_deviation"] = largest.std(axis=0).tolist()
+    return described

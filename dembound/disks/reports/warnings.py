@@ -1,0 +1,236 @@
+"""Warnings about probable mistakes in a case of disks, before and after the run."""
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dembound.boundaries import SIDES
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import with_history
+from dembound.casefile.magnitudes import stress_in_words
+from dembound.casefile.messages import numbered
+from dembound.casefile.unlikely import unlikely_in
+from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.packing_errors import in_percent
+from dembound.disks.reports.continuum_facts import continuum_warnings
+from dembound.disks.reports.outcome import SHOWN, block_in_words
+from dembound.disks.reports.side_warnings import side_warnings
+from dembound.disks.reports.wave_warnings import wave_warnings
+from dembound.disks.scene import DiskScene
+from dembound.disks.stepping.load_factor import load_factor_in_words
+from dembound.disks.stepping.near_ties import near_tie_warnings
+from dembound.meanings import MEANINGS
+from dembound.results.reader import cracks_until, open_record
+from dembound.results.warnings import energy_warnings, still_moving
+
+LARGEST_PULL = 3.5
+"""Largest tensile stress of a bond over the mean one, where contacts under a locked-in stress relax.
+
+The mean is the bonds' share of the stiffness times the locked-in pressure; the largest of 1,900 bonds was 2.8 to 3.5
+times that (three bricks, radius ratio 1.5).
+"""
+
+SPEED_ERROR = 0.1
+"""Share by which the P-wave speed of the packing may differ from the given one without a warning."""
+
+UNEVEN = 0.01
+"""Share of the largest principal stress asked for by which a block may differ from it without a warning."""
+
+AT_REST = 1e-14
+"""Velocity over that of waves, so strain, below which the motion of a settled body is rounding.
+
+Settled strains of 1e-6 to 1e-2 are known to 1e-16 of themselves; slopes under their weight move by 1e-17.
+"""
+
+
+def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
+    """All of them, one line each; time_step in s."""
+    return [
+        *_empty_holes(scene),
+        *_holes_at_periodic_sides(scene),
+        *_steady_without_static(scene),
+        *_locked_in(scene),
+        *_settles_in_tension(scene),
+        *wave_warnings(scene, time_step),
+        *side_warnings(scene),
+        *_speed_of_the_packing(scene),
+        *_unlikely_speed(scene),
+        *continuum_warnings(scene, scene.case.run.duration / time_step),
+    ]
+
+
+def _empty_holes(scene: DiskScene) -> Iterator[str]:
+    """Holes that remove no disk, as none of the packing is centred in them."""
+    brick, (left, bottom, right, top) = scene.ground.brick, scene.case.packing.box
+    origin = np.array([left, bottom])
+    for place, hole in numbered("hole", scene.case.hole):
+        x0, y0, x1, y1 = hole.box
+        low, high = np.array([max(x0, left), max(y0, bottom)]), np.array([min(x1, right), min(y1, top)])
+        first, last = np.floor((low - origin) / brick.size), np.floor((high - origin) / brick.size)
+        last = np.minimum(last, np.array(scene.case.packing.copies) - (not brick.edge_rows.any()))
+        across, up = (np.arange(begin, end + 1.0) for begin, end in zip(first, last, strict=True))
+        tiles = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 1, 2)
+        if not hole.contains((origin + tiles * brick.size + brick.positions).reshape(-1, 2)).any():
+            yield f"{place}: no particle is centred in it, so it removes none"
+
+
+def _holes_at_periodic_sides(scene: DiskScene) -> Iterator[str]:
+    """Holes that a periodic side cuts: the part beyond it does not come in again at the opposite side."""
+    left, bottom, right, top = scene.case.packing.box
+    for place, hole in numbered("hole", scene.case.hole):
+        x0, y0, x1, y1 = hole.box
+        cut = {"left": x0 < left < x1, "right": x0 < right < x1, "bottom": y0 < bottom < y1, "top": y0 < top < y1}
+        for side in (side for side in SIDES if cut[side] and scene.case.side(side).is_periodic):
+            yield (
+                f"{place}: is cut by the periodic {side} side, and the part beyond it is not removed at the opposite "
+                "side; move it, or give that part as a hole of its own"
+            )
+
+
+def _steady_without_static(scene: DiskScene) -> Iterator[str]:
+    """Steady loads that act suddenly, as there is no static stage."""
+    if scene.case.static is not None:
+        return
+    for load in scene.case.load:
+        if load.wave is None:
+            yield f"load.{load.name}: is steady, and without [static] acts suddenly at t = 0{_gives_way(scene, load)}"
+
+
+def _gives_way(scene: DiskScene, load: Load) -> str:
+    """What does not come to rest under a load that stays, in words."""
+    tables = scene.case.boundary.values()
+    if any(table.factors for table in tables):
+        return "; viscous sides creep under it"
+    if any(table.is_outside for table in tables) and load.position is None and load.region is None:
+        return "; the ground beyond the sides, of which nothing is held, moves under it as long as the run lasts"
+    return ""
+
+
+def _locked_in(scene: DiskScene) -> Iterator[str]:
+    """Locked-in stress that breaks bonds where it relaxes."""
+    material = scene.case.material
+    cut = not all(scene.case.side(side).is_periodic for side in SIDES)
+    if material.locked_in is None or material.pb_ten is None or not cut:
+        return
+    pulled = LARGEST_PULL * scene.ground.bond_share * material.locked_in
+    if pulled > material.pb_ten:
+        yield (
+            f"material.locked_in: is {material.locked_in / 1e6:.3g} MPa; where it relaxes, the largest bond stress is "
+            f"about {pulled / 1e6:.3g} MPa of tension, above material.pb_ten = {material.pb_ten / 1e6:.3g} MPa, and "
+            "break in the static stage"
+        )
+
+
+def _settles_in_tension(scene: DiskScene) -> Iterator[str]:
+    """A stress to settle under whose largest principal stress is a tension above the bonds' strength."""
+    static, strength = scene.case.static, scene.case.material.pb_ten
+    if static is None or static.stress is None or strength is None:
+        return
+    xx, yy, xy = static.stress
+    largest = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)
+    if largest > strength:
+        yield (
+            f"static.stress: has a tension of {stress_in_words(largest)}, above material.pb_ten = "
+            f"{stress_in_words(strength)}; bonds break in the static stage"
+        )
+
+
+def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
+    """A given wave speed that holds for the square lattice but not for the packing."""
+    material = scene.case.material
+    if material.p_wave_speed is None or material.match == "assembly":
+        return
+    for axis in _axes_in_use(scene):
+        own = scene.ground.wave_speeds(axis)[0]
+        if abs(own / material.p_wave_speed - 1.0) > SPEED_ERROR:  # nan where the motion is held
+            yield (
+                f"material.p_wave_speed: is {material.p_wave_speed:g} m/s of the square lattice; P waves along "
+                f'{"xy"[axis]} run at {own:.4g} m/s in this packing; give match = "assembly"'
+            )
+            return
+
+
+def _unlikely_speed(scene: DiskScene) -> Iterator[str]:
+    """Moduli and density that are likely, but give waves of no solid."""
+    material = scene.case.material
+    if material.p_wave_speed is not None or any(unlikely_in("", material, scene.case)):
+        return
+    speed = scene.ground.wave_speeds(0)[0]
+    if found := MEANINGS["wave speed"].doubt(speed, "m/s"):  # nan is not
+        yield f"material.emod: makes P waves of a speed that {found}; are emod and pb_emod in Pa, density in kg/m³?"
+
+
+def _axes_in_use(scene: DiskScene) -> list[int]:
+    """Axes along which waves run: x, and y if waves enter through bottom or top, or come from loads."""
+    vertical = any(scene.case.side(edge.side).waves for edge in scene.edges.values() if edge.axis == 1)
+    return [0, 1] if vertical or scene.case.load or scene.case.incident else [0]
+
+
+def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:
+    """Warnings from the summary and record of a run of disks, one line each."""
+    with open_record(record) as file:
+        cracks = cracks_until(file, np.inf)
+        at_rest = 0.0 if scene.case.static is None else AT_REST * slowest_speed(scene.ground)
+        moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
+        return [
+            *_uneven(scene.case, summary["static"]),
+            *moving,
+            *_not_elastic(summary.get("load_factor")),
+            *near_tie_warnings(scene, summary, cracks),
+            *energy_warnings(scene, summary["energy"]),
+        ]
+
+
+def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:
+    """A stress asked for that blocks differ from; beside holes and under steady loads they should.
+
+    static : of the summary.
+    """
+    stages = [] if static is None else [static, static["before"]]
+    steady = any(load.wave is None for load in case.load)
+    for found in (each["uniformity"] for each in stages if each is not None):
+        if found is None or steady or found["near_holes"] is not None or found["deviation"] <= UNEVEN:
+            continue
+        x, y = found["place"]
+        yield (
+            f"static.stress: in {block_in_words(found)} the stress differs by up to {in_percent(found['deviation'])} "
+            f"of the largest principal stress asked for, most at ({x:.4g}, {y:.4g}) m; {_whence(found)}"
+        )
+
+
+def _whence(found: Mapping[str, Any]) -> str:
+    """What makes blocks differ, in words."""
+    if found["packing"] < SHOWN:
+        return "sides that are held, contacts that slid or opened, or too large a static.ratio"
+    return (
+        f"the endless elastic packing has {in_percent(found['packing'])} by itself, less in larger blocks, "
+        f"and the body differs by {in_percent(found['beyond'])} from that packing"
+    )
+
+
+def _not_elastic(found: Mapping[str, Any] | None) -> Iterator[str]:
+    """A load factor below 1: the motion is not that of the material."""
+    if found is not None and found["factor"] is not None and found["factor"] < 1.0:
+        law = f"take law = {with_history()}, or smaller waves"
+        yield f'material.law: is "elastic", but {load_factor_in_words(found)}; {law}'
+
+
+def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
+    """Number (n,) of the piece of each particle; pieces are connected by pairs of the start that have not broken.
+
+    broken (k, 2) particles; without any, the body is in one piece, as built.
+    """
+    if len(broken) == 0:
+        return np.zeros(scene.disk_count, dtype=np.int8)
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    pairs = scene.assembly.pairs
+    listed, gone = (np.sort(each.astype(np.int64), axis=1) @ [scene.disk_count, 1] for each in (pairs, broken))
+    pairs = pairs[~np.isin(listed, gone)]
+    joined = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(scene.disk_count, scene.disk_count))
+    return connected_components(joined, directed=False)[1]

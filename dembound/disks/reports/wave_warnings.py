@@ -1,0 +1,192 @@
+"""Warnings about waves and loads: too short for the disks, too late, too strong or too weak."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from dembound.boundaries import axis_of_motion
+from dembound.casefile.disks.load import Load
+from dembound.casefile.magnitudes import (
+    grip_stress,
+    is_quasi_static,
+    large_stress,
+    large_velocity,
+    stress_warnings,
+    time_warnings,
+    waves_used,
+)
+from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.reports.incident_facts import arrival
+from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.waves.constant import Constant
+from dembound.waves.spectrum import HANN_FADE
+
+FEWEST_PER_WAVELENGTH = 20.0
+"""Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
+
+_TOO_LARGE = {
+    False: "the elastic law is for small ones, are the units right?",
+    True: "rock and soil break at a tenth of 3 %, are the units right?",
+}
+"""By whether the law has a history."""
+
+
+def wave_warnings(scene: DiskScene, time_step: float) -> Iterator[str]:
+    """All of them, one line each; time_step in s."""
+    yield from _tension(scene)
+    yield from _too_few_per_wavelength(scene)
+    yield from _never_arrives(scene)
+    yield from time_warnings(scene.case, time_step, _travel_time(scene))
+    yield from _stress_beside_strength(scene)
+    yield from _large_strains(scene)
+
+
+def _tension(scene: DiskScene) -> Iterator[str]:
+    """Waves that would open real contacts, where the elastic law keeps them closed."""
+    if scene.has_history or not _confinement(scene):  # a lattice is packed without stress; see the docs
+        return
+    for name, stress in strong_waves(scene).items():
+        yield (
+            f"wave.{name}: has a stress ρcv of {stress}; real contacts would open in tension, "
+            "the elastic law keeps them closed"
+        )
+
+
+def strong_waves(scene: DiskScene) -> dict[str, str]:
+    """Waves of boundaries whose stress ρcv exceeds the pressure on the contacts; both in words."""
+    pressure = _confinement(scene)
+    if pressure is None:
+        return {}
+    entering = scene.case.entering
+    medium = boundary_medium(scene.case, scene.ground, axis=0)
+    impedance = medium.density * medium.p_wave_speed
+    stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in entering}
+    return {
+        name: f"{stress / 1e6:.3g} MPa, above the confining stress of {pressure / 1e6:.3g} MPa"
+        for name, stress in stresses.items()
+        if stress > pressure
+    }
+
+
+def _confinement(scene: DiskScene) -> float | None:
+    """Pressure (Pa) on contacts at the start of the run; None if it results from the static stage."""
+    static = scene.case.static
+    if static is not None:
+        return None if static.stress is None else 0.0 - 0.5 * (static.stress[0] + static.stress[1])
+    return 0.0 if scene.has_history else scene.ground.packed_pressure
+
+
+def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
+    """Waves that are too short for the size of the particles, except for those of a slow grip."""
+    travel = _travel_time(scene)
+    for name, count in particles_per_wavelength(scene).items():
+        if count < FEWEST_PER_WAVELENGTH and not is_quasi_static(scene.case, name, travel):
+            wave = scene.case.wave[name]
+            words = _too_sudden(scene, wave) if isinstance(wave, Constant) else _too_short(count)
+            yield f"wave.{name}: {words}; the packing will disperse it"
+
+
+def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
+    """Shortest wavelength of waves in use, at their highest frequency and the scene's slowest speed, in diameters."""
+    speed = slowest_speed(scene.ground)
+    spacing = scene.ground.brick.mean_diameter
+    return {
+        name: speed / wave.highest_frequency() / spacing if np.isfinite(speed) else np.inf
+        for name, wave in scene.case.wave.items()
+        if name in waves_used(scene.case)
+    }
+
+
+def _too_short(count: float) -> str:
+    """What is wrong with a wave with this number of particles in its shortest wavelength."""
+    if count < 1.0:
+        return "has a shortest wavelength below the diameter of a particle"
+    return f"has {count:.1f} particles in its shortest wavelength, fewer than {FEWEST_PER_WAVELENGTH:g}"
+
+
+def _too_sudden(scene: DiskScene, wave: Constant) -> str:
+    """What is wrong with a constant that rises too fast for the particles, and which rise is long enough."""
+    least = FEWEST_PER_WAVELENGTH * HANN_FADE * scene.ground.brick.mean_diameter / slowest_speed(scene.ground)
+    rise = f"rises within {wave.rise:g} s" if wave.rise > 0.0 else "is a step (rise = 0)"
+    return f"{rise}, which is shorter than the particles can follow, {least:.2g} s"
+
+
+def _never_arrives(scene: DiskScene) -> Iterator[str]:
+    """A wave at an angle that is not in the body before the run ends."""
+    duration = scene.case.run.duration
+    if scene.ground_waves is not None and (begin := arrival(scene, scene.ground_waves)) >= duration:
+        yield f"incident: its wave reaches the disks at {begin:.4g} s only, after the end of the run at {duration:g} s"
+
+
+def _travel_time(scene: DiskScene) -> float:
+    """Time (s) the fastest wave takes along the scene's longer side; nan if no motion along it is possible."""
+    axis = int(np.argmax(scene.size))
+    speeds = [speed for speed in scene.ground.wave_speeds(axis) if not math.isnan(speed)]
+    return float(scene.size[axis]) / max(speeds, default=math.nan)
+
+
+def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
+    """Waves and loads whose stress is a very small part, or a large multiple, of the bonds' tensile strength."""
+    strength, static = scene.case.material.pb_ten, scene.case.static
+    if strength is None:
+        return
+    stresses: dict[str, tuple[str, float]] = {}
+    for name, what, stress in _wave_stresses(scene, strength):
+        if stress > stresses.get(name, ("", 0.0))[1]:  # a wave may drive several sides
+            stresses[name] = (what, stress)
+    for load in scene.case.load:
+        stresses[f"load.{load.name}"] = _load_stress(scene, load)
+    if static is not None and static.stress is not None:
+        stresses["static.stress"] = ("its largest component", max(map(abs, static.stress)))
+    yield from stress_warnings(stresses, strength, "material.pb_ten")
+
+
+def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str, float]]:
+    """For every wave on every side it drives: its table, description and value (Pa) of its largest stress."""
+    for edge in scene.edges.values():
+        table = scene.case.side(edge.side)
+        grips = set(table.prescribed(edge.axis))
+        medium, length = boundary_medium(scene.case, scene.ground, edge.axis), float(scene.size[edge.axis])
+        for motion, name in table.waves.items():
+            wave, speed = scene.case.wave[name], medium.p_wave_speed if motion == "p" else medium.s_wave_speed
+            if axis_of_motion(edge.side, motion) in grips:
+                yield (
+                    f"wave.{name}",
+                    *grip_stress(wave, medium.density, speed, length, scene.case.run.duration, strength),
+                )
+            else:
+                yield f"wave.{name}", "its stress ρcv", medium.density * speed * wave.peak()
+    if (incident := scene.case.incident) is not None:
+        speed = scene.ground.wave_speeds(1)[0 if incident.type == "p" else 1]
+        peak = scene.case.wave[incident.wave].peak()
+        yield f"wave.{incident.wave}", "its stress ρcv", scene.ground.density * speed * peak
+
+
+def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
+    """Description and value (Pa) of the stress of a load: ρaL, a pressure, or the force over the width it acts on."""
+    factor = 1.0 if load.wave is None else scene.case.wave[load.wave].peak()
+    if load.pressure is not None:
+        return "its pressure", abs(load.pressure) * factor
+    low, high = np.zeros(2), scene.size
+    if load.region is not None:
+        low, high = np.array(load.region[:2]), np.array(load.region[2:])
+    extent = np.abs(load.vector) * factor
+    if load.acceleration is not None:
+        return "its stress ρaL", float(scene.ground.density * (extent * (high - low)).max())
+    widths = (high - low)[::-1] if load.region is not None else np.full(2, scene.ground.brick.mean_diameter)
+    return "its force over the width it acts on", float((extent / widths).max())
+
+
+def _large_strains(scene: DiskScene) -> Iterator[str]:
+    """Waves, loads and strengths whose strains are far beyond those of solids."""
+    modulus, reason = float(np.diag(scene.ground.material_tensor)[:2].min()), _TOO_LARGE[scene.has_history]
+    slowest, material = slowest_speed(scene.ground), scene.case.material
+    for name in sorted(scene.case.entering):
+        yield from large_velocity(f"wave.{name}", scene.case.wave[name].peak(), slowest, reason)
+    compared = scene.has_history and material.pb_ten is not None  # with the strength
+    for load in () if compared else scene.case.load:
+        yield from large_stress(f"load.{load.name}", *_load_stress(scene, load), modulus, reason)
+    for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh)):
+        if strength is not None:
+            yield from large_stress(f"material.{key}", "the strength", strength, modulus, _TOO_LARGE[True])

@@ -1,0 +1,110 @@
+"""A body that a static stage has brought to rest."""
+
+from dataclasses import dataclass, fields
+from typing import Any, Self
+
+import numpy as np
+
+from dembound.disks.rest.block_stress import Uniformity
+from dembound.disks.scene import DiskScene
+from dembound.disks.stepping.system import Start
+from dembound.motion.cracks import Cracks
+from dembound.motion.state import Arrays, within
+from dembound.table import every_key
+
+NUMBERS = ("steps", "ratio", "mean_reaction", "mean_residual", "stress")
+"""What is kept of a stage apart from its body, cracks and blocks."""
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A body at rest, and the results of its static stage.
+
+    Attributes
+    ----------
+    start : the state in which the run begins.
+    steps : steps it took.
+    ratio : mean unbalanced over mean contact force at the end.
+    mean_reaction : N, mean force of supports and tractions on the particles they act on.
+    mean_residual : N, mean unbalanced force on all other particles, which F_0 balances too.
+    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive, see `block_stress`. uniformity : how
+    far blocks are from a target stress; None without one.
+    cracks : the bonds that broke on the way.
+    before : the same before an excavation, if there was one, with the numbering of particles before it. column : the
+    same for the free-field column alone, if there is one.
+    """
+
+    start: Start
+    steps: int
+    ratio: float
+    mean_reaction: float
+    mean_residual: float
+    stress: np.ndarray
+    cracks: Cracks
+    uniformity: Uniformity | None = None
+    before: "Settled | None" = None
+    column: "Settled | None" = None
+
+    def memory(self) -> Arrays:
+        """All arrays, from which `recalled` makes the same in another run; without the stages before."""
+        start = self.start
+        kept = {name: np.array(getattr(self, name)) for name in NUMBERS}
+        kept |= {"displacement": start.displacement, "has_history": np.array(start.has_history)}
+        if self.uniformity is not None:
+            kept |= {f"uniformity/{name}": values for name, values in self.uniformity.memory().items()}
+        kept |= {f"cracks/{field.name}": getattr(self.cracks, field.name) for field in fields(Cracks)}
+        for part, pairs in start.contacts.items():
+            kept |= {f"contacts/{part}/{name}": values for name, values in pairs.memory().items()}
+        return kept
+
+    @classmethod
+    def recalled(cls, scene: DiskScene, memory: Arrays) -> Self:
+        """The same from what `memory` has returned for an equal scene."""
+        contacts = scene.contact_lists() if any(name.startswith("contacts/") for name in memory) else {}
+        for part, pairs in contacts.items():
+            pairs.recall(within(memory, f"contacts/{part}"))
+        cracks, uniformity = within(memory, "cracks"), within(memory, "uniformity")
+        return cls(
+            start=Start(among(memory["displacement"], scene), contacts, bool(memory["has_history"])),
+            steps=int(memory["steps"]),
+            ratio=float(memory["ratio"]),
+            mean_reaction=float(memory["mean_reaction"]),
+            mean_residual=float(memory["mean_residual"]),
+            stress=memory["stress"].copy(),
+            cracks=Cracks(**{field.name: cracks[field.name] for field in fields(Cracks)}),
+            uniformity=Uniformity.recalled(uniformity) if uniformity else None,
+        )
+
+
+def among(displacement: np.ndarray, scene: DiskScene) -> np.ndarray:
+    """Displacements (3, …) of a scene's disks as those of all its nodes, zero for those of continua.
+
+    The displacement of a continuum is counted from rest: what its ties carry then is a part of what is balanced.
+    """
+    of_all = np.zeros((3, scene.count))
+    of_all[:, : scene.disk_count] = displacement[:, : scene.disk_count]
+    return of_all
+
+
+def settling_keys(scene: DiskScene) -> dict[str, Any]:
+    """What the result of a scene's static stage depends on, as plain JSON values by key.
+
+    Of the boundaries these are free fields, which settle too, half cells, whose mass is halved, sides that belong to
+    the packing, and continua that settle beside a free-field column, with all settings, also chosen ones; of the loads
+    the steady ones.
+    """
+    case = scene.case
+    if case.static is None:
+        return {}
+    tables = {name: getattr(case, name) for name in ("packing", "material", "motion", "hole", "static")}
+    loads = [load for load in case.load if load.wave is None]
+    sides = {side: every_key(table) for side, table in case.boundary.items() if table.needs_column}
+    joined = {side: {"type": t.type} for side, t in case.boundary.items() if t.is_periodic or t.is_mirror}
+    halved = {side: True for side, table in case.boundary.items() if table.half_cells}
+    keys = {**tables, "load": loads, "boundary": sides | joined, "half_mass": halved}
+    if scene.outside is not None and scene.outside.twin is not None:
+        keys["outside"] = case.outside.model_copy(update=scene.outside.settings.given)
+        keys["outside_sides"] = scene.outside.sides
+    settling = every_key(keys) | {"particles": scene.disk_count, "reduced": list(scene.reduced)}
+    del settling["static"]["from"]
+    return settling

@@ -1,0 +1,87 @@
+"""A scene of disks under the supports and tractions of its static stage."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from dembound.boundaries.support import SupportBuilder, Supports
+from dembound.casefile.disks.static import Static
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.rest.tractions import Tractions
+from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.stepping.system import DiskSystem
+from dembound.motion.state import State
+
+
+class StaticScene:
+    """A scene under its static supports and tractions."""
+
+    def __init__(self, scene: DiskScene, static: Static) -> None:
+        case = scene.case
+        builder = SupportBuilder(held=scene.ground.held)
+        free_field = {side: table for side, table in case.boundary.items() if table.needs_column}
+        for side, table in (free_field | dict(static.boundary)).items():
+            if side in scene.edges:
+                edge = scene.edges[side]
+                table.support(edge, boundary_medium(case, scene.ground, edge.axis), case.wave, builder)
+        self.static = static
+        self._tractions = None if static.stress is None else Tractions(scene, static.stress)
+        self.scene = without_own_continua(scene)
+        for each in self.scene.continua:
+            each.support(builder)
+        self.scene = replace(self.scene, supports=builder.table())
+        self.held = np.zeros(scene.disk_count, dtype=bool)
+        if self._tractions is not None:
+            self.held[self._tractions.nodes] = True
+        supports: Supports = self.scene.supports
+        self.held[_of_disks(supports, scene.disk_count)] = True  # dashpots have no force at rest
+        self._floats = len(supports) == 0
+        self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.disk_count, axis=1)
+        across = (supports.component < 2) & supports.prescribed
+        self._moves[supports.component[across], supports.node[across]] = False
+
+    def load(self, displacement: np.ndarray) -> np.ndarray:
+        """All steady forces (3, n) N and N·m at displacements (3, n)."""
+        return self.scene.steady_load + (0.0 if self._tractions is None else self._tractions.forces(displacement))
+
+    def keep_from_turning(self, state: State) -> None:
+        """Stop the rigid motion of a body that is not held, as no force would bring it to rest."""
+        if not self._floats:
+            return
+        mass, velocity = self.scene.mass, state.velocity.copy()
+        arm = self.scene.assembly.positions + state.displacement[:2].T
+        arm = (arm - np.average(arm, axis=0, weights=mass)).T
+        velocity[:2] -= np.average(velocity[:2], axis=1, weights=mass)[:, None] * self.scene.free[:2, None]
+        state.velocity = velocity
+        if not self.scene.free.all():
+            return
+        spin = np.sum(mass * (arm[0] * velocity[1] - arm[1] * velocity[0])) + np.sum(self.scene.inertia * velocity[2])
+        rate = spin / (np.sum(mass * (arm**2).sum(axis=0)) + self.scene.inertia.sum())
+        state.velocity = velocity - rate * np.stack([-arm[1], arm[0], np.ones(self.scene.count)])
+
+    def unbalanced(self, system: DiskSystem, forces: np.ndarray) -> np.ndarray:
+        """Unbalanced forces (2, m) N on disks along the directions in which they can move, for forces (3, n)."""
+        return np.where(self._moves, (forces + system.load)[:2, : self._moves.shape[1]], 0.0)
+
+    def force_ratio(self, system: DiskSystem, forces: np.ndarray, contacts: Mapping[str, ContactList]) -> float:
+        """Mean unbalanced force over the mean contact force, for contact forces (3, n) and the pairs of each part."""
+        unbalanced = np.hypot(*self.unbalanced(system, forces)).mean()
+        pair = np.concatenate([np.hypot(*pairs.arrays.force[:2]) for pairs in contacts.values()])
+        acting = pair > 0.0
+        return float(unbalanced / pair[acting].mean()) if acting.any() else (np.inf if unbalanced > 0.0 else 0.0)
+
+
+def without_own_continua(scene: DiskScene) -> DiskScene:
+    """A scene without continua that are tied by the motion of its disks itself, in place of which supports hold it.
+
+    Those tied by the motion relative to the free-field column stay, as a hole moves the ground round it.
+    """
+    beyond = scene.outside if scene.outside is not None and scene.outside.twin is not None else None
+    return replace(scene, outside=beyond, foot=None)
+
+
+def _of_disks(supports: Supports, disks: int) -> np.ndarray:
+    """The disks (k,) with prescribed components."""
+    node = supports.node[supports.prescribed]
+    return node[node < disks]

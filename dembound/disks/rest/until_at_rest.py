@@ -1,0 +1,145 @@
+"""When a static stage ends: at rest, or with an error that names what is not."""
+
+import numpy as np
+
+from dembound.casefile.disks.static import Static
+from dembound.disks.rest.loading import LOOK, Loading
+from dembound.disks.rest.static_scene import StaticScene
+from dembound.disks.stepping.system import DiskSystem
+from dembound.motion.cracks import Cracks, joined
+from dembound.motion.kind import OnLook, StalledError
+from dembound.motion.state import Arrays, State
+from dembound.motion.trackers import Run, Tracker
+
+PATIENCE = 20_000
+"""Steps after which a stage has stalled if the force ratio has not decreased by a tenth."""
+
+ELASTIC_PATIENCE = 5_000
+"""Steps after which a body without such a decrease leaves the elastic law."""
+
+WORST = 3
+"""Number of particles in the message about a stalled stage."""
+
+
+class UntilAtRest(Tracker):
+    """Ends a static stage that is at rest or has stalled; until then it puts the loads on.
+
+    Parameters
+    ----------
+    body : the scene that settles.
+    system : its parts.
+    loading : puts its loads on.
+    on_look : gets the steps done and the force ratio from time to time.
+    stage : its name in messages.
+
+    Attributes
+    ----------
+    ratio : mean unbalanced over mean contact force at the last evaluation. forces : (3, n) N and N·m of contacts at
+    that time.
+    """
+
+    name = "until at rest"
+
+    def __init__(
+        self, body: StaticScene, system: DiskSystem, loading: Loading, on_look: OnLook | None, stage: str
+    ) -> None:
+        self.ratio, self.forces = np.inf, np.zeros((3, 0))
+        self._body, self._system, self._loading = body, system, loading
+        self._on_look, self._stage = on_look, stage
+        self._best, self._best_at = np.inf, 0
+        # a law without history has no list of pairs, but their forces are needed too
+        self._contacts = system.contacts or body.scene.contact_lists()
+        self._look_after(0)
+
+    def _look_after(self, step: int) -> None:
+        self.due = min(step + LOOK, max(self._body.static.max_steps, step + 1))
+
+    def handle(self, run: Run) -> None:
+        """Evaluate the force ratio; raise StalledError if it no longer decreases or the steps exceed the maximum."""
+        state, static, loading = run.state, self._body.static, self._loading
+        self._body.keep_from_turning(state)
+        self.forces = self._contact_forces(state.displacement)
+        self.ratio = self._body.force_ratio(self._system, self.forces, self._contacts)
+        if self._on_look is not None:
+            self._on_look(state.step, self.ratio)
+        if loading.is_rising(state.step):
+            self._begin_anew(state)
+        elif self.ratio <= static.ratio:
+            if loading.is_the_answer(state):
+                run.stopped = True
+                return
+            self._begin_anew(state)
+        elif self.ratio < 0.9 * self._best:
+            self._best, self._best_at = self.ratio, state.step
+        elif state.step - self._best_at >= ELASTIC_PATIENCE and loading.give_up_elastic_law(state):
+            self._begin_anew(state)
+        if state.step - self._best_at >= PATIENCE or state.step >= static.max_steps:
+            self._fail(run)
+        loading.put_on(state)
+        self._look_after(state.step)
+
+    def _begin_anew(self, state: State) -> None:
+        """Forget the progress so far, as the loads or the law have changed."""
+        self._best, self._best_at = np.inf, state.step
+
+    def _fail(self, run: Run) -> None:
+        """Raise StalledError."""
+        lacking, cracks = self._body.unbalanced(self._system, self.forces), self.take_cracks()
+        message = f"{self._stage} {_where_it_ended(self._body.static, run, self.ratio, lacking, cracks)}"
+        raise StalledError(message, run, lacking.T, cracks)
+
+    def memory(self) -> Arrays:
+        """The next step of evaluation, the force ratio and step of the last progress, and the loads."""
+        best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
+        return {**super().memory(), **best, **self._loading.memory()}
+
+    def recall(self, memory: Arrays) -> None:
+        """Take over what `memory` has returned in another run of the same case."""
+        super().recall(memory)
+        self._best, self._best_at = float(memory["best"]), int(memory["best_at"])
+        self._loading.recall(memory)
+
+    def take_cracks(self) -> Cracks:
+        """The bonds that broke since this was last called."""
+        return joined([pairs.take_cracks() for pairs in self._contacts.values()])
+
+    def _contact_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces and moments (3, n) of contacts and ties now, under the elastic law with the locked-in forces."""
+        if not self._system.uses_history:
+            for pairs in self._contacts.values():
+                pairs.push(displacement, reference=True)
+        return self._system.last_forces(self._contacts) + self._system.tie_forces(displacement)
+
+
+def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarray, cracks: Cracks) -> str:
+    """Lines about a stage that takes too long, with its state and advice; unbalanced (2, n) N as for `_lacking`."""
+    steps = run.state.step
+    facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
+    if steps >= static.max_steps:
+        return f"came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}\nallow more with static.max_steps"
+    return (
+        f"stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}\n"
+        "is the body held, and can its contacts carry the load?"
+    )
+
+
+def _lacking(run: Run, unbalanced: np.ndarray) -> str:
+    """The particles with the largest unbalanced forces, a line each, and how many have half of the sum.
+
+    unbalanced (2, n) N is the sum of the forces on each particle.
+    """
+    scene, size = run.scene, np.hypot(*unbalanced)
+    order = np.argsort(-size, kind="stable")
+    half = 1 + int(np.searchsorted(np.cumsum(size[order]), 0.5 * size.sum()))
+    places = scene.positions + run.state.displacement[:2].T
+    worst = [
+        f"unbalanced force on particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m: "
+        f"({unbalanced[0, i] + 0.0:.3g}, {unbalanced[1, i] + 0.0:.3g}) N"  # + 0.0: no −0
+        for i in order[: min(WORST, len(order))]
+    ]
+    low, high = places[order[:half]].min(axis=0), places[order[:half]].max(axis=0)
+    share = (
+        f"{half:,} of {scene.count:,} particles have half of all unbalanced force, between "
+        f"({low[0]:.2f}, {low[1]:.2f}) and ({high[0]:.2f}, {high[1]:.2f}) m"
+    )
+    return "\n".join([*worst, share])

@@ -1,0 +1,227 @@
+"""The constant forces that balance the stress of a settled body: Z's unbalanced forces F_eq with opposite sign.
+
+Under ``geometry = "updated"`` they rotate with the side they act on. On debris they end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from dembound.boundaries import OPPOSITE
+from dembound.disks.body import DiskBody
+from dembound.disks.stepping.part import DiskPart
+from dembound.kernels.follower import GONE, side_rotations
+from dembound.kernels.fragments import pieces
+from dembound.kernels.tables import Followers
+from dembound.motion.state import Arrays
+
+
+class Balance:
+    """Forces that balance the stress of a body in a reference state, the datum.
+
+    Parameters
+    ----------
+    scene : the body and its sides.
+    force : (3, n) N and N·m at the datum.
+    steady : (3, n) other steady forces, which do not rotate.
+    datum : (3, n) displacements at which the body is in equilibrium.
+    across : (3, n) N and N·m, forces through free-field seams at the datum. They are not a load, but they also rotate
+    with the body and end on debris.
+
+    Attributes
+    ----------
+    force : (3, n) N and N·m, in the directions of the datum. datum : (3, n), as given.
+    followers : arrays with which the kernels rotate them.
+    """
+
+    def __init__(
+        self, scene: DiskBody, force: np.ndarray, steady: np.ndarray, datum: np.ndarray, across: np.ndarray
+    ) -> None:
+        self.force = force
+        self.followers = _followers(scene, force, steady, datum, across)
+        self.datum = datum
+        self._scene, self._steady, self._across = scene, steady, across
+        self._of_ended = 0.0
+        self._ended = np.zeros(scene.count, dtype=np.bool_)
+        self._torn = np.zeros(scene.count, dtype=np.bool_)
+
+    def work(self, displacement: np.ndarray) -> float:
+        """Work (J) done up to displacements (3, n), without that of their rotation, which the kernels count."""
+        return self._of_ended + float(np.sum(self.force * (displacement - self.datum)))
+
+    def memory(self) -> Arrays:
+        """All arrays that change during a run, by name."""
+        kept = {name: getattr(self, f"_{name}") for name in ("steady", "across", *_EVOLVING)}
+        kept |= {"datum": self.datum, "force": self.force, "of_ended": np.array(self._of_ended)}
+        return kept | {f"follower_{name}": getattr(self.followers, name) for name in _FOLLOWING}
+
+    @classmethod
+    def recalled(cls, scene: DiskBody, memory: Arrays) -> Balance:
+        """The balance restored from what memory() returned in another run of the same case."""
+        balance = cls(scene, memory["force"].copy(), *(memory[name].copy() for name in _FIXED))
+        for name in _EVOLVING:
+            setattr(balance, f"_{name}", memory[name].copy())
+        balance._of_ended = float(memory["of_ended"])
+        for name in _FOLLOWING:
+            getattr(balance.followers, name)[...] = memory[f"follower_{name}"]
+        return balance
+
+    def count_breaks_from(self, parts: Sequence[DiskPart]) -> None:
+        """Ignore the bonds broken so far when debris is looked for; parts : those of the body."""
+        for part in parts:
+            assert part.contacts is not None
+            part.contacts.note_cracks()
+
+    def end_on_debris(
+        self, parts: Sequence[DiskPart], displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
+    ) -> None:
+        """End the forces on pieces that have broken off, and apply their resultant to the rest of the body.
+
+        A piece has broken off if neither bonds nor closed contacts connect it to the largest piece and one of its bonds
+        has broken since the start. Ground that was loose at the start therefore keeps its confining forces.
+        displacement (3, n) and velocity (3, n) are those after a step (s). The ended forces are removed from load (3,
+        n), all steady forces; forces that still act through a seam are cancelled by their constant part.
+        """
+        loose = np.zeros(len(self._ended), dtype=np.bool_)
+        for part in parts:
+            if part.contacts is not None:
+                self._torn[part.nodes] |= part.contacts.freshly_torn()  # called in the step of every break: all of them
+            body = part.nodes
+            slot = part.layout.slot[body]
+            piece = pieces(part.pairs, slot.min(), slot.max() + 1)[slot - slot.min()]
+            largest = np.argmax(np.bincount(piece))
+            loose[body] = (piece != largest) & np.isin(piece, piece[self._torn[body]])
+        loose &= ~self._ended
+        if not loose.any():
+            return
+        self._ended |= loose
+        change = np.where(loose, -self._across - self.force, 0.0)
+        followers = self.followers
+        turned = loose[followers.node]
+        load[:2, followers.node[turned]] -= followers.extra[:, turned]
+        followers.force[..., turned] = 0.0
+        followers.extra[:, turned] = 0.0
+        self._leave_sides()
+        for part in parts:
+            change[:, part.nodes] += self._borne_by_the_rest(change, part.nodes)
+        # the force of the last step acted until half a step before the present displacements
+        self._of_ended -= float(np.sum(change * (displacement - 0.5 * step * velocity - self.datum)))
+        self.force += change
+        load += change
+        share = _shares(followers.side)
+        followers.force[...] += np.where(turned, 0.0, share[:, None, :] * change[:2, followers.node])
+        followers.steady[...] += change[:2, followers.node]
+
+    def _leave_sides(self) -> None:
+        """Compute the rotation of each side from its remaining particles."""
+        followers = self.followers
+        followers.twin[self._ended[followers.member]] = GONE
+        for first, last in pairwise(followers.start):
+            left = first + np.flatnonzero(followers.twin[first:last] != GONE)
+            if len(left):
+                followers.arm[:, left] -= followers.arm[:, left].mean(axis=1, keepdims=True)
+
+    def _borne_by_the_rest(self, change: np.ndarray, body: slice) -> np.ndarray:
+        """Forces (3, m) on the sides of the remaining body that replace the ended forces, torque included.
+
+        change (3, n) N and N·m is the change of the forces by ending. In the ground the medium beyond would carry it;
+        without a replacement the remaining forces would push the body away.
+        """
+        borne = np.zeros((3, body.stop - body.start))
+        node = self.followers.node
+        node = node[(node >= body.start) & (node < body.stop) & ~self._ended[node]]
+        if len(node) < 2:
+            return borne
+        places = self._scene.positions.T + self.datum[:2]
+        middle = places[:, node].mean(axis=1, keepdims=True)
+        arm, lost = places - middle, change[:, body]
+        x, y = arm[:, body]
+        torque = np.sum(x * lost[1] - y * lost[0]) + lost[2].sum()
+        turn = np.stack([-arm[1, node], arm[0, node]])
+        at = node - body.start
+        borne[:2, at] = -lost[:2].sum(axis=1)[:, None] / len(node) - torque / np.sum(turn**2) * turn
+        return borne
+
+
+_FIXED = ("steady", "datum", "across")
+"""The arguments of a balance other than its forces."""
+
+_EVOLVING = ("ended", "torn")
+"""Arrays about particles that have broken off."""
+
+_FOLLOWING = ("twin", "arm", "force", "steady", "extra")
+"""The arrays of its followers that change."""
+
+
+def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:
+    """Rotation (rad) by which the forces on each side rotate, for displacements (3, n); see `side_rotations`."""
+    still = np.zeros_like(moved)
+    followers = _followers(scene, still, still, still, still)
+    return dict(zip(_body_sides(scene), side_rotations(moved.copy(), followers).tolist(), strict=True))
+
+
+def _body_sides(scene: DiskBody) -> dict[str, np.ndarray]:
+    """The particles of each side of a body that can rotate: not of a free-field column or a periodic body."""
+    if any(table.is_periodic for table in scene.case.boundary.values()):
+        return {}
+    first = 0 if scene.seam is None else scene.seam.count
+    sides = {}
+    for side, edge in scene.edges.items():
+        own = edge.nodes[edge.nodes >= first]
+        # the column does not end at the level of a box in the ground, whose disks there are those with ties
+        sides[side] = own if len(own) > 1 else scene.tied.get(side, own)
+    return {side: nodes for side, nodes in sides.items() if len(nodes) > 1}
+
+
+def _followers(
+    scene: DiskBody, force: np.ndarray, steady: np.ndarray, datum: np.ndarray, across: np.ndarray
+) -> Followers:
+    """The forces on the sides of a body; a force at a corner is shared equally by its two sides. See `Balance`."""
+    sides = _body_sides(scene)
+    places = scene.positions.T + datum[:2]
+    arms = [places[:, nodes] - places[:, nodes].mean(axis=1, keepdims=True) for nodes in sides.values()]
+    members = np.concatenate([np.zeros(0, np.int64), *sides.values()])
+    node, side = _side_numbers(scene, sides)
+    names = list(sides)
+    rest = datum[:2, members].copy()
+    if scene.seam is not None:
+        rest -= datum[:2, scene.seam.twin[members]]
+    return Followers(
+        opposite=np.array(
+            [names.index(OPPOSITE[side] if OPPOSITE[side] in names else side) for side in names], np.int64
+        ),
+        start=np.cumsum([0, *(len(nodes) for nodes in sides.values())]),
+        member=members,
+        twin=np.full(len(members), -1) if scene.seam is None else scene.seam.twin[members].copy(),
+        arm=np.concatenate([np.zeros((2, 0)), *arms], axis=1),
+        node=node,
+        side=side,
+        force=np.ascontiguousarray(_shares(side)[:, None, :] * (force + across)[:2, node]),
+        steady=np.ascontiguousarray((steady + force)[:2, node]),
+        extra=np.zeros((2, len(node))),
+        rest=rest,
+    )
+
+
+def _shares(side: np.ndarray) -> np.ndarray:
+    """Share (2, q) of a particle's force that rotates with each of its sides, by their numbers (2, q)."""
+    return (side >= 0) / (side >= 0).sum(axis=0)
+
+
+def _side_numbers(scene: DiskBody, sides: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Particles (q,) whose forces rotate, and the numbers (2, q) of the one or two sides of each, −1 for none.
+
+    They are the particles of the sides, and at a free field those with contacts beyond it.
+    """
+    pushed = dict(sides)
+    pushed |= {side: np.union1d(sides[side], near) for side, near in scene.tied.items() if side in sides}
+    node = np.unique(np.concatenate([np.zeros(0, np.int64), *pushed.values()]))
+    number = np.full((2, len(node)), -1)
+    for k, nodes in enumerate(pushed.values()):
+        at = np.searchsorted(node, nodes)
+        row = (number[:, at] >= 0).sum(axis=0)
+        number[row[row < 2], at[row < 2]] = k  # a third side, in a very narrow body, is ignored
+    return node, number

@@ -1,0 +1,86 @@
+"""Continua as parts of a system of disks, and their ties to the disks."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.body import DiskBody
+from dembound.kernels.tables import Repeats, WallTies
+from dembound.motion.layout import Layout
+from dembound.motion.part import Tie
+from dembound.outside.part import GridPart
+
+
+class WallTie(Tie):
+    """The half bonds between the disks and the continuum.
+
+    Parameters
+    ----------
+    surroundings : of the body. layout : the slots of all nodes of the scene.
+    """
+
+    def __init__(self, surroundings: Surroundings, layout: Layout) -> None:
+        self._surroundings, self._layout = surroundings, layout
+        self._last: tuple[np.ndarray, WallTies] | None = None
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Disks and nodes of the continuum (k,) that it acts on, ascending."""
+        return self._surroundings.tied
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """Its arrays for the kernels."""
+        if self._last is None or self._last[0] is not supported:  # it is asked for at every return of the loop
+            self._last = supported, self._surroundings.ties(self._layout, supported)
+        return self._last[1]
+
+
+class TwinTie(Tie):
+    """Repeats the forces that earlier ties exert on the twins of some disks on these disks.
+
+    Parameters
+    ----------
+    disks : (k,) ascending. twin : (n,) twin of each of the scene's nodes.
+    """
+
+    def __init__(self, disks: np.ndarray, twin: np.ndarray) -> None:
+        self._disks, self._twin = disks, twin
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """The disks (k,)."""
+        return self._disks
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """Its arrays for the kernels."""
+        return Repeats(*(np.searchsorted(supported, nodes) for nodes in (self._twin[self._disks], self._disks)))
+
+
+def tied_nodes(scene: DiskBody) -> np.ndarray:
+    """Nodes (k,) of a scene that ties act on."""
+    tied = [np.zeros(0, dtype=np.int64), *(each.tied for each in scene.continua), scene.on_foot]
+    if scene.seam is not None:
+        tied.append(scene.seam.node)
+    return np.concatenate(tied)
+
+
+def grids(scene: DiskBody, time_step: float) -> list[GridPart]:
+    """The continua of a scene, as parts to be stepped by time_step (s)."""
+    return [
+        GridPart(each.body, time_step, name=name, first_node=each.first, supported=each.wall.nodes)
+        for each, name in ((scene.outside, "continuum"), (scene.foot, "foot"))
+        if each is not None
+    ]
+
+
+def walls(scene: DiskBody) -> list[Tie]:
+    """The ties of its continua, and those that repeat the forces of the column's foot on the body."""
+    walls: list[Tie] = [] if scene.outside is None else [WallTie(scene.outside, scene.layout)]
+    if scene.foot is not None:
+        assert scene.twin is not None
+        foot = WallTie(scene.foot, scene.layout)
+        walls = [foot, TwinTie(scene.on_foot, scene.twin), *walls]  # these forces are there before they are repeated
+    return walls

@@ -1,0 +1,205 @@
+"""A part of bonded disks, the body or its free-field column, and the seam that couples them."""
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.contacts.layout import Rows, with_special
+from dembound.disks.contacts.rows import elastic_constants
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels import bonded, bonded_lanes, elastic, elastic_lanes  # noqa: F401  # they register their laws
+from dembound.kernels.common import CHUNKS, LIST_ENDS
+from dembound.kernels.contact_measures import strain_energy
+from dembound.kernels.contacts import REFERENCE, SLID
+from dembound.kernels.tables import Bonded, Contacts, LaneBonded, LaneRows, Links, Seam, SeamEnds, WatchedLinks
+from dembound.motion.cracks import NO_CRACKS, Cracks
+from dembound.motion.layout import Layout
+from dembound.motion.part import Part, Tie
+from dembound.motion.state import Arrays, State
+from dembound.packings.column import Seam as ColumnSeam
+from dembound.packings.tiling import Assembly
+
+
+class DiskPart(Part):
+    """Disks under a linear law (kernels/elastic.py) or a history-dependent one (kernels/bonded.py).
+
+    Parameters
+    ----------
+    name : its name in the state.
+    ground : brick and material.
+    assembly : its disks and their contacts.
+    nodes : their range among the scene's particles.
+    rows : the same contacts in the form for a linear law.
+    layout : the slots in which kernels hold the scene's particles.
+    contacts : its pairs with their history; None where the material's law has none.
+
+    Attributes
+    ----------
+    uses_history : whether the history-dependent law is in use; before, a linear law replaces it. watches : whether the
+    loop returns before a contact leaves the linear law. stops_at_breaks : whether it returns after a step in which a
+    bond of this part broke.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        ground: PackedMaterial,
+        assembly: Assembly,
+        nodes: slice,
+        rows: Rows,
+        layout: Layout,
+        contacts: ContactList | None,
+    ) -> None:
+        self.name = name
+        self.ground = ground
+        self.assembly = assembly
+        self.nodes, self.layout = nodes, layout
+        self.contacts = contacts
+        self.uses_history = False
+        self.watches = True
+        self.stops_at_breaks = False
+        self.rows = rows
+        self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
+        self._damped, (self._lost, self._also_lost) = np.zeros((CHUNKS, 2)), np.zeros((2, CHUNKS, 4))
+
+    @property
+    def law_name(self) -> str:  # type: ignore[override]  # an attribute of other parts
+        """Name of the law in use, for reports."""
+        return self.ground.law.name if self.uses_history else self.ground.law.linear
+
+    def law(self) -> NamedTuple:
+        """The arrays of the law in use; before a history-dependent one begins, a linear law that may check contacts."""
+        links, contacts = Links(self.rows, self._fastest, self._damped), self.contacts
+        if contacts is None or not (self.uses_history or self.watches):
+            return links
+        listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.cells)
+        if not self.uses_history:
+            return WatchedLinks(links, *listed, contacts.arms, self._way, contacts.keeps_slip)
+        law = Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
+        if contacts.rows is None:
+            return law
+        assert isinstance(self.rows, LaneRows)
+        slots, starts, ends = contacts.strays
+        rows = with_special(self.rows, slots)
+        return LaneBonded(law, rows, contacts.rows, slots, starts, ends, contacts.extra, self._also_lost)
+
+    def react(self, why: int, steps: int, state: State) -> None:
+        """List the pairs anew if some may be missing."""
+        if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.displacement):
+            self.contacts.search(state.displacement)
+
+    def add_elastic_forces(self, displacement: np.ndarray, total: np.ndarray) -> None:
+        """Add forces and moments of the elastic law at displacements (3, n) to those of all nodes, total (3, n)."""
+        u = self.layout.spread(displacement)
+        force = np.empty_like(u)
+        elastic.contact_forces(u, self.rows, force)
+        total[:, self.nodes] += force[:, self.layout.slot[self.nodes]]
+
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Energy (J) in contacts and in bonds at displacements (3, slots)."""
+        return strain_energy(u, self.pairs, self.geometry)
+
+    def take_cracks(self, steps: int) -> Cracks:
+        """The bonds that broke since this was last called."""
+        return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
+
+    def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """Of a material whose law has a history: number of intact bonds and closed contacts of every disk."""
+        return {} if self.contacts is None else {"coordination": (self.contacts.coordination(self.geometry), "1")}
+
+    def memory(self) -> Arrays:
+        """Whether the law in use has a history, and the pairs."""
+        pairs = {} if self.contacts is None else self.contacts.memory()
+        return {"uses_history": np.array(self.uses_history), **pairs}
+
+    def recall(self, memory: Arrays) -> None:
+        """Restore what `memory` has returned in another run of the same case."""
+        self.uses_history = bool(memory["uses_history"])
+        if self.contacts is not None:
+            self.contacts.recall(memory)
+
+    @property
+    def geometry(self) -> int:
+        """Geometry of its pairs under the law in use, see kernels/contacts.py."""
+        if self.contacts is None:
+            return REFERENCE
+        if self.uses_history:
+            return self.contacts.limits.geometry
+        return SLID if self.contacts.keeps_slip else REFERENCE
+
+    @property
+    def pairs(self) -> Contacts:
+        """Its pairs for the kernels, by slots, without history if the material's law has none."""
+        return self._plain_contacts if self.contacts is None else self.contacts.arrays
+
+    @cached_property
+    def _plain_contacts(self) -> Contacts:
+        return plain_contacts(self.ground, self.assembly, self.layout.slot[self.nodes])
+
+
+class FreeFieldSeam(Tie):
+    """The forces of the free-field column on the body across its sides; the body does not act on the column.
+
+    Parameters
+    ----------
+    seam : contacts across it.
+    column : the part that represents the ground beyond.
+    """
+
+    def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
+        self.seam = seam
+        self.column = column
+        self._constants, row_of = elastic_constants(column.ground)
+        slot = column.layout.slot
+        self._row = row_of[2 * seam.contact_type + seam.twin_is_second].astype(np.uint32)
+        self._neighbour = slot[seam.neighbour].astype(np.uint32)
+        self._ends: tuple[Contacts, np.ndarray] | None = None
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Particles (k,) of the body that have contacts beyond a side, ascending."""
+        return self.seam.node
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """The rows of contacts across the seam, under the law in use in the column."""
+        seam = self.seam
+        counts = np.zeros(len(supported), dtype=np.uint32)
+        counts[np.searchsorted(supported, seam.node)] = seam.contact_counts
+        start = np.zeros(len(supported) + 1, dtype=np.uint32)
+        np.cumsum(counts, out=start[1:])
+        if not self.column.uses_history:
+            twin = np.zeros(len(supported), dtype=np.int64)  # of no use where there are no contacts
+            twin[counts > 0] = self.column.layout.slot[seam.twin[supported[counts > 0]]]
+            return Seam(twin, start, self._neighbour, self._row, self._constants)
+        assert self.column.contacts is not None
+        ends = self.ends(self.column.contacts).astype(np.uint32)
+        return SeamEnds(start, ends, self.column.contacts.arrays.force)
+
+    def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces and moments (3, k) on its nodes at displacements (3, n) under the elastic law."""
+        force = np.zeros((len(self.nodes), 3))
+        layout = self.column.layout
+        twin = layout.slot[self.seam.twin[self.nodes]]
+        seam = Seam(twin, self.seam.start, self._neighbour, self._row, self._constants)
+        elastic.seam_forces(seam, layout.spread(displacement), np.zeros((3, 0)), force)
+        return force.T
+
+    def last_forces(self, contacts: ContactList) -> np.ndarray:
+        """Forces and moments (3, k) on its nodes from the last forces of the column's pairs."""
+        force = np.zeros((len(self.nodes), 3))
+        ends = SeamEnds(self.seam.start, self.ends(contacts).astype(np.uint32), contacts.arrays.force)
+        bonded.seam_ends_forces(ends, np.zeros((3, 0)), np.zeros((3, 0)), force)
+        return force.T
+
+    def ends(self, contacts: ContactList) -> np.ndarray:
+        """Contact ends (e,) of the column's pairs of its particles' contacts across the seam, in the seam's order."""
+        if self._ends is None or self._ends[0] is not contacts.arrays:
+            owner, near, vectors = self.seam.pairs(contacts.ground.brick)
+            _, pair = contacts.find(owner, near, vectors)
+            image = contacts.images(owner, near, vectors)
+            turned = (contacts.pairs[0][pair] != owner) | (contacts.image[pair] != image).any(axis=1)
+            self._ends = contacts.arrays, 2 * contacts.live[pair] + turned
+        return self._ends[1]

@@ -1,0 +1,378 @@
+"""The list of pairs: complete, each pair once, and with a history that outlives every search."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.scene import DiskScene, build
+from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED, note_places
+
+WRAP = {"type": "periodic"}
+SIDES = {
+    "open": {},
+    "periodic sideways": {"left": WRAP, "right": WRAP},
+    "periodic": {"left": WRAP, "right": WRAP, "bottom": WRAP, "top": WRAP},
+}
+RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+LOCKED_IN = {"material.locked_in": 2e6, "static": {}}
+Key = tuple[int, int, int, int]
+
+
+@pytest.fixture
+def scene(bar, in_order):
+    """Makes scenes of the history-dependent law: a random packing, or changed."""
+
+    def make(sides: str = "open", **changes: object) -> DiskScene:
+        tables = {"packing": RANDOM, "boundary": SIDES[sides], "wave": {}, "monitor": [], "motion.held": []}
+        return in_order(build(bar({**tables, "material.law": "linearpbond", **changes})))
+
+    return make
+
+
+def list_of(body: DiskScene) -> ContactList:
+    """The pairs of a scene without a column."""
+    (pairs,) = body.contact_lists().values()
+    return pairs
+
+
+def forces_of(contacts: ContactList, displacement: np.ndarray, *, reference: bool = False) -> np.ndarray:
+    """Forces and moments (3, n) at displacements (3, n) reached at rest."""
+    contacts.push(displacement, reference=reference)
+    total = np.zeros_like(displacement)
+    contacts.add_forces(total)
+    return total
+
+
+@pytest.fixture(params=SIDES)
+def contacts(scene, request) -> ContactList:
+    return list_of(scene(request.param))
+
+
+def ordered(i: int, j: int, image: np.ndarray) -> Key:
+    """A pair and the periods between, the same whichever way round it is listed."""
+    there, back = (i, j, *image), (j, i, *-np.asarray(image))
+    return tuple(int(number) for number in min(there, back))
+
+
+def keys(contacts: ContactList) -> list[Key]:
+    """All listed pairs, their images told from the vectors they started with."""
+    pairs, places = contacts.arrays, contacts.assembly.positions
+    beyond = pairs.constants[pairs.contact_type, :2] - (places[pairs.second] - places[pairs.first])
+    images = np.rint(beyond / contacts.assembly.size).astype(int)
+    # vectors are those of the brick or differences of places
+    np.testing.assert_allclose(beyond, images * contacts.assembly.size, atol=1e-12)
+    return [ordered(i, j, image) for i, j, image in zip(pairs.first, pairs.second, images, strict=True)]
+
+
+def near(contacts: ContactList, displacement: np.ndarray) -> set[Key]:
+    """Pairs with gaps up to the skin, found by trying all."""
+    here, radii = contacts.assembly.positions + displacement[:2].T, contacts.assembly.radii
+    found = set()
+    steps = [(-1, 0, 1) if period else (0,) for period in contacts.periods]
+    for image in ((x, y) for x in steps[0] for y in steps[1]):
+        shift = np.array(image) * [period or 0.0 for period in contacts.periods]
+        apart = np.hypot(*(here[None] + shift - here[:, None]).transpose(2, 0, 1)) - radii - radii[:, None]
+        for i, j in zip(*np.nonzero(apart <= contacts.skin), strict=True):
+            if i != j or any(image):
+                found.add(ordered(i, j, np.array(image)))
+    return found
+
+
+def shaken(contacts: ContactList, size: float, seed: int = 1) -> np.ndarray:
+    """A random motion (3, n) m of all particles."""
+    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, len(contacts.assembly.radii)))
+
+
+def still(contacts: ContactList) -> np.ndarray:
+    return shaken(contacts, 0.0)
+
+
+def test_at_first_the_bricks_contacts_and_all_near_pairs_are_listed_once(contacts: ContactList) -> None:
+    listed = Counter(keys(contacts))
+    bonded = [key for key, state in zip(keys(contacts), contacts.arrays.state, strict=True) if state == INTACT]
+
+    assert set(listed.values()) == {1}
+    assert set(listed) == near(contacts, still(contacts))  # contacts of the brick touch, so they are near as well
+    assert len(bonded) == len(contacts.assembly.pairs)
+    assert {key[:2] for key in bonded} == {tuple(sorted(pair)) for pair in contacts.assembly.pairs.tolist()}
+    assert set(contacts.arrays.state) == {NONE, INTACT}
+
+
+def test_a_scene_one_disk_wide_touches_its_own_images(scene) -> None:
+    contacts = list_of(scene("periodic", packing={"pattern": "A", "size": [0.5, 1.0], "radius": 0.25}))
+
+    # two disks, one above the other: each beside itself; the upper one above the lower, and below its next image
+    assert sorted(keys(contacts)) == sorted(
+        [ordered(0, 0, [1, 0]), ordered(1, 1, [1, 0]), ordered(0, 1, [0, 0]), ordered(0, 1, [0, -1])]
+    )
+    assert set(keys(contacts)) == near(contacts, still(contacts))
+
+
+def test_every_disk_finds_its_ends(contacts: ContactList) -> None:
+    pairs = contacts.arrays
+    for i in range(len(contacts.assembly.radii)):
+        ends = pairs.end[pairs.start[i] : pairs.start[i + 1]]
+        expected = [2 * c for c in np.flatnonzero(pairs.first == i)]
+        expected += [2 * c + 1 for c in np.flatnonzero(pairs.second == i)]
+        assert ends.tolist() == sorted(expected)
+
+
+@pytest.mark.parametrize("size", [0.02, 0.2, 1.0])
+def test_after_a_search_near_pairs_and_bonds_are_listed_and_no_others(contacts: ContactList, size: float) -> None:
+    before = keys(contacts)
+    bonded = {key for key, state in zip(before, contacts.arrays.state, strict=True) if state == INTACT}
+    moved = shaken(contacts, size)
+    contacts.search(moved)
+    listed = Counter(keys(contacts))
+
+    assert set(listed.values()) == {1}
+    assert set(listed) == bonded | near(contacts, moved)
+    # there was something to find and, but for the bonds, to forget
+    assert set(listed) - set(before)
+    assert set(before) - set(listed)
+    assert np.array_equal(contacts.origin, moved[:2])
+
+
+def test_pairs_that_stay_keep_their_memory_and_new_ones_have_none(contacts: ContactList) -> None:
+    pairs, count = contacts.arrays, len(contacts.arrays.first)
+    pairs.state[::5] = TENSION
+    pairs.shear[:], pairs.slip[:] = np.arange(count) + 1.0, -np.arange(count) - 1.0
+    memory = {
+        key: (*values, *row)
+        for key, *values, row in zip(
+            keys(contacts),
+            pairs.state,
+            pairs.shear,
+            pairs.slip,
+            np.abs(pairs.constants[pairs.contact_type]),
+            strict=True,
+        )
+    }
+    for seed in (1, 2):
+        contacts.search(shaken(contacts, 0.1, seed))
+        listed = contacts.arrays
+        for key, state, shear, slip, row in zip(
+            keys(contacts),
+            listed.state,
+            listed.shear,
+            listed.slip,
+            np.abs(listed.constants[listed.contact_type]),
+            strict=True,
+        ):
+            if key in memory and shear != 0.0:  # not lost and found again
+                assert (state, shear, slip, *row) == memory[key]
+            else:
+                assert (state, shear, slip) == (NONE, 0.0, 0.0)
+    assert np.count_nonzero(contacts.arrays.shear) >= np.count_nonzero(pairs.state == INTACT)
+    assert np.any(contacts.arrays.shear == 0.0)
+
+
+def test_a_search_changes_no_force(contacts: ContactList) -> None:
+    # all pairs that can push are in either list as long as nobody moved by more than half the skin
+    moved = shaken(contacts, 0.4 * contacts.skin / np.sqrt(2.0))
+    before = forces_of(contacts, moved)
+    contacts.search(moved)
+
+    # sums of some five forces of 1e8 N, in another order
+    np.testing.assert_allclose(forces_of(contacts, moved), before, rtol=0.0, atol=1e-14 * np.abs(before).max() * 10.0)
+
+
+def test_the_constants_do_not_grow_from_search_to_search(contacts: ContactList) -> None:
+    own = 2 * len(contacts.ground.brick.pairs)  # whole and half
+    for seed in range(30):
+        contacts.search(shaken(contacts, 0.2, seed))
+        others = contacts.arrays.contact_type >= own
+        assert len(contacts.arrays.constants) == own + len(np.unique(contacts.arrays.contact_type[others]))
+
+
+def test_pairs_are_listed_in_one_order_whatever_went_before(scene) -> None:
+    straight, roundabout = list_of(scene("periodic")), list_of(scene("periodic"))
+    roundabout.search(shaken(roundabout, 0.3))
+    for contacts in (straight, roundabout):
+        contacts.search(still(contacts))
+        order = np.lexsort((contacts.arrays.second, contacts.arrays.first))
+        assert np.array_equal(order, np.arange(len(order)))
+    assert sorted(keys(straight)) == sorted(keys(roundabout))
+
+    again = list_of(scene("periodic"))
+    again.search(still(again))
+    for one, other in zip(straight.arrays, again.arrays, strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_a_pair_found_later_pushes_when_its_gap_closes(scene) -> None:
+    row = {"pattern": "A", "size": [1.5, 0.5], "radius": 0.25}
+    contacts = list_of(scene(packing=row, **{"material.contact_share": 1.0}))
+    moved = still(contacts)
+    moved[:2, 2] = [-1.25, 0.4]  # the right disk comes to rest on the left one: 0.25 m beside, 0.4 m above
+    contacts.search(moved)
+    force = forces_of(contacts, moved)
+
+    assert (0, 2, 0, 0) in keys(contacts)
+    overlap = 0.5 - np.hypot(-0.25, 0.4)
+    away = np.array([-0.25, 0.4]) / np.hypot(-0.25, 0.4)
+    # E_c = ρ c_p² where contacts have the whole share; a few operations
+    np.testing.assert_allclose(force[:2, 2], 2.5e9 * overlap * away + push_of_middle(moved), rtol=1e-12)
+
+
+def push_of_middle(moved: np.ndarray) -> np.ndarray:
+    """Force (2,) N of the middle disk, at 0.75 m, on the right one, which has come to the left of it."""
+    apart = np.array([1.25, 0.25]) + moved[:2, 2] - [0.75, 0.25]
+    length = np.hypot(*apart)
+    return 2.5e9 * max(0.0, 0.5 - length) * apart / length
+
+
+def test_cracks_are_told_once_and_in_the_order_they_happened(scene) -> None:
+    contacts = list_of(scene())
+    pairs, moved = contacts.arrays, {step: shaken(contacts, 0.01, step) for step in (7, 9, 12)}
+    chosen = np.flatnonzero(pairs.state == INTACT)[[40, 3, 20]]
+    pairs.cracked[chosen], pairs.state[chosen] = [7, 9, 7], [SHEAR, TENSION, TENSION]
+    expected = np.column_stack([pairs.first[chosen], pairs.second[chosen]])[[2, 0, 1]].astype(np.int64)
+    for step in (7, 9):
+        note_places(moved[step], step, pairs)
+    contacts.note_cracks()
+    late = np.flatnonzero(pairs.state == INTACT)[0]
+    pairs.cracked[late], pairs.state[late] = 12, SHEAR
+    note_places(moved[12], 12, pairs)
+    contacts.search(shaken(contacts, 0.01, 13))  # must not lose it
+    cracks = contacts.take_cracks()
+
+    assert cracks.step.tolist() == [7, 7, 9, 12]
+    assert np.array_equal(cracks.pair[:3], expected)
+    assert cracks.shear.tolist() == [False, True, False, True]
+    # where the bonds were in the step in which they broke
+    places = [
+        (contacts.assembly.positions + moved[step][:2].T)[pair].mean(axis=0)
+        for step, pair in zip(cracks.step.tolist(), cracks.pair, strict=True)
+    ]
+    np.testing.assert_allclose(cracks.position, places, rtol=0.0, atol=1e-14 * 8.0)
+    assert len(contacts.take_cracks()) == 0
+    assert contacts.take_cracks().pair.shape == (0, 2)
+
+
+def test_a_crack_across_the_seam_lies_at_the_seam(scene) -> None:
+    contacts = list_of(scene("periodic sideways"))
+    pairs = contacts.arrays
+    seam = next(c for c, key in enumerate(keys(contacts)) if key[2] != 0 and pairs.state[c] == INTACT)
+    pairs.cracked[seam], pairs.state[seam] = 1, SHEAR
+    note_places(still(contacts), 1, pairs)
+    contacts.note_cracks()
+
+    x = contacts.take_cracks().position[0, 0]
+    assert min(abs(x), abs(x - 8.0)) < 0.3  # the largest radius
+
+
+def test_bonds_and_contacts_that_push_count_as_neighbours(scene) -> None:
+    contacts = list_of(scene(**LOCKED_IN))
+    forces_of(contacts, still(contacts))
+    pairs = contacts.arrays
+    radii = contacts.assembly.radii
+    overlaps = radii[pairs.first] + radii[pairs.second] > pairs.constants[pairs.contact_type, 2]
+    pairs.state[pairs.state == INTACT] = SHEAR
+    ends = np.concatenate([pairs.first[overlaps], pairs.second[overlaps]])
+
+    assert np.array_equal(contacts.coordination(UPDATED), np.bincount(ends, minlength=len(radii)))
+    pairs.state[~overlaps] = INTACT
+    everybody = np.concatenate([pairs.first, pairs.second])
+    assert np.array_equal(contacts.coordination(UPDATED), np.bincount(everybody, minlength=len(radii)))
+
+
+def test_at_the_start_a_locked_in_packing_pushes_and_another_does_not(scene) -> None:
+    packed, free = list_of(scene("periodic", **LOCKED_IN)), list_of(scene("periodic"))
+
+    # forces of some 1 MN, as of the brick in balance to 1e-4 of that
+    each = np.hypot(*packed.force[:, :2].T)
+    assert not each.any()
+    unbalanced = forces_of(packed, still(packed))
+    pushing = np.hypot(*packed.force[:, :2].T)
+    assert np.hypot(*unbalanced[:2]).mean() < 1e-3 * pushing[pushing > 0.0].mean()
+    # E_c = 1.25e9 Pa times distances of 0.5 m that come out an ε or two apart, for six contacts
+    np.testing.assert_allclose(forces_of(free, still(free)), 0.0, atol=6.0 * 1.25e9 * 0.5 * 2.0 * np.finfo(float).eps)
+
+
+def test_with_the_geometry_of_the_start_nothing_gives_way(scene) -> None:
+    brittle = {"material.pb_ten": 1.0, "material.pb_coh": 1.0, "material.fric": 0.5}
+    contacts = list_of(scene(**brittle))
+    forces_of(contacts, shaken(contacts, 1e-3), reference=True)
+    assert TENSION not in contacts.arrays.state
+    assert SHEAR not in contacts.arrays.state
+
+    forces_of(contacts, shaken(contacts, 1e-3))
+    assert {TENSION, SHEAR} & set(contacts.arrays.state)
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0, 1.5])
+def test_arms_reach_to_the_contacts_and_to_the_ends_of_the_bonds(scene, share: float) -> None:
+    body = scene(**{"material.pb_rmul": share})
+    contacts = list_of(body)
+    rows, radii = (
+        plain_contacts(body.ground, body.assembly, body.layout.slot).constants[body.assembly.contact_type],
+        body.assembly.radii,
+    )
+    reached = np.zeros(len(radii))
+    for particle, sign in zip(body.assembly.pairs.T, (1.0, -1.0), strict=True):
+        np.maximum.at(reached, particle, 0.5 * rows[:, 2] + sign * rows[:, 4])  # half the distance and (Ri − Rj)/2
+        np.maximum.at(reached, particle, share * radii[body.assembly.pairs].min(axis=1))
+
+    # bonds are `share` times the smaller disk's radius long to either side; 1e-15 is rounding
+    assert np.all(contacts.arms >= reached * (1.0 - 1e-15))
+    # no longer than the longer of disk and bond, and half a gap
+    gaps = max(float(body.ground.brick.gaps.max()), 0.0)
+    np.testing.assert_allclose(contacts.arms, max(share, 1.0) * radii, atol=0.5 * gaps * (1.0 + 1e-12), rtol=0.0)
+
+
+def test_the_elastic_law_has_its_contacts_and_looks_for_no_others(scene) -> None:
+    body = scene(**{"material.law": "elastic"})
+    contacts = list_of(body)
+    plain = plain_contacts(body.ground, body.assembly, body.layout.slot)
+
+    assert contacts.limits.geometry == REFERENCE
+    assert len(contacts.arrays.first) == len(body.assembly.pairs)
+    order = np.lexsort((plain.second, plain.first))
+    assert np.array_equal(contacts.arrays.second, plain.second[order])
+    assert np.array_equal(contacts.arrays.constants, plain.constants)
+
+
+@pytest.mark.parametrize("sides", SIDES)
+def test_what_is_left_of_a_body_remembers_all_it_went_through(scene, sides: str) -> None:
+    contacts = list_of(scene(sides))
+    moved = shaken(contacts, 0.02)
+    contacts.search(moved)
+    old, random = contacts.arrays, np.random.default_rng(2)
+    old.shear[:], old.slip[:] = random.uniform(-1e-3, 1e-3, (2, len(old.shear)))
+    old.state[random.random(len(old.state)) < 0.2] = SHEAR
+    old.closed[:] = random.random(len(old.closed)) < 0.2
+    old.cracked[3] = 7
+    tunnel = {"name": "tunnel", "type": "circle", "centre": [4.0, 2.0], "radius": 1.0}
+    hollow = scene(sides, hole=[tunnel])
+    kept = np.flatnonzero((contacts.assembly.positions[:, None] == hollow.assembly.positions).all(axis=2).any(axis=1))
+    left = list_of(hollow)
+    left.take_over_subset(contacts, kept)
+
+    among = np.isin(np.column_stack([old.first, old.second]), kept).all(axis=1)
+    new = left.arrays
+    assert 0 < np.count_nonzero(among) < len(among)
+    for before, after in ((old.first[among], kept[new.first]), (old.second[among], kept[new.second])):
+        assert np.array_equal(before, after)
+    for name in ("state", "shear", "slip", "closed", "cracked"):
+        assert np.array_equal(getattr(old, name)[among], getattr(new, name))
+    assert np.array_equal(left.origin, moved[:2, kept])
+    # the same pairs, so the same forces, across periodic sides as well
+    forces_of(contacts, moved)
+    forces_of(left, moved[:, kept])
+    assert np.array_equal(contacts.force[among], left.force)
+
+
+def test_a_list_is_old_once_two_disks_may_have_closed_its_skin(contacts: ContactList) -> None:
+    count = len(contacts.assembly.radii)
+    for share, old in ((0.999, False), (1.001, True)):
+        moved = still(contacts) + 0.3  # all are carried along
+        moved[0, count // 2] -= share * contacts.skin  # towards any other one nearby
+        assert contacts.is_old(moved) == old
+
+    # counted from where it was made
+    contacts.search(moved)
+    assert not contacts.is_old(moved)

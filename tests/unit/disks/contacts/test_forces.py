@@ -1,0 +1,207 @@
+"""Forces across contacts as the record has them: signs, sums, and that they are those of stress and motion."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.contacts import forces as module
+from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.contacts.forces import acting, contact_columns, pieces
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.disks.stepping.system import DiskSystem
+from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, SHEAR, SLID, TENSION, UPDATED
+from dembound.motion.simulation import Simulation
+
+FREE = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": [], "output.contacts": True}
+RANDOM = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
+FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+STEP = 1e-5
+
+
+def shaken(scene: DiskScene, size: float) -> np.ndarray:
+    """Random displacements and rotations (3, n)."""
+    return np.random.default_rng(3).normal(0.0, size, (3, scene.count))
+
+
+def columns_of(scene: DiskScene, displacement: np.ndarray) -> dict[str, np.ndarray]:
+    """The columns of a scene's contacts, without their units, under its first law."""
+    found = DiskSystem(scene, STEP).contact_forces(displacement)
+    return {name: values for name, (values, _) in found.items()}
+
+
+def summed(columns: dict[str, np.ndarray], count: int) -> np.ndarray:
+    """Forces (2, n) of the contacts on all disks, from the columns alone."""
+    first, second = columns["particles"].T
+    along = columns["vector"] / np.hypot(*columns["vector"].T)[:, None]
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    force = columns["normal_force"][:, None] * along + columns["shear_force"][:, None] * left
+    total = np.zeros((count, 2))
+    np.add.at(total, first, force)
+    np.add.at(total, second, -force)
+    return total.T
+
+
+@pytest.mark.parametrize("along", [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.6, -0.8)])
+def test_tension_is_positive_and_shear_pulls_the_first_disk_to_its_left(bar, along: tuple[float, float]) -> None:
+    scene = build(bar({**FREE, "packing.size": [4.0, 4.0]}))
+    pairs = plain_contacts(scene.ground, scene.assembly, scene.layout.slot)
+    (k,) = set(pairs.contact_type[:1])
+    rows = pairs.constants.copy()
+    rows[k, :2] = 0.5 * np.array(along)  # one contact, turned
+    rows[k, 6] *= 0.3
+    pairs = pairs._replace(constants=rows)
+    first, second = scene.assembly.pairs[0]
+    normal, shear = rows[k, 5] + rows[k, 7], rows[k, 6] + rows[k, 8]
+    apart, aside = 1e-6, 3e-6
+    displacement = np.zeros((3, scene.count))
+    displacement[:2, second] = apart * np.array(along) + aside * np.array([-along[1], along[0]])
+    columns = contact_columns(pieces(scene.layout, pairs, displacement, REFERENCE))
+    at = np.flatnonzero((columns["particles"][0] == [first, second]).all(axis=1))[0]
+
+    assert normal > 1.1 * shear > 0.0
+    assert columns["normal_force"][0][at] == pytest.approx(normal * apart, rel=1e-12)
+    assert columns["shear_force"][0][at] == pytest.approx(shear * aside, rel=1e-12)
+    np.testing.assert_array_equal(columns["vector"][0][at], rows[k, :2])
+    assert columns["bonded"][0][at]
+
+
+@pytest.mark.parametrize("piece", [50, module.PIECE])
+@pytest.mark.parametrize("boundary", [{}, WRAP], ids=["free", "periodic"])
+def test_sums_over_contacts_are_the_forces_of_the_motion(bar, monkeypatch, boundary: dict, piece: int) -> None:
+    monkeypatch.setattr(module, "PIECE", piece)
+    scene = build(bar({**FREE, "packing": RANDOM, "boundary": boundary}))
+    displacement = shaken(scene, 1e-4)
+    columns = columns_of(scene, displacement)
+    expected = DiskSystem(scene, STEP).elastic_forces(displacement)[:2]
+
+    assert len(columns["particles"]) == len(scene.assembly.pairs) > 100
+    # sums of some six forces in another order, normals to ε
+    rounding = 1e-14 * np.abs(columns["normal_force"]).max()
+    np.testing.assert_allclose(summed(columns, scene.count), expected, rtol=0.0, atol=10.0 * rounding)
+
+
+def test_vectors_lead_to_the_image_across_a_periodic_side(bar) -> None:
+    scene = build(bar({**FREE, "packing": RANDOM, "boundary": WRAP}))
+    columns = columns_of(scene, np.zeros((3, scene.count)))
+    first, second = columns["particles"].T
+    between = scene.positions[second] - scene.positions[first]
+    periods = (columns["vector"] - between) / scene.size
+
+    np.testing.assert_allclose(periods, np.rint(periods), atol=1e-12)
+    assert set(np.rint(periods).astype(int).ravel()) == {-1, 0, 1}
+    # no more than a gap of a bond beyond touching
+    reach = scene.assembly.radii[first] + scene.assembly.radii[second]
+    assert (np.hypot(*columns["vector"].T) < 1.1 * reach).all()
+
+
+WITH_HISTORY = {"material.law": "linearpbond", "material.fric": 0.5, "material.contact_share": 0.5}
+BRITTLE = {**WITH_HISTORY, "material.pb_ten": 1e6, "material.pb_coh": 1e6}
+
+
+def broken(bar, **changes: object) -> Simulation:
+    """A random packing under the history-dependent law after random velocities have broken some of its bonds."""
+    scene = build(bar({**FREE, "packing": RANDOM, **BRITTLE, "material.elastic_start": False, **changes}))
+    simulation = Simulation(scene, choose_step(scene)[0])
+    simulation.state.velocity = shaken(scene, 0.4)
+    simulation.advance(30)
+    return simulation
+
+
+@pytest.mark.parametrize("geometry", ["updated", "reference"])
+def test_under_the_law_with_a_history_they_are_those_of_the_last_step(bar, geometry: str) -> None:
+    simulation = broken(bar, **{"material.geometry": geometry})
+    scene, system, displacement = simulation.scene, simulation.system, simulation.state.displacement
+    columns = {name: values for name, (values, _) in system.contact_forces(displacement).items()}
+    expected = system.last_forces(system.contacts)[:2]
+    rounding = 1e-14 * np.abs(columns["normal_force"]).max()
+    np.testing.assert_allclose(summed(columns, scene.count), expected, rtol=0.0, atol=10.0 * rounding)
+
+    (contacts,) = system.contacts.values()
+    unbonded, states = ~columns["bonded"], contacts.of("state")
+    assert np.count_nonzero((states == TENSION) | (states == SHEAR)) > 0
+    assert np.count_nonzero(columns["bonded"]) == np.count_nonzero(states == INTACT)
+    # what is not bonded is there as it pushes, and slips at half of that; the last step, of 1e-4 s at some 0.4 m/s over
+    # 0.4 m, has turned the vector by 1e-4
+    assert 0 < np.count_nonzero(unbonded) < len(unbonded)
+    assert (columns["normal_force"][unbonded] < 0.0).all()
+    turned = 1e-3 * np.abs(columns["normal_force"][unbonded])
+    assert (np.abs(columns["shear_force"][unbonded]) <= 0.5 * np.abs(columns["normal_force"][unbonded]) + turned).all()
+    counted = np.bincount(columns["particles"].ravel(), minlength=scene.count)
+    np.testing.assert_array_equal(counted, system.snapshot(displacement)["coordination"][0])
+
+
+def stress_of(columns: dict[str, np.ndarray], scene: DiskScene) -> np.ndarray:
+    """Love's and Weber's stress (n, 3), from the columns and the radii: contacts lie halfway between the surfaces."""
+    radii = scene.assembly.radii
+    first, second = columns["particles"].T
+    length = np.hypot(*columns["vector"].T)
+    along = columns["vector"] / length[:, None]
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    force = columns["normal_force"][:, None] * along + columns["shear_force"][:, None] * left
+    gap = length - radii[first] - radii[second]
+    tensors = np.zeros((scene.count, 2, 2))
+    np.add.at(tensors, first, (radii[first] + 0.5 * gap)[:, None, None] * force[:, :, None] * along[:, None, :])
+    np.add.at(tensors, second, (radii[second] + 0.5 * gap)[:, None, None] * force[:, :, None] * along[:, None, :])
+    tensors /= (np.pi * radii**2 * scene.cell_fraction / scene.ground.brick.solid_fraction)[:, None, None]
+    return np.stack([tensors[:, 0, 0], tensors[:, 1, 1], 0.5 * (tensors[:, 0, 1] + tensors[:, 1, 0])], axis=1)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{}, {"boundary": WRAP}, {"boundary": FREE_FIELD}, WITH_HISTORY, {**WITH_HISTORY, "boundary": FREE_FIELD}],
+    ids=["free", "periodic", "free field", "watched", "watched free field"],
+)
+def test_the_stress_follows_from_them_under_the_elastic_law(bar, changes: dict) -> None:
+    scene = build(bar({**FREE, "packing": RANDOM, **changes}))
+    system, displacement = DiskSystem(scene, STEP), shaken(scene, 1e-4)
+    columns = {name: values for name, (values, _) in system.contact_forces(displacement).items()}
+    stress = system.stress(displacement)
+    # the same sums, with arms from radii in place of vectors: rounding of places of up to 4 m over 0.2 m
+    np.testing.assert_allclose(stress_of(columns, scene), stress, rtol=0.0, atol=1e-12 * np.abs(stress).max())
+
+
+@pytest.mark.parametrize("geometry", ["updated", "reference"])
+def test_the_stress_follows_from_them_where_bonds_have_broken(bar, geometry: str) -> None:
+    simulation = broken(bar, **{"material.geometry": geometry})
+    displacement = simulation.state.displacement
+    columns = {name: values for name, (values, _) in simulation.system.contact_forces(displacement).items()}
+    stress = simulation.system.stress(displacement)
+    np.testing.assert_allclose(
+        stress_of(columns, simulation.scene), stress, rtol=0.0, atol=1e-12 * np.abs(stress).max()
+    )
+
+
+def test_disks_of_a_column_are_numbered_as_in_the_scene(bar) -> None:
+    scene = build(bar({**FREE, "packing": RANDOM, "boundary": FREE_FIELD}))
+    columns = columns_of(scene, np.zeros((3, scene.count)))
+    in_column = columns["particles"] < scene.seam.count
+
+    # contacts of the body with the column are not pairs
+    assert (in_column[:, 0] == in_column[:, 1]).all()
+    np.testing.assert_array_equal(np.sort(columns["particles"], axis=0), np.sort(scene.assembly.pairs, axis=0))
+
+
+def test_open_and_closed_are_as_at_the_start_under_the_elastic_law(bar) -> None:
+    scene = build(bar({**FREE, "packing": RANDOM, **WITH_HISTORY}))
+    (contacts,) = scene.contact_lists().values()
+    contacts.arrays.force[:] = 1.0  # not looked at
+    for geometry in (REFERENCE, SLID):
+        assert np.count_nonzero(acting(contacts.arrays, geometry)) == len(scene.assembly.pairs)
+    contacts.arrays.force[:] = 0.0
+    contacts.arrays.state[contacts.live[:5]] = TENSION
+    for geometry in (UPDATED, BONDED):
+        assert np.count_nonzero(acting(contacts.arrays, geometry)) == len(scene.assembly.pairs) - 5
+
+
+def test_a_disk_alone_has_no_contacts_but_all_columns(bar) -> None:
+    scene = build(bar({**FREE, "packing.size": [0.5, 0.5]}))
+    columns = columns_of(scene, np.zeros((3, 1)))
+    shapes = {name: values.shape for name, values in columns.items()}
+    two, one = (0, 2), (0,)
+    assert shapes == {"particles": two, "vector": two, "normal_force": one, "shear_force": one, "bonded": one}
+
+
+def test_they_are_there_only_if_the_case_asks_for_them(bar) -> None:
+    scene = build(bar({**FREE, "output.contacts": False}))
+    assert DiskSystem(scene, STEP).contact_forces(np.zeros((3, scene.count))) == {}

@@ -1,0 +1,171 @@
+"""The depth of a continuum's free surface below that of a packing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dembound.casefile.disks.material import Material
+from dembound.disks.material import free_surface
+from dembound.disks.material.free_surface import LEAST_MASS, _curved, _turned, cut_at, inset, mass_of, skin_depths
+from dembound.disks.material.homogenise import Network, homogenise
+from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
+from dembound.laws import Stiffness
+from dembound.outside.mesh import Around, Mesh
+from dembound.packings.brick import Brick
+from dembound.packings.dense import Recipe, pack_dense
+from dembound.packings.square import Square
+from dembound.packings.tiling import tile
+
+SIDES = ("left", "right", "bottom", "top")
+MATERIAL = Material(density=2500.0, p_wave_speed=1000.0)
+
+
+@pytest.fixture(scope="module")
+def dense() -> PackedMaterial:
+    brick = pack_dense(Recipe(size=(6.0, 5.0), radius=0.25, radius_ratio=1.5, pressure=0.008, bond_gap=0.0, seed=2))
+    return make_packed_material(brick, MATERIAL, ())
+
+
+def square(fric: float = 0.0) -> PackedMaterial:
+    material = MATERIAL.model_copy(update={"fric": fric})
+    return make_packed_material(Square(size=(1.0, 2.0), radius=0.25).pack(1.25e9), material, ())
+
+
+@pytest.mark.parametrize("fric", [0.0, 0.5])
+def test_rows_of_a_square_lattice_have_no_skin(fric: float) -> None:
+    # every row carries K D whatever is above it
+    assert [square(fric).skin(side) for side in SIDES] == pytest.approx([0.0] * 4, abs=1e-9)
+
+
+def test_a_layer_of_unequal_rows_lies_where_its_stiff_rows_are() -> None:
+    row, beside = np.arange(4), np.zeros(4, dtype=np.int64)
+    brick = Brick(
+        size=np.array([0.5, 2.0]),
+        positions=np.column_stack([np.full(4, 0.25), 0.25 + 0.5 * row]),
+        radii=np.full(4, 0.25),
+        pairs=np.vstack([np.column_stack([row, row]), np.column_stack([row, (row + 1) % 4])]),
+        images=np.vstack([np.column_stack([beside + 1, beside]), np.column_stack([beside, row == 3])]).astype(np.int64),
+        edge_rows=np.zeros((4, 2), dtype=np.bool_),
+        stress=np.zeros(3),
+        residual_ratio=0.0,
+    )
+    made = make_packed_material(brick, MATERIAL, ())
+    times = np.concatenate([1.0 + row, np.ones(4)])  # rows of 1, 2, 3 and 4 times the stiffness, upwards
+    stiffness = replace(made.stiffness, normal=made.stiffness.normal * times)
+    tensor = homogenise(brick, stiffness, ()).tensor
+
+    # ν = 0, so rows share no load: N = E'H, and M/N = Σ k y/Σ k − H/2
+    higher = float(np.dot(1.0 + row, brick.positions[:, 1]) / 10.0 - 1.0)
+    assert higher == pytest.approx(0.25)
+    assert skin_depths(brick, stiffness, tensor) == pytest.approx((higher, -higher), abs=1e-9)
+    # rows end at the left and right: all columns have the same stiffness
+    assert skin_depths(brick, stiffness, tensor, axis=0) == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def test_a_random_packing_is_softer_near_its_surface(dense: PackedMaterial, monkeypatch) -> None:
+    diameter = dense.brick.mean_diameter
+    depths = [dense.skin(side) for side in SIDES]
+    assert all(0.0 < depth < diameter for depth in depths)
+    assert sum(depths) > diameter
+    # the skins of both surfaces are apart: what is left at their distance has decayed by e^(−2π H/L) with the brick's
+    # width L = 6 m and H = 15 m, to 1e-7; of the moment only as (δ/H)², to 1e-3
+    monkeypatch.setattr(free_surface, "SLENDER", 4.0)
+    higher = skin_depths(dense.brick, dense.stiffness, dense.material_tensor)
+    assert sum(higher) == pytest.approx(sum(depths[2:]), abs=1e-4 * diameter)
+    assert higher[1] == pytest.approx(depths[3], abs=5e-3 * diameter)
+
+
+def test_a_turned_packing_has_its_skins_at_other_sides(dense: PackedMaterial) -> None:
+    """Contacts have the same constants in the mirror image, as shear and rotation change their signs together."""
+    turned = make_packed_material(_turned(dense.brick), MATERIAL, ())
+    of = dict(zip(("bottom", "top", "left", "right"), SIDES, strict=True))
+    assert turned.material_tensor[0] == pytest.approx(dense.material_tensor[1, [1, 0, 3, 2]], rel=1e-9)
+    for side, before in of.items():
+        assert turned.skin(side) == pytest.approx(dense.skin(before), rel=1e-6)
+
+
+def test_disks_that_hang_by_one_contact_carry_nothing(dense: PackedMaterial, monkeypatch) -> None:
+    """Without bonds they roll. The springs that hold them are too weak to matter: ten times weaker ones do the same."""
+    loose = replace(dense, moduli=replace(dense.moduli, pb_emod=0.0, fric=0.5))
+    strip = tile(loose.brick, (1, 3), (True, False))
+    assert (np.bincount(strip.pairs.ravel()) == 1).any()
+    depths = [loose.skin(side) for side in SIDES]
+    monkeypatch.setattr(free_surface, "FAINT", 0.1 * free_surface.FAINT)
+    fainter = replace(loose, held=())
+    assert [fainter.skin(side) for side in SIDES] == pytest.approx(depths, rel=1e-6)
+    assert all(0.0 < depth < loose.brick.mean_diameter for depth in depths)
+
+
+def test_curvature_strains_contacts_as_a_beam_that_is_bent(dense: PackedMaterial) -> None:
+    strip = tile(dense.brick, (1, 2), (False, False))
+    stiffness: Stiffness = dense.stiffness
+    network = Network.of_assembly(dense.brick, stiffness, strip)
+    x, y = strip.positions.T
+    bent = np.concatenate([x * (y - 5.0), -0.5 * x**2, -x])
+
+    # elongations are differences of values up to x²: rounding of 36
+    np.testing.assert_allclose(_curved(network, strip.positions, 5.0), network.motion_matrix() @ bent, atol=1e-13 * 36)
+
+
+def test_a_softer_contact_of_the_surface_makes_it_deeper(dense: PackedMaterial) -> None:
+    half = replace(dense.stiffness, shear=0.5 * dense.stiffness.shear, bending=0.5 * dense.stiffness.bending)
+    softer = skin_depths(dense.brick, half, homogenise(dense.brick, half, ()).tensor)
+    assert sum(softer) > dense.skin("bottom") + dense.skin("top")
+
+
+def test_the_mass_up_to_the_edge_of_the_body_is_kept() -> None:
+    skins = {"top": 0.3, "left": 0.2}
+    box = inset((0.0, 0.0, 6.0, 4.0), skins)
+    assert box == (0.2, 0.0, 6.0, 3.7)
+    mesh = Mesh.around(box, (2.9, 3.7), 4, margin=Around(right=2, bottom=1), layer=Around(right=1, bottom=2))
+    total = 1000.0 * mesh.areas + mass_of(skins, mesh, 1000.0)
+
+    # 5 × 4 elements less the box's two; three of them end at the top, and three on the left
+    assert total.sum() == pytest.approx(1000.0 * (18 * 2.9 * 3.7 + 0.3 * 8.7 + 0.2 * 11.1), rel=1e-12)
+    x, y = mesh.positions.T
+    assert set(np.flatnonzero(mass_of(skins, mesh, 1000.0))) == set(np.flatnonzero((y == y.max()) | (x == x.min())))
+
+
+def test_a_stiff_skin_leaves_nodes_half_their_mass() -> None:
+    mesh = Mesh.uniform(order=4, element=(1.0, 1.0), cells=(2, 2))
+    added = mass_of({"top": -1.0}, mesh, 1000.0)
+    top = mesh.positions[:, 1] == 2.0
+    assert added[~top] == pytest.approx(0.0)
+    assert added[top] == pytest.approx(-(1.0 - LEAST_MASS) * 1000.0 * mesh.areas[top])
+
+
+def test_bricks_that_end_elsewhere_are_the_same_packing(dense: PackedMaterial) -> None:
+    """The same disks and contacts, with numbers of bricks of their own."""
+    height = 1.7
+    cut = cut_at(dense.brick, height)
+
+    assert ((cut.positions >= 0.0) & (cut.positions < cut.size)).all()
+    np.testing.assert_allclose(cut.vectors, dense.brick.vectors, atol=1e-12)
+    moved = (cut.positions[:, 1] + height) % cut.size[1]
+    np.testing.assert_allclose(moved, dense.brick.positions[:, 1], atol=1e-12)
+
+
+def test_the_mass_below_a_cut_ends_where_it_is_used_up(dense: PackedMaterial) -> None:
+    """ρ times the height from one cut to another is the mass of the disks between them."""
+    brick, (first, last) = dense.brick, (0.8, 3.1)
+    y = brick.positions[:, 1]
+    between = dense.mass[(y >= first) & (y < last)].sum() / (dense.density * brick.size[0])
+    ends = [height + dense.cut(height)[0] for height in (first, last)]
+
+    assert ends[1] - ends[0] == pytest.approx(between, rel=1e-12)
+    assert dense.cut(first + 2.0 * float(brick.size[1])) == pytest.approx(dense.cut(first))
+
+
+def test_a_cut_at_the_edge_of_bricks_has_the_skin_of_the_top(dense: PackedMaterial) -> None:
+    mass_end, surface = dense.cut(0.0)
+
+    assert (mass_end, surface) == pytest.approx((dense.brick.mass_offset[1], -dense.skin("top")), abs=1e-12)
+
+
+@pytest.mark.parametrize("height", [0.01, 0.24, 0.26, 0.49])
+def test_a_lattice_that_is_cut_ends_between_its_rows(height: float) -> None:
+    """Rows are 0.5 m apart, the first one at 0.25 m: cuts above it end at 0.5 m, those below at 0."""
+    end = 0.5 if height > 0.25 else 0.0
+
+    assert np.add(square().cut(height), height) == pytest.approx([end, end], abs=1e-9)

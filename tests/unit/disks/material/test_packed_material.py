@@ -1,0 +1,199 @@
+"""Masses and the continuum a brick is equivalent to, against closed forms of the square lattice."""
+
+import numpy as np
+import pytest
+
+from dembound.casefile.disks.material import Material
+from dembound.disks.material.homogenise import homogenise
+from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
+from dembound.errors import CaseError
+from dembound.packings.brick import Brick
+from dembound.packings.dense import Recipe, pack_dense
+from dembound.packings.square import Square
+
+DENSITY = 2500.0
+K = 2.5e9
+"""ρ c_p², Pa, for c_p = 1000 m/s."""
+
+MATERIAL = {"density": DENSITY, "p_wave_speed": 1000.0}
+
+SOLVE = 1e-9
+"""Relative error of a sparse solve: rounding times a condition number that a small brick keeps below 1e6."""
+
+
+def lattice() -> Brick:
+    return Square(size=(0.5, 0.5), radius=0.25).pack(1.25e9)
+
+
+@pytest.fixture(scope="module")
+def dense() -> Brick:
+    return pack_dense(Recipe(size=(6.0, 5.0), radius=0.25, radius_ratio=1.5, pressure=0.008, bond_gap=0.0, seed=2))
+
+
+def ground(brick: Brick, held: tuple[str, ...] = (), **material: object) -> PackedMaterial:
+    return make_packed_material(brick, Material(**{**MATERIAL, **material}), held)
+
+
+def test_masses_add_up_to_density_times_area(dense: Brick) -> None:
+    made = ground(dense)
+
+    # a sum of some 150 terms
+    assert made.mass.sum() == pytest.approx(DENSITY * 6.0 * 5.0, rel=1e-13)
+    # one disk density for all: mass over disk area is the same everywhere
+    np.testing.assert_allclose(made.mass / dense.radii**2, made.mass[0] / dense.radii[0] ** 2, rtol=1e-14)
+    np.testing.assert_allclose(made.inertia, made.mass * dense.radii**2 / 2.0, rtol=1e-14)
+
+
+def test_the_lattice_has_the_mass_of_its_cell() -> None:
+    # m = ρD²
+    assert ground(lattice()).mass.tolist() == [DENSITY * 0.5**2]
+
+
+@pytest.mark.parametrize(("fric", "shear"), [(0.0, 0.5 * K / 4.0), (0.5, 0.5 * K / 4.0 + 0.5 * K / 2.0)])
+def test_the_lattice_has_its_closed_form_stiffness(fric: float, shear: float) -> None:
+    # k_n = K; k_s of the bond is K/2/pb_kratio, of the contact K/2/kratio, with friction only
+    made = ground(lattice(), fric=fric, kratio=2.0, pb_kratio=4.0)
+    tensor = made.tensor
+    expected = np.array([[K, 0, 0, 0], [0, K, 0, 0], [0, 0, shear / 2, shear / 2], [0, 0, shear / 2, shear / 2]])
+
+    np.testing.assert_allclose(tensor, expected, atol=SOLVE * K)
+
+
+def test_locked_rotations_double_the_lattices_shear_stiffness() -> None:
+    made = ground(lattice(), held=("rotation",))
+
+    # each of the two gradients strains its own kind of contacts, c_s = D√(k_s/m) = √(k_s/ρ)
+    np.testing.assert_allclose(made.tensor, np.diag([K, K, K / 2.0, K / 2.0]), atol=SOLVE * K)
+    np.testing.assert_allclose(made.wave_speeds(0), [1000.0, np.sqrt(K / 2.0 / DENSITY)], rtol=SOLVE)
+
+
+def test_wave_speeds_are_the_closed_form_and_nan_where_motion_is_held() -> None:
+    # μ = 0: c_s = c_p/2
+    np.testing.assert_allclose(ground(lattice()).wave_speeds(0), [1000.0, 500.0], rtol=SOLVE)
+    np.testing.assert_allclose(ground(lattice()).wave_speeds(1), [1000.0, 500.0], rtol=SOLVE)
+    np.testing.assert_allclose(ground(lattice(), held=("y",)).wave_speeds(0), [1000.0, np.nan], rtol=SOLVE)
+    np.testing.assert_allclose(ground(lattice(), held=("y",)).wave_speeds(1), [np.nan, 500.0], rtol=SOLVE)
+
+
+def test_a_materials_own_stiffness_does_not_know_the_scenes_held_translations(dense: Brick) -> None:
+    free, held = ground(dense), ground(dense, held=("y",))
+
+    np.testing.assert_array_equal(held.material_tensor, free.tensor)
+    # where y is held the disks cannot get out of the way sideways
+    assert held.tensor[0, 0] > free.tensor[0, 0]
+
+
+def test_the_homogenised_tensor_is_a_stiffness(dense: Brick) -> None:
+    made = ground(dense, fric=0.5)
+    tensor = made.tensor
+
+    np.testing.assert_allclose(tensor, tensor.T, atol=SOLVE * K)
+    # free rotations: xy and yx are one shear, a rigid turn costs nothing
+    np.testing.assert_allclose(tensor[2], tensor[3], atol=SOLVE * K)
+    assert (np.linalg.eigvalsh(tensor[:3, :3]) > 0.0).all()
+    # relaxing can only lower the energy: nothing held lies below everything held
+    stiff = homogenise(dense, made.stiffness, (0, 1, 2)).tensor
+    assert (np.linalg.eigvalsh(stiff - tensor) > -SOLVE * K).all()
+
+
+def test_stiffness_is_that_of_the_strained_brick(dense: Brick) -> None:
+    # everything held, by hand: the energy of all contacts under the mean gradients xx, yy, xy = ∂u_x/∂y, yx
+    made = ground(dense, held=("x", "y", "rotation"))
+    dx, dy = dense.vectors.T
+    n = dense.vectors / np.hypot(dx, dy)[:, None]
+    t = np.column_stack([-n[:, 1], n[:, 0]])
+    zero = np.zeros_like(dx)
+    apart = [np.column_stack(u) for u in ([dx, zero], [zero, dy], [dy, zero], [zero, dx])]
+    along, across = (np.array([np.sum(u * way, axis=1) for u in apart]) for way in (n, t))
+    by_hand = (along * made.stiffness.normal) @ along.T + (across * made.stiffness.shear) @ across.T
+
+    # sums of some 300 terms
+    np.testing.assert_allclose(made.tensor, by_hand / 30.0, atol=1e-12 * K)
+
+
+@pytest.mark.parametrize(("held", "axis"), [((), 0), (("y",), 0), (("x",), 1)])
+def test_an_assembly_can_be_given_the_speed_asked_for(dense: Brick, held: tuple[str, ...], axis: int) -> None:
+    nominal, matched = ground(dense, held), ground(dense, held, match="assembly")
+
+    assert matched.wave_speeds(axis)[0] == pytest.approx(1000.0, rel=SOLVE)
+    assert nominal.wave_speeds(axis)[0] != pytest.approx(1000.0, rel=1e-3)
+    # both moduli by one factor
+    assert matched.moduli.emod / nominal.moduli.emod == pytest.approx(matched.moduli.pb_emod / nominal.moduli.pb_emod)
+
+
+def test_moduli_come_from_the_speed_or_from_the_case() -> None:
+    by_speed = nominal_moduli(Material(density=DENSITY, p_wave_speed=1000.0, pb_rmul=0.5, kratio=3.0, fric=0.2))
+    given = nominal_moduli(Material(density=DENSITY, emod=3e9, pb_emod=4e9))
+
+    assert (by_speed.emod, by_speed.pb_emod, by_speed.pb_rmul) == (1.25e9, 2.5e9, 0.5)
+    assert (by_speed.kratio, by_speed.fric) == (3.0, 0.2)
+    assert (given.emod, given.pb_emod) == (3e9, 4e9)
+
+
+def test_a_material_that_resists_no_shear_is_refused(dense: Brick) -> None:
+    for brick in (lattice(), dense):
+        with pytest.raises(CaseError, match="give bonds or friction"):
+            _ = ground(brick, contact_share=1.0).tensor
+
+
+def test_bonds_of_a_lattice_have_their_share_of_its_stiffness() -> None:
+    # along the rows contacts and bonds act side by side, whatever friction and shear springs there are
+    for changes in ({}, {"fric": 0.5, "kratio": 2.0, "pb_kratio": 3.0}, {"pb_rmul": 0.5}):
+        assert ground(lattice(), contact_share=0.3, **changes).bond_share == pytest.approx(0.7, rel=SOLVE)
+    assert ground(lattice(), contact_share=1.0, fric=0.5).bond_share == 0.0
+    assert ground(lattice(), contact_share=0.0).bond_share == pytest.approx(1.0, rel=SOLVE)
+
+
+def test_of_a_random_brick_the_smaller_share_along_x_or_y_counts(dense: Brick) -> None:
+    whole = ground(dense, contact_share=0.4, fric=0.5)
+    density_only = {key: value for key, value in MATERIAL.items() if key == "density"}
+    bonds = Material(**density_only, emod=0.0, pb_emod=whole.moduli.pb_emod, fric=0.5)
+    alone = make_packed_material(dense, bonds, ()).tensor
+    shares = [alone[axis, axis] / whole.tensor[axis, axis] for axis in (0, 1)]
+
+    assert whole.bond_share == pytest.approx(min(shares), rel=SOLVE)
+    assert max(shares) - min(shares) > 1e-4
+    # not the bonds' 0.6: a brick without contacts relaxes otherwise
+    assert abs(whole.bond_share - 0.6) > 1e-3
+    # a material's own, whatever translation the scene holds
+    assert ground(dense, ("y",), contact_share=0.4, fric=0.5).bond_share == whole.bond_share
+    assert ground(dense, ("rotation",), contact_share=0.4, fric=0.5).bond_share != whole.bond_share
+
+
+@pytest.mark.parametrize("match", ["lattice", "assembly"])
+def test_a_brick_was_packed_under_the_pressure_of_its_overlaps(dense: Brick, match: str) -> None:
+    made = ground(dense, match=match)
+    length = np.hypot(*dense.vectors.T)
+    push = made.moduli.emod * np.maximum(-dense.gaps, 0.0)
+
+    # mean of both normal stresses Σ f l / A; sums of some 300 terms
+    assert made.packed_pressure == pytest.approx(0.5 * np.sum(push * length) / 30.0, rel=1e-12)
+    assert made.packed_pressure == pytest.approx(0.008 * made.moduli.emod, rel=0.05)
+    assert ground(lattice()).packed_pressure == 0.0
+
+
+def test_disks_that_only_touch_cannot_be_locked_in() -> None:
+    with pytest.raises(CaseError, match=r"material\.locked_in: needs disks that were packed under stress"):
+        ground(lattice(), law="linearpbond", locked_in=1e6)
+
+
+def test_no_more_is_locked_in_than_a_tenth_of_the_contact_modulus(dense: Brick) -> None:
+    # E_c = ρc²/2
+    most = 0.1 * 0.5 * K
+    made = ground(dense, law="linearpbond", locked_in=most * (1.0 - 1e-12))
+    assert made.moduli.emod == 0.5 * K
+    allowed = r"is 1\.26e\+08 Pa, must be at most 1\.25e\+08 Pa, 0\.1 of the contact modulus"
+    with pytest.raises(CaseError, match=rf"material\.locked_in: {allowed}"):
+        ground(dense, law="linearpbond", locked_in=1.008 * most)
+    # of the modulus after scaling
+    matched = ground(dense, match="assembly").moduli.emod
+    assert abs(matched / (0.5 * K) - 1.0) > 0.01
+    limit = 0.1 * matched
+    ground(dense, law="linearpbond", match="assembly", locked_in=limit * (1.0 - 1e-9))
+    with pytest.raises(CaseError, match="must be at most"):
+        ground(dense, law="linearpbond", match="assembly", locked_in=limit * (1.0 + 1e-9))
+
+
+def test_without_contacts_nothing_can_be_locked_in(dense: Brick) -> None:
+    with pytest.raises(CaseError, match="needs disks that were packed under stress"):
+        ground(dense, law="linearpbond", contact_share=0.0, locked_in=1e5)

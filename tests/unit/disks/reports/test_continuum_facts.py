@@ -1,0 +1,202 @@
+"""The continuum round a body in words, and warnings about its settings."""
+
+import re
+
+import numpy as np
+import pytest
+
+from dembound.disks.beyond.settings import signals_of
+from dembound.disks.material.bragg import sent_back
+from dembound.disks.packing_errors import in_percent, lattice_errors
+from dembound.disks.reports.continuum_facts import ANGLES, continuum_facts, continuum_warnings
+from dembound.disks.scene import build
+from dembound.kinds import with_changes
+
+STAYS = {"type": "constant", "amplitude": 1.0, "rise": 0.4}
+RANDOM = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0], "seed": 1}
+
+
+@pytest.fixture
+def case(bar):
+    """Lamb's problem on 40 m × 20 m of a lattice with c_p = 1000 m/s, c_s = 707 m/s."""
+    return bar(
+        {
+            "packing": {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5},
+            "material.fric": 0.5,
+            "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+            "motion.held": [],
+            "monitor": [],
+            "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.2}},
+            "load": [{"name": "f", "position": [20.5, 19.5], "force": [0.0, -1e6], "wave": "pulse"}],
+            "run.duration": 10.0,
+        }
+    )
+
+
+def facts_of(case, **changes) -> dict[str, str]:
+    return continuum_facts(build(with_changes(case, changes)))
+
+
+def warnings_of(case, **changes) -> list[str]:
+    return list(continuum_warnings(build(with_changes(case, changes)), 1000.0))
+
+
+def test_facts_are_those_of_the_scene(case) -> None:
+    facts = facts_of(case, **{"outside.element": 10.0})
+
+    # 12 × 6 elements less 4 × 2; (4·12 + 1) × (4·6 + 1) nodes less 15 × 8 inside the box, whose top is the surface
+    assert facts["continuum"] == ("1,105 nodes in 64 elements of order 4, 10 m × 10 m, 84 % of which absorb; 80 ties")
+    # 2.625/T; 707.1/13.1 m
+    assert facts["continuum waves"].startswith("21.5 nodes in the shortest wavelength, 53.9 m (0.1 % of the energy ")
+    assert facts["absorbing layers"].startswith(
+        "begin 10 m beyond the sides and are 30 m deep, 3 elements, R0 = 0.0001"
+    )
+    assert "elements themselves about 0.04 %" in facts["absorbing layers"]
+
+
+def test_reflections_are_those_of_the_profile(case) -> None:
+    """R0^(cos θ c_p/c), as α is small beside ω: 1e-4, 1e-2 at 60°, and its 1.414th power of S waves."""
+    words = facts_of(case)["absorbing layers"]
+    p, s = re.search(r"at most ([\d., e-]+) % of P and ([\d., e-]+) % of S", words).groups()
+
+    for found, slower in ((p, 1.0), (s, np.sqrt(2.0))):
+        expected = 100.0 * 1e-4 ** (np.cos(np.radians(ANGLES)) * slower)
+        assert [float(each) for each in found.split(",")] == pytest.approx(expected, rel=0.05)
+
+
+def test_shares_of_the_cost_are_a_whole(case) -> None:
+    shares = [int(each) for each in re.findall(r"(\d+) %", facts_of(case)["continuum cost"])]
+    many = [
+        int(each)
+        for each in re.findall(r"(\d+) %", facts_of(case, **{"packing.size": [400.0, 200.0]})["continuum cost"])
+    ]
+
+    assert len(shares) == len(many) == 3
+    assert sum(shares) == pytest.approx(100, abs=1)
+    assert many[2] > 50 > 40 > shares[2]  # the layers grow with the length of the sides, disks with their area
+
+
+def test_the_dispersion_of_the_disks_is_said_where_it_is_more_than_asked_for(case) -> None:
+    assert "more than" not in facts_of(case)["dispersion of the disks"]
+    assert (
+        "more than outside.accuracy = 0.01 %" in facts_of(case, **{"outside.accuracy": 1e-4})["dispersion of the disks"]
+    )
+
+
+def test_ties_return_what_a_half_bond_does(case) -> None:
+    """Of one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.1/8√2), and 40 k (kD)²/24."""
+    burst = {"pulse": {"type": "sine_burst", "amplitude": 1.0, "frequency": 8.838835, "cycles": 40}}
+    scene = build(with_changes(case, {"wave": burst}))
+    k = 2.0 * np.pi / 80.0
+
+    ties, across = lattice_errors(scene, signals_of(scene.case))
+    assert ties == pytest.approx((1.0 / 16.0 + 0.1 / 8.0 / np.sqrt(2.0)) * k**2, rel=0.03)
+    assert across == pytest.approx(40.0 * k**3 / 24.0, rel=0.03)
+
+
+def test_elements_that_cannot_be_small_enough_are_said(case) -> None:
+    facts = facts_of(case, packing=RANDOM)
+
+    assert "above outside.accuracy, as elements smaller than 11.2 m shorten the time step" in facts["continuum waves"]
+    assert "above outside.accuracy" not in facts_of(case)["continuum waves"]
+
+
+def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
+    """Bricks of 10 m do so from 36 Hz on, as do forces along both axes and waves from below along y."""
+    short = {"type": "cosine", "amplitude": 1.0, "period": 0.05}
+    below = {side: {"type": "outside"} for side in ("left", "right")} | {
+        "bottom": {"type": "outside", "wave_s": "pulse"}
+    }
+    of_forces = with_changes(case, {"packing": RANDOM, "wave": {"pulse": short}})
+    for changed, axes in ((of_forces, (0, 1)), (with_changes(of_forces, {"load": [], "boundary": below}), (1,))):
+        scene = build(changed)
+        share = in_percent(sent_back(scene.ground, signals_of(changed), (40.0, 20.0), axes))
+        fact = continuum_facts(scene)["copies of the brick"]
+        assert fact.startswith(f"send back up to {share} of the velocity")
+        assert fact.endswith("shorter bricks send back less")
+        more = build(with_changes(changed, {"outside.accuracy": 0.2}))
+        assert continuum_facts(more)["copies of the brick"].endswith("which a continuum does not")
+
+    assert "copies of the brick" not in facts_of(case, packing=RANDOM)  # 13 Hz
+    assert "copies of the brick" not in facts_of(case, wave={"pulse": short})  # a lattice
+
+
+def test_a_force_that_jumps_has_no_shortest_wave(case) -> None:
+    facts = facts_of(case, **{"wave": {"pulse": {"type": "constant", "amplitude": 1.0}}})
+
+    assert facts["continuum waves"] == "begin or end at once; elements return those shorter than 7.5 m"
+    assert "dispersion of the disks" not in facts
+
+
+def test_settings_that_are_chosen_have_no_warnings(case) -> None:
+    assert warnings_of(case) == []
+    assert warnings_of(case, wave={"pulse": STAYS}) == []
+    assert warnings_of(case, packing=RANDOM) == []
+    assert list(continuum_warnings(build(with_changes(case, {"boundary": {}})), 1000.0)) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "start"),
+    [
+        ({"outside.element": 20.0}, "outside.element: elements of 20 m return short waves, about 0.8"),
+        ({"outside.layers": 2}, "outside.layers: 2 elements of order 4 return about 0.7 % of the displacement"),
+        (
+            {"outside.reflection": 0.01},
+            "outside.reflection: is 0.01, above outside.accuracy = 0.1 %; give at most 0.0001",
+        ),
+        (
+            {"outside.element": 4.0},
+            "outside.element: elements of 4 m shorten the time step, and below 5 m nothing is gained",
+        ),
+        (
+            {"wave": {"pulse": STAYS}, "outside.margin": 1},
+            "outside.margin: under a load that stays for 10 s about 0.31 % of the displacement will be missing, more "
+            "than outside.accuracy = 0.1 %; 300 m within the layers are enough, now 120 m",
+        ),
+    ],
+)
+def test_poor_settings_have_one_line_each(case, changes: dict, start: str) -> None:
+    (line,) = warnings_of(case, **changes)
+    assert line.startswith(start)
+    assert warnings_of(case, **changes, **{"outside.accuracy": 0.05}) == [line] * ("below 5 m" in line)
+
+
+def test_a_margin_too_small_below_the_surface(case) -> None:
+    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
+    deep = {"ground.size": [100.0, 150.0], "packing.origin": [30.0, 0.0], "boundary": sides}
+    deep |= {"load": [{"name": "f", "position": [50.5, 9.5], "force": [0.0, -1e6], "wave": "pulse"}]}
+
+    assert warnings_of(case, **deep) == []
+    (line,) = warnings_of(case, **deep, **{"outside.element": 5.0, "outside.margin": 2})
+    start = "outside.margin: waves that the free surface sends back run along layers 10 m beside the disks, and about "
+    assert line.startswith(start)
+    assert line.endswith(" elements are enough")
+
+
+def test_elements_too_large_beside_a_load(case) -> None:
+    slow = {"wave.pulse.period": 20.0, "outside.element": 40.0}
+    near = {"load": [{"name": "f", "position": [20.5, 4.5], "force": [0.0, -1e6], "wave": "pulse"}]}
+
+    assert warnings_of(case, **slow) == []
+    (line,) = warnings_of(case, **slow, **near)
+    assert line.startswith(
+        "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
+    )
+
+
+def test_percent() -> None:
+    assert [in_percent(share) for share in (1e-3, 0.01234, 7.0)] == ["0.1 %", "1.2 %", "100 %"]
+
+
+def test_heights_of_lower_ground_are_said(case) -> None:
+    """Of lattices the continuum ends at the rows' own height: that of 8.2 m is 8 m."""
+    points = [[20.0, 21.0], [30.0, 8.2], [41.0, 8.2], [41.0, 21.0]]
+    cut = {"name": "cut", "type": "polygon", "points": points}
+    shaft = {"name": "shaft", "type": "rectangle", "corners": [-1.0, 13.0, 6.0, 21.0]}
+    facts = facts_of(case, hole=[cut, shaft])
+
+    assert (
+        facts["ground beyond"]
+        == "up to y = 13 m at the left, up to y = 8.2 m at the right (the continuum 0.200 m below that)"
+    )
+    assert "ground beyond" not in facts_of(case)

@@ -1,0 +1,146 @@
+"""What ParaView is given of a continuum equals the record, and has the colours of the disks."""
+
+import sys
+import types
+
+import h5py
+import numpy as np
+import pytest
+import pyvista
+
+from dembound.disks.kind import Disks
+from dembound.disks.reports.continuum_mesh import continuum_mesh
+from dembound.outside.mesh import Around, Mesh
+from dembound.results.vtk import write_vtu
+
+
+@pytest.fixture(scope="module")
+def exported(surrounded_run, tmp_path_factory):
+    return write_vtu(surrounded_run, tmp_path_factory.mktemp("vtu") / "paraview", Disks()).parent
+
+
+@pytest.mark.parametrize("number", ["0000", "0001"])
+def test_vtk_reads_one_quadrilateral_per_cell(surrounded_run, exported, number) -> None:
+    mesh = pyvista.read(exported / f"continuum_{number}.vtu")
+    with h5py.File(surrounded_run) as file:
+        columns = {name: values[:] for name, values in file["continuum"].items()}
+        fields = {name: values[:] for name, values in file[f"snapshots/{number}/continuum"].items()}
+    moved, velocity, stress = fields["displacement"], fields["velocity"], fields["stress"]
+    points = np.zeros((len(moved), 3))
+    points[:, :2] = columns["position"] + moved[:, :2]
+    linear, shift, tensor = np.zeros_like(points), np.zeros_like(points), np.zeros((len(points), 6))
+    linear[:, :2], shift[:, :2] = velocity[:, :2], moved[:, :2]
+    tensor[:, 0], tensor[:, 1], tensor[:, 3] = stress.T  # VTK's order: xx, yy, zz, xy, yz, xz
+    data = {
+        "linVelVec": linear,
+        "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
+        "displacement": shift,
+        "stress": tensor,
+        "absorbs": columns["absorbs"],
+        "peakVelocity": columns["peak_velocity"],
+    }
+    assert set(mesh.celltypes) == {pyvista.CellType.QUAD}
+    np.testing.assert_array_equal(mesh.cell_connectivity.reshape(-1, 4), columns["cell"])
+    np.testing.assert_array_equal(mesh.points, points)
+    assert mesh.point_data.keys() == list(data)
+    for name, values in data.items():
+        np.testing.assert_array_equal(mesh.point_data[name], values.astype(np.float32), err_msg=name)
+    # without the box of the disks; displaced by a thousandth of a metre at random
+    assert mesh.compute_cell_sizes().cell_data["Area"].sum() == pytest.approx(30.0 * 15.0 - 12.0 * 6.0, rel=1e-2)
+
+
+@pytest.mark.parametrize("columns", [1, 3])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_the_last_cells_of_a_periodic_continuum_reach_its_first_nodes(axis: int, columns: int) -> None:
+    """These are repeated a period on, with all that they have, so that no gap is left."""
+    along = (columns, 4) if axis == 0 else (4, columns)
+    layer = Around(bottom=2) if axis == 0 else Around(left=2)
+    mesh = Mesh.uniform(
+        order=3, element=(2.0, 1.5), cells=along, origin=(1.0, -2.0), layer=layer, periodic=(axis == 0, axis == 1)
+    )
+    data = {"position": mesh.positions, "cell": mesh.node_cells, "element": mesh.rectangles, "node": mesh.nodes}
+    data["absorbs"] = np.any(mesh.depth > 0.0, axis=1)
+    rng = np.random.default_rng(0)
+    moved = {name: rng.normal(size=(mesh.count, 3)) for name in ("displacement", "velocity", "stress")}
+    moved["displacement"] *= 1e-9
+    made = continuum_mesh(*({f"continuum/{name}": each for name, each in of.items()} for of in (data, moved)))
+
+    first = np.flatnonzero(mesh.positions[:, axis] < mesh.origin[axis] + 1e-9)
+    repeated = made.points[mesh.count :, :2]
+    shift = np.zeros(2)
+    shift[axis] = mesh.size[axis]
+    np.testing.assert_allclose(repeated, mesh.positions[first] + shift, rtol=0.0, atol=1e-8)
+    for name, values in made.point_data.items():
+        np.testing.assert_array_equal(values[mesh.count :], values[first], err_msg=name)
+    corners = made.points[made.cells_dict["quad"], :2]
+    across, up = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    areas = 0.5 * (across[:, 0] * up[:, 1] - across[:, 1] * up[:, 0])
+    assert areas.min() > 0.0
+    assert areas.sum() == pytest.approx(float(np.prod(mesh.size)), rel=1e-7)
+
+
+def test_disks_have_all_fields_of_the_continuum_but_one(exported) -> None:
+    """So that both can be coloured by one array."""
+    disks, around = (pyvista.read(exported / f"{name}_0001.vtu").point_data for name in ("particles", "continuum"))
+    assert set(around.keys()) - set(disks.keys()) == {"absorbs"}
+    for name in set(around.keys()) & set(disks.keys()):
+        assert around[name].shape[1:] == disks[name].shape[1:], name
+        assert around[name].dtype == disks[name].dtype, name
+
+
+def stand_in(source: str, table: types.SimpleNamespace) -> types.SimpleNamespace:
+    """Stands in for what ParaView shows of a source; its colours are those of one table."""
+    largest = {"particles": 2.0, "continuum": 5.0}[source]
+    made = types.SimpleNamespace(source=source, SetScalarBarVisibility=lambda *_: None)
+    made.SetRepresentationType = lambda kind: setattr(made, "kind", kind)
+    made.RescaleTransferFunctionToDataRangeOverTime = lambda: setattr(
+        table, "RGBPoints", [0.0, 0.1, 0.2, 0.3, largest, 0.7, 0.8, 0.9]
+    )
+    return made
+
+
+def run_script(folder, monkeypatch) -> tuple[list, list, types.SimpleNamespace]:
+    """What the script in a folder shows, what it colours it by, and the table of colours."""
+    shown, coloured = [], []
+    table = types.SimpleNamespace(RGBPoints=[])
+    table.RescaleTransferFunction = lambda *limits: setattr(table, "limits", limits)
+
+    def show(source: str, _: object) -> types.SimpleNamespace:
+        shown.append(stand_in(source, table))
+        return shown[-1]
+
+    names = {
+        "GetActiveSource": lambda: None,
+        "PVDReader": lambda FileName: FileName.rsplit("/", 1)[-1].removesuffix(".pvd"),
+        "GetActiveViewOrCreate": lambda _: types.SimpleNamespace(ResetCamera=lambda: None),
+        "GetAnimationScene": lambda: types.SimpleNamespace(UpdateAnimationUsingDataTimeSteps=lambda: None),
+        "Show": show,
+        "ColorBy": lambda each, by: coloured.append((each.source, by)),
+        "GetColorTransferFunction": lambda name: table if name == "linVelVec" else None,
+        "Render": lambda: None,
+    }
+    simple = types.ModuleType("paraview.simple")
+    vars(simple).update(names)
+    monkeypatch.setitem(sys.modules, "paraview", types.ModuleType("paraview"))
+    monkeypatch.setitem(sys.modules, "paraview.simple", simple)
+    path = folder / "view.py"
+    exec(compile(path.read_text(), path, "exec"), {"__file__": str(path)})  # as ParaView does
+    return shown, coloured, table
+
+
+def test_the_script_shows_both_in_one_scale(exported, monkeypatch) -> None:
+    shown, coloured, table = run_script(exported, monkeypatch)
+    assert [(each.source, each.kind) for each in shown] == [
+        ("particles", "Point Gaussian"),
+        ("continuum", "Surface"),
+    ]
+    assert coloured == [(name, ("POINTS", "linVelVec", "Magnitude")) for name in ("particles", "continuum")]
+    assert table.limits == (0.0, 5.0)
+
+
+def test_without_a_continuum_the_script_shows_disks_alone(small_run, tmp_path, monkeypatch) -> None:
+    write_vtu(small_run, tmp_path, Disks())
+    shown, coloured, table = run_script(tmp_path, monkeypatch)
+    assert [each.source for each in shown] == ["particles"]
+    assert len(coloured) == 1
+    assert table.limits == (0.0, 2.0)

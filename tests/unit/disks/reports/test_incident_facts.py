@@ -1,0 +1,80 @@
+"""A wave at an angle in words, in monitors and in snapshots."""
+
+import numpy as np
+import pytest
+from small_cases import SURROUNDED, small
+
+from dembound.disks.reports.incident_facts import incident_facts
+from dembound.disks.reports.warnings import disk_warnings
+from dembound.disks.scene import build
+
+BESIDE = {"name": "beside", "position": [-1.5, 3.5]}
+CASE = SURROUNDED | {
+    "incident": {"type": "sv", "angle": 30.0, "wave": "pulse"},
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05, "start": 0.01}},
+    "monitor": [*SURROUNDED["monitor"], BESIDE],
+}
+
+
+def test_facts_of_the_waves() -> None:
+    """s_x = sin 30°/c_s = 1/1414 s/m, |A| as in test_plane_waves.py; at the first disk, (0.5, 0.5) m, 0.97 ms later."""
+    facts = incident_facts(build(small(CASE)))
+
+    assert facts["incident wave"].startswith("SV, 30° from the vertical to the right, with the velocity of wave pulse")
+    assert "at (0, 0) m, at 1414.2 m/s along the surface; reaches the disks at 0.01097 s" in facts["incident wave"]
+    expected = "SV at 30° with 0.268 of the amplitude; P at 45° with 0.897 of the amplitude; critical from 45° on"
+    assert facts["reflected waves"] == expected
+    assert facts["less exact monitors"] == "near the corners where layers begin: (-3, -3), (15, -3) m"
+
+
+@pytest.mark.parametrize(
+    ("changes", "name", "words"),
+    [
+        ({"incident.angle": -20.0}, "incident wave", "20° from the vertical to the left, "),
+        ({"incident.angle": -20.0}, "incident wave", " at (12, 0) m, "),
+        ({"incident.angle": 0.0}, "incident wave", "SV, straight up, with the velocity of wave pulse at (0, 0) m; "),
+        ({"incident.angle": 0.0}, "reflected waves", "SV at 0° with 1 of the amplitude; critical from 45° on"),
+        ({"incident.type": "p"}, "reflected waves", "; no critical angle"),
+        ({"boundary.top": {"type": "outside"}}, "reflected waves", "none, as the ground has no surface"),
+        ({"boundary.top": {"type": "outside"}}, "incident wave", "at (0, 0) m, at 1414.2 m/s along x; reaches"),
+        ({"incident.point": [1.0, -2.0]}, "incident wave", "at (1, -2) m"),
+    ],
+)
+def test_other_waves_are_told(changes, name: str, words: str) -> None:
+    assert words in incident_facts(build(small(CASE, changes=changes)))[name]
+
+
+def test_monitors_have_the_motion_of_the_ground_where_the_continuum_rests() -> None:
+    scene = build(small(CASE))
+    waves, times = scene.ground_waves, np.array([0.02, 0.03, 0.035])
+    observed = scene.observed(np.zeros((3, len(scene.probes), 6)), times)
+    names = list(scene.monitors)
+    assert names == ["middle", "beside", "middle.free_field", "beside.free_field"]
+
+    place = scene.monitored["beside"][None]
+    corrector = np.moveaxis(scene.ground.continuum.corrector[:, [0]], 1, 2)
+    moved, moving = (waves.motion(of, times, place, corrector)[:, 0] for of in ("displacement", "velocity"))
+    assert np.abs(moving).max() > 0.01
+    for name in ("beside", "beside.free_field"):
+        np.testing.assert_allclose(observed[:, names.index(name)], np.hstack([moved, moving]), rtol=1e-12)
+    assert not observed[:, names.index("middle")].any()
+    assert np.abs(observed[:, names.index("middle.free_field"), 3]).max() > 0.01
+
+
+def test_snapshots_of_the_continuum_have_the_total_motion_and_the_scattered_one() -> None:
+    scene = build(small(CASE))
+    values = np.random.default_rng(1).normal(size=(scene.count, 3))
+    motion = scene.motion_beside(values, "velocity", 0.03)
+
+    assert np.array_equal(motion["scattered_"], values[scene.nodes_beside])
+    ground = motion[""] - motion["scattered_"]
+    expected = scene.ground_waves.motion("velocity", np.array([0.03]), scene.positions[scene.nodes_beside])[0]
+    np.testing.assert_allclose(ground, expected, atol=1e-12)
+    assert np.abs(ground).max() > 0.01
+    assert scene.beside["total"][0].all()
+
+
+def test_a_wave_that_does_not_arrive_has_a_warning() -> None:
+    for y, late in ((-50.0, True), (-1.0, False)):
+        scene = build(small(CASE, changes={"incident.point": [0.0, y], "run.duration": 0.05}))
+        assert any("reaches the disks at" in line for line in disk_warnings(scene, 1e-5)) == late

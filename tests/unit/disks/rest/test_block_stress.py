@@ -1,0 +1,117 @@
+"""Mean stress of blocks where it is known by hand, which blocks there are, and what is told of their differences."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.rest.block_stress import Blocks, Uniformity, block_stress
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.side_forces import packing_pieces
+from dembound.disks.stepping.system import DiskSystem
+from dembound.packings.cut import BEYOND
+
+K = 2500.0 * 1000.0**2
+"""Normal stiffness of a lattice contact and its bond, N/m."""
+
+BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
+WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
+RANDOM = {"pattern": "B", "size": [8.0, 8.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+
+
+@pytest.fixture
+def body(bar):
+    """Makes bodies of disks of 0.5 m."""
+
+    def make(width: float, height: float, **changes: object) -> DiskScene:
+        return build(bar({**BODY, "packing.size": [width, height], **changes}))
+
+    return make
+
+
+def strained(scene: DiskScene, xx: float, yy: float) -> np.ndarray:
+    """Displacements (3, n) of uniform strains."""
+    x, y = scene.positions.T
+    return np.stack([xx * x, yy * y, 0.0 * x])
+
+
+@pytest.mark.parametrize(
+    ("size", "boundary", "count", "side"),
+    [
+        # disks of 0.5 m: a rim of 2 m, blocks of 5 m at least
+        ((14.0, 19.0), {}, (2, 3), (5.0, 5.0)),
+        ((13.5, 18.5), {}, (1, 2), (9.5, 7.25)),
+        # narrow: half of the width
+        ((4.0, 14.0), {}, (1, 2), (2.0, 5.0)),
+        # periodic: no rim
+        ((10.0, 5.0), WRAP, (2, 1), (5.0, 5.0)),
+    ],
+)
+def test_blocks_of_ten_diameters_fill_what_is_inside_the_rim(body, size, boundary, count, side) -> None:
+    scene = body(*size, boundary=boundary)
+    blocks = Blocks.of(scene)
+    assert tuple(blocks.count) == count
+    np.testing.assert_allclose(blocks.size, side, rtol=1e-12)
+    np.testing.assert_allclose(blocks.middles.mean(axis=(0, 1)), 0.5 * np.array(size), rtol=1e-12)
+
+
+@pytest.mark.parametrize("boundary", [{}, WRAP], ids=["free", "periodic"])
+def test_a_strained_lattice_has_its_stress_in_every_block_wherever_it_ends(body, boundary) -> None:
+    scene = body(13.0, 17.5, boundary=boundary)  # blocks of no whole number of disks
+    displacement = strained(scene, 1e-6, -2e-6) if not boundary else np.zeros((3, scene.count))
+    if boundary:  # uniform strain of a periodic body is none; a shift changes nothing
+        displacement[0] = 1.0
+    stress = block_stress(scene, DiskSystem(scene, 1e-5), displacement)
+    expected = [0.0, 0.0, 0.0] if boundary else [K * 1e-6, K * -2e-6, 0.0]
+    # sums of some hundred contacts; displacements are rounded by 1e-16
+    np.testing.assert_allclose(stress, np.broadcast_to(expected, stress.shape), rtol=0.0, atol=1e-6 * K * 2e-6)
+
+
+@pytest.mark.parametrize("pattern", ["A", "B"])
+def test_the_packing_has_the_stress_on_the_whole(body, pattern: str) -> None:
+    scene = body(8.0, 8.0, boundary=WRAP, **({"packing": RANDOM} if pattern == "B" else {}))
+    asked = np.array([-3e6, 2e6, 1e6])
+    stress = Blocks.of(scene).stress(packing_pieces(scene, asked), scene.positions)
+    np.testing.assert_allclose(stress.mean(axis=(0, 1)), asked, rtol=0.0, atol=1e-9 * 3e6)
+
+
+def test_a_hole_counts_as_no_stress(body) -> None:
+    hole = {"name": "hole", "type": "rectangle", "corners": [4.0, 4.0, 6.0, 6.0]}
+    whole, with_hole = body(10.0, 10.0), body(10.0, 10.0, hole=[hole])
+    asked = np.array([-1e6, -1e6, 0.0])
+    found = [Blocks.of(each).stress(packing_pieces(each, asked), each.positions) for each in (whole, with_hole)]
+    np.testing.assert_allclose(found[0], np.broadcast_to(asked, (1, 1, 3)), rtol=0.0, atol=1e-9 * 1e6)
+    # 2 × 2 m of 6 × 6 m, less the contacts round it, of half a diameter at every side: 2.5 × 2 m for each direction
+    lost = 1.0 - found[1][0, 0, :2] / asked[:2]
+    np.testing.assert_allclose(lost, 2.5 * 2.0 / 36.0, rtol=1e-9)
+
+
+def test_blocks_move_and_grow_with_the_sides(body) -> None:
+    scene = body(14.0, 14.0)
+    moved = strained(scene, -0.01, 0.02) + np.array([[3.0], [-2.0], [0.0]])
+    as_built, now = Blocks.of(scene), Blocks.of(scene, moved)
+    for axis, strain in enumerate((-0.01, 0.02)):
+        shift = (3.0, -2.0)[axis]
+        low, high = (scene.positions[scene.edges[side].nodes, axis].mean() for side in BEYOND[axis])
+        # sides are where their disks are, a radius inside: strain over 14 m is that over 13.5 m
+        stretch = 1.0 + strain * (high - low) / 14.0
+        assert now.size[axis] == pytest.approx(as_built.size[axis] * stretch, rel=1e-12)
+        begin = as_built.low[axis] * stretch + shift + strain * low
+        assert now.low[axis] == pytest.approx(begin, rel=1e-12)
+
+
+def test_the_worst_block_is_told_with_its_place_and_holes_apart(body) -> None:
+    hole = {"name": "hole", "type": "circle", "centre": [4.0, 4.0], "radius": 1.0}
+    scene = body(24.0, 14.0, hole=[hole])
+    asked = np.array([-3.0, -5.0, 0.0]) * 1e6
+    displacement = strained(scene, -3e6 / K, -5e6 / K)
+    x, y = scene.positions.T
+    displacement[1] += np.where(x > 18.0, 1e-4 * (y - 7.0), 0.0)
+    found = Uniformity.of(scene, DiskSystem(scene, 1e-5), displacement, asked)
+    # a block is 5 m wide, and all of the last one is strained by 1e-4 more
+    np.testing.assert_allclose(found.place[0], 19.5)
+    assert found.deviation == pytest.approx(1e-4 * K / 5e6 * 4.0 / 5.0, rel=0.05)
+    assert found.beyond == pytest.approx(found.deviation, rel=1e-6)
+    assert found.packing < 1e-9
+    assert found.near_holes > 0.05
+    kept = Uniformity.recalled(found.memory())
+    assert kept.memory().keys() == found.memory().keys()
+    assert all(np.array_equal(kept.memory()[name], values) for name, values in found.memory().items())

@@ -1,0 +1,109 @@
+"""How loads are put on: where the elastic way ends, that nothing is out of balance there, and when all loads act."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from settling import FIXED, STANDING, scene
+
+from dembound.disks.rest.loading import LEAST, LOOK, Loading
+from dembound.disks.rest.stage import settle
+from dembound.disks.rest.static_scene import StaticScene
+from dembound.disks.stepping.system import DiskSystem
+from dembound.motion.simulation import Simulation
+
+SHEAR = 0.4e6
+STRESS = {"ratio": 1e-8, "stress": [-1e6, -1e6, SHEAR]}
+LAW = {"material.law": "linearpbond", "material.fric": 2.0, "packing.size": [8.0, 8.0]}
+K = 2500.0 * 1000.0**2
+
+
+def sheared(bar, **changes: object) -> SimpleNamespace:
+    """A lattice at its start, with the displacements (3, n) at which it is at rest under the elastic law."""
+    whole = scene(bar, static=STRESS, **{**LAW, **changes})
+    body = StaticScene(whole, whole.case.static)
+    none = np.zeros((3, whole.count))
+    system = DiskSystem(body.scene, 1e-5, settling=True, load=body.load(none))
+    state = Simulation(body.scene, 1e-5, system=system).state
+    x, y = whole.positions.T
+    # k = K for normals and shears, and two shears a half each without rotation of disks
+    rest = np.stack([-1e6 / K * x + SHEAR / K * y, -1e6 / K * y + SHEAR / K * x, 0.0 * x])
+    return SimpleNamespace(body=body, system=system, state=state, rest=rest, loading=Loading(body, system, none, 1e-4))
+
+
+def out_of_balance(found: SimpleNamespace) -> np.ndarray:
+    """Forces (3, n) of contacts and loads at the present displacements."""
+    for pairs in found.system.contacts.values():
+        pairs.push(found.state.displacement)
+    return found.system.last_forces(found.system.contacts) + found.system.load
+
+
+def test_within_all_limits_the_elastic_state_is_the_answer(bar) -> None:
+    found = sheared(bar)
+    found.state.displacement = found.rest
+    assert found.loading.is_the_answer(found.state)
+    assert not found.system.uses_history
+    np.testing.assert_array_equal(found.state.displacement, found.rest)
+
+
+@pytest.mark.parametrize("share", [0.25, 0.6])
+def test_the_elastic_way_ends_where_the_first_bond_is_at_its_strength(bar, share: float) -> None:
+    """Bonds have half of the shear stress, as contacts are as stiff; nothing is out of balance where it ends."""
+    found = sheared(bar, **{"material.pb_coh": share * 0.5 * SHEAR, "material.geometry": "reference"})
+    found.state.displacement = found.rest
+    assert not found.loading.is_the_answer(found.state)
+    assert found.system.uses_history
+    reached = np.abs(found.state.displacement).max() / np.abs(found.rest).max()
+    assert share - 2.0**-11 < reached <= share
+    assert len(found.system.contacts["body"].take_cracks()) == 0
+
+    found.loading.put_on(found.state)
+    assert np.abs(out_of_balance(found)).max() < 1e-9 * 1e6
+    ends = LOOK * int(np.ceil((1.0 - reached) * LEAST))
+    assert [found.loading.is_rising(step) for step in (0, ends - 1, ends)] == [True, True, False]
+    # half-way there is half of what remains, at the end all
+    left = []
+    for found.state.step in (0, ends // 2, ends):
+        found.loading.put_on(found.state)
+        left.append(np.abs(found.system.load - found.body.load(found.state.displacement)).max())
+    assert left[1] == pytest.approx(0.5 * left[0], rel=LOOK / ends)
+    assert left[2] == 0.0
+    assert left[0] == pytest.approx((1.0 - reached) * 0.5 * 1e6, rel=0.5)  # of a disk at a side, with its shear
+
+
+def test_what_is_still_to_be_put_on_is_remembered(bar) -> None:
+    one, other = (sheared(bar, **{"material.pb_coh": 0.25 * SHEAR}) for _ in range(2))
+    one.state.displacement = one.rest
+    assert not one.loading.is_the_answer(one.state)
+    other.loading.recall(one.loading.memory())
+    other.system.switch(other.state)
+    for each in (one, other):
+        each.state.displacement = 0.5 * one.rest
+        each.state.step = 300
+        each.loading.put_on(each.state)
+    np.testing.assert_array_equal(one.system.load, other.system.load)
+
+
+def test_a_body_that_the_elastic_law_does_not_hold_goes_on_from_its_start(bar) -> None:
+    found = sheared(bar)
+    found.state.displacement = found.rest
+    assert found.loading.give_up_elastic_law(found.state)
+    assert not found.state.displacement.any()
+    found.loading.put_on(found.state)
+    assert np.abs(found.system.load).max() < 1e-9 * 1e6
+    assert not found.loading.give_up_elastic_law(found.state)
+
+
+def test_without_an_elastic_start_the_own_law_takes_over_at_rest(bar) -> None:
+    """Nothing has to be put on slowly then: both settle to the same place, after about as many steps."""
+    law = {
+        "material.law": "linearpbond",
+        "material.fric": 0.5,
+        "static": {"boundary": {"bottom": FIXED}, "ratio": 1e-8},
+    }
+    found = [settle(scene(bar, **STANDING, **law, **{"material.elastic_start": start})) for start in (True, False)]
+    assert [each.start.has_history for each in found] == [False, True]
+    assert found[1].steps < found[0].steps + LEAST * LOOK
+    scale = np.abs(found[0].start.displacement).max()
+    # normals move by strains of 1e-5
+    np.testing.assert_allclose(*(each.start.displacement for each in found), rtol=0.0, atol=1e-4 * scale)

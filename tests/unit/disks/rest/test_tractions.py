@@ -1,0 +1,154 @@
+"""Forces of a given stress on the sides of a body: that it is at rest under them, and that they turn no body."""
+
+import numpy as np
+import pytest
+
+from dembound.boundaries import OPPOSITE
+from dembound.disks.rest.tractions import Tractions
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.side_forces import side_forces
+
+BODY = {"wave": {}, "monitor": [], "motion.held": [], "boundary": {}}
+FOLLOWING = {"material.law": "linearpbond"}
+STILL = {"elastic": {}, "reference": {"material.law": "linearpbond", "material.geometry": "reference"}}
+RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+STRESS = (-3e6, 2e6, 1e6)
+OUTWARD = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "bottom": (0.0, -1.0), "top": (0.0, 1.0)}
+
+
+@pytest.fixture
+def lattice(bar):
+    """Makes lattices of disks of 0.5 m that nothing holds."""
+
+    def make(width: float, height: float, **changes: object) -> DiskScene:
+        return build(bar({**BODY, "packing.size": [width, height], **changes}))
+
+    return make
+
+
+@pytest.fixture
+def random_body(bar):
+    """Makes two random bricks side by side, whose sides are uneven."""
+
+    def make(**changes: object) -> DiskScene:
+        return build(bar({**BODY, "packing": RANDOM, **changes}))
+
+    return make
+
+
+def turn(angle: float) -> np.ndarray:
+    """Rotation matrix (2, 2)."""
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def moved(scene: DiskScene, seed: int = 1, size: float = 0.1) -> np.ndarray:
+    """Random displacements (3, n)."""
+    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, scene.count))
+
+
+def turned(scene: DiskScene, angle: float) -> np.ndarray:
+    """Displacements (3, n) of a turn about the origin."""
+    return np.vstack([(turn(angle) - np.eye(2)) @ scene.positions.T, np.full(scene.count, angle)])
+
+
+def torque(scene: DiskScene, force: np.ndarray, displacement: np.ndarray) -> float:
+    """Of all forces about a point outside the body."""
+    x, y = scene.positions.T + displacement[:2] + [[7.0], [-5.0]]
+    return float(np.sum(x * force[1] - y * force[0]) + np.sum(force[2]))
+
+
+def fitted(places: np.ndarray, moved: np.ndarray) -> float:
+    """Rotation that is nearest to the motion of some places (2, m), by a polar decomposition."""
+    a, r = (x - x.mean(axis=1, keepdims=True) for x in (places, places + moved))
+    left, _, right = np.linalg.svd(r @ a.T)
+    rotation = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
+    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+
+
+@pytest.mark.parametrize(("size", "stress"), [((8.0, 4.0), (-3e6, 2e6, 0.0)), ((8.0, 4.0), STRESS)])
+def test_each_disk_of_a_lattice_has_the_traction_of_its_diameter_at_its_edge(
+    lattice, size: tuple, stress: tuple
+) -> None:
+    scene = lattice(*size)
+    force = Tractions(scene, stress).forces(np.zeros((3, scene.count)))
+    tensor = np.array([[stress[0], stress[2]], [stress[2], stress[1]]])
+
+    # contacts act a radius away from the centres: the shear forces have moments; rounding is 1e-15 of each sum
+    expected = np.zeros((3, scene.count))
+    for side, edge in scene.edges.items():
+        nx, ny = OUTWARD[side]
+        fx, fy = tensor @ OUTWARD[side] * 0.5
+        expected[:, edge.nodes] += np.array([fx, fy, 0.25 * (nx * fy - ny * fx)])[:, None]
+    np.testing.assert_allclose(force, expected, rtol=0.0, atol=1e-13 * 3e6)
+
+
+@pytest.mark.parametrize("follows", [False, True])
+def test_sides_turn_with_their_opposites_and_grow_with_their_length(random_body, follows: bool) -> None:
+    scene = random_body(**FOLLOWING)
+    displacement = moved(scene) * follows
+    tractions = Tractions(scene, STRESS)
+    force, still = tractions.forces(displacement), np.zeros((3, scene.count))
+    own = {side: fitted(edge.positions.T, displacement[:2, edge.nodes]) for side, edge in scene.edges.items()}
+    where = scene.positions.T + displacement[:2]
+    middle = {side: where[:, edge.nodes].mean(axis=1) for side, edge in scene.edges.items()}
+    before = {side: edge.positions.mean(axis=0) for side, edge in scene.edges.items()}
+    plain = np.zeros((3, scene.count))
+    for side, (nodes, pull) in scene_forces(scene).items():
+        low, high = ("bottom", "top") if side in ("left", "right") else ("left", "right")
+        longer = np.hypot(*(middle[high] - middle[low])) / np.hypot(*(before[high] - before[low]))
+        plain[:2, nodes] += longer * turn(0.5 * (own[side] + own[OPPOSITE[side]])) @ pull
+        plain[2, nodes] += longer * moments(scene)[side]
+    loaded = tractions.nodes
+    left = plain[:2].sum(axis=1)
+    plain[:2, loaded] -= left[:, None] / len(loaded)
+    arm = where[:, loaded] - where[:, loaded].mean(axis=1, keepdims=True)
+    unbalanced = np.sum(arm[0] * plain[1, loaded] - arm[1] * plain[0, loaded]) + plain[2].sum()
+    plain[:2, loaded] -= unbalanced / np.sum(arm**2) * np.array([-arm[1], arm[0]])
+
+    # angles and sums of some fifty terms
+    np.testing.assert_allclose(force, plain, rtol=0.0, atol=1e-13 * 8.0 * 3e6)
+    assert (abs(unbalanced) > 1e-3 * 3e6) == follows  # forces of a packing at rest turn nothing
+    assert not np.array_equal(force, tractions.forces(still)) or not follows
+
+
+def scene_forces(scene: DiskScene) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Nodes and forces (2, k) of the sides under STRESS as built."""
+    return {side: (each.node, each.under(np.array(STRESS))[:2]) for side, each in side_forces(scene).items()}
+
+
+def moments(scene: DiskScene) -> dict[str, np.ndarray]:
+    """Moments (k,) of the sides under STRESS."""
+    return {side: each.under(np.array(STRESS))[2] for side, each in side_forces(scene).items()}
+
+
+@pytest.mark.parametrize("changes", [FOLLOWING, *STILL.values()], ids=["updated", *STILL])
+def test_tractions_neither_move_nor_turn_a_body(random_body, changes: dict) -> None:
+    scene = random_body(**changes)
+    tractions = Tractions(scene, STRESS)
+    for displacement in (np.zeros((3, scene.count)), moved(scene), turned(scene, 0.7) + moved(scene, 2)):
+        force = tractions.forces(displacement)
+        where = displacement if changes is FOLLOWING else np.zeros_like(displacement)
+        scale = np.abs(force).sum()
+        # sums of some fifty terms, of arms of 20 m
+        assert abs(torque(scene, force, where)) < 20.0 * 1e-14 * scale
+        assert np.abs(force[:2].sum(axis=1)).max() < 1e-14 * scale
+
+
+@pytest.mark.parametrize("angle", [0.02, -2.0])
+def test_tractions_turn_with_a_body_whose_law_follows_the_motion(random_body, angle: float) -> None:
+    scene = random_body(**FOLLOWING)
+    tractions = Tractions(scene, STRESS)
+    before, after = tractions.forces(np.zeros((3, scene.count))), tractions.forces(turned(scene, angle))
+
+    # angles as of sums over twenty disks
+    np.testing.assert_allclose(after[:2], turn(angle) @ before[:2], rtol=0.0, atol=1e-13 * 8.0 * 3e6)
+
+
+@pytest.mark.parametrize("changes", STILL.values(), ids=STILL)
+def test_tractions_stay_where_the_law_stays(random_body, changes: dict) -> None:
+    scene = random_body(**changes)
+    tractions = Tractions(scene, STRESS)
+    before = tractions.forces(np.zeros((3, scene.count)))
+
+    assert np.array_equal(tractions.forces(turned(scene, 0.3)), before)
+    assert np.array_equal(tractions.forces(moved(scene)), before)

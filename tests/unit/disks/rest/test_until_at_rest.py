@@ -1,0 +1,182 @@
+"""What a static stage says that cannot come to rest, and what its force ratio is made of."""
+
+import numpy as np
+import pytest
+from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
+
+from dembound.disks.rest.loading import LOOK
+from dembound.disks.rest.stage import settle
+from dembound.disks.rest.until_at_rest import PATIENCE
+from dembound.errors import RunError
+from dembound.motion.kind import StalledError
+
+
+def test_a_stage_of_too_few_steps_says_how_far_it_came(bar) -> None:
+    static = {"ratio": 1e-8, "max_steps": 100, "boundary": {"bottom": FIXED}}
+    looks: list[float] = []
+    with pytest.raises(
+        RunError, match=r"in 100 steps, static\.ratio asks for 1e-08; (?s:.*)static\.max_steps"
+    ) as caught:
+        settle(scene(bar, **{**STANDING, "static": static}), lambda _, ratio: looks.append(ratio))
+
+    assert f"came to a force ratio of {looks[-1]:.3g} in" in str(caught.value)
+    assert len(looks) == 1
+
+
+def test_a_body_that_slides_without_end_stalls(bar) -> None:
+    # two rows of loose disks of which the upper, held at its height, has nothing to stop it
+    loose = {"material.law": "linearpbond", "material.contact_share": 1.0, "material.fric": 0.1}
+    push = {"name": "push", "acceleration": [G, 0.0]}
+    changes = {"packing.size": [1.0, 1.0], "motion.held": ["y", "rotation"], "boundary": WRAP, "load": [push]}
+    looks: list[float] = []
+    with pytest.raises(RunError, match=r"stalls at a force ratio of (?s:.*)is the body held") as caught:
+        settle(scene(bar, **{**changes, **loose}), lambda _, ratio: looks.append(ratio))
+
+    assert f"a force ratio of {looks[-1]:.3g} after {len(looks) * LOOK:,} steps" in str(caught.value)
+    assert PATIENCE <= len(looks) * LOOK < 2 * PATIENCE
+    assert "; broken bonds: 0\nunbalanced force on particle " in str(caught.value)
+
+
+def test_what_fails_says_what_broke_and_where_most_is_lacking(bar) -> None:
+    # a disk that hangs from another by a bond of half the strength it needs
+    hanging = {"packing.size": [0.5, 1.0], "motion.held": ["x", "rotation"], "material.law": "linearpbond"}
+    static = {"max_steps": 4000, "boundary": {"top": FIXED}}
+    with pytest.raises(RunError, match=r"broken bonds: 1\nunbalanced force on particle \d at \(0\.25, ") as caught:
+        settle(scene(bar, **WEIGHT, **hanging, static=static, **{"material.pb_ten": 0.5 * MASS * G / 0.5}))
+    # it falls
+    assert f" m: (0, {-MASS * G:.3g}) N\n" in str(caught.value)
+    assert "\n1 of 2 particles have half of all unbalanced force, between" in str(caught.value)
+    assert caught.value.unbalanced.shape == (2, 2)
+    assert caught.value.unbalanced[:, 1].min() == pytest.approx(-MASS * G)
+
+
+LOOSE = {
+    "packing.size": [2.0, 2.5],
+    "material.law": "linearpbond",
+    "material.contact_share": 1.0,
+    "material.fric": 0.5,
+    "material.elastic_start": False,
+}
+"""Four disks by five, which only touch."""
+
+LOADED = 60 * LOOK
+"""Steps after which such a body has left the elastic law and has all its loads."""
+
+PULLS = {(1.75, 0.75): 3.0, (1.75, 1.25): 2.5, (1.75, 1.75): 4.0, (1.75, 2.25): 2.0, (0.25, 1.25): -2.5}
+"""Forces (N) along x on some of them, which part from the rest; half of all is that of the largest two."""
+
+
+def test_a_stalled_stage_names_who_lacks_most_and_how_many_lack_half(bar) -> None:
+    loads = [
+        {"name": f"pull{number}", "force": [force, 0.0], "position": list(place)}
+        for number, (place, force) in enumerate(PULLS.items())
+    ]
+    static = {"ratio": 1e-8, "max_steps": LOADED, "boundary": {"bottom": FIXED}}
+    body = scene(bar, load=loads, static=static, **LOOSE)
+    with pytest.raises(StalledError) as caught:
+        settle(body)
+    node = {place: int(np.argmin(np.hypot(*(body.positions - place).T))) for place in PULLS}
+
+    unbalanced = np.zeros((body.count, 2))
+    for place, force in PULLS.items():
+        unbalanced[node[place], 0] = force
+    assert np.array_equal(caught.value.unbalanced, unbalanced)
+    assert caught.value.run.state.step == LOADED
+    assert caught.value.run.state.displacement[0, node[1.75, 1.75]] > 0.0
+    # of two that are equally bad the first is named; they have moved by far less than a centimetre
+    first, second = sorted((node[1.75, 1.25], node[0.25, 1.25]))
+    third = f"particle {first} at ({body.positions[first, 0]:.2f}, 1.25) m: ({unbalanced[first, 0]:.3g}, 0) N"
+    told = str(caught.value).splitlines()
+    assert told[0].endswith("; broken bonds: 0")
+    assert told[1:] == [
+        f"unbalanced force on particle {node[1.75, 1.75]} at (1.75, 1.75) m: (4, 0) N",
+        f"unbalanced force on particle {node[1.75, 0.75]} at (1.75, 0.75) m: (3, 0) N",
+        f"unbalanced force on {third}",
+        "2 of 20 particles have half of all unbalanced force, between (1.75, 0.75) and (1.75, 1.75) m",
+        "allow more with static.max_steps",
+    ]
+    assert f"particle {second} at" not in str(caught.value)
+
+
+def test_held_particles_lack_nothing(bar) -> None:
+    # what pulls at a fixed disk is carried; a roller carries what is across it
+    loads = [
+        {"name": "carried", "force": [7.0, 8.0], "position": [0.25, 0.25]},
+        {"name": "felt", "force": [5.0, 6.0], "position": [1.75, 2.25]},
+    ]
+    static = {"ratio": 1e-8, "max_steps": LOADED, "boundary": {"bottom": FIXED, "right": {"type": "roller"}}}
+    body = scene(bar, load=loads, static=static, **LOOSE)
+    with pytest.raises(StalledError, match="\n1 of 20 particles have half of all") as caught:
+        settle(body)
+
+    assert sorted(map(tuple, caught.value.unbalanced.tolist())) == [(0.0, 0.0)] * 19 + [(0.0, 6.0)]
+
+
+def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to(bar) -> None:
+    static = {"ratio": 1e-8, "max_steps": LOOK, "boundary": {"bottom": FIXED}}
+    tough = {"material.law": "linearpbond", "material.elastic_start": False, "material.fric": 0.5}
+    body = scene(bar, **{**STANDING, **tough, "static": static})
+    with pytest.raises(StalledError) as caught:
+        settle(body)
+    contacts, total = caught.value.run.system.contacts["body"], body.steady_load.copy()
+    for i, j, (fx, fy, *_) in zip(*contacts.pairs, contacts.force, strict=True):
+        total[:2, i] += [fx, fy]
+        total[:2, j] -= [fx, fy]
+    total[:, body.edges["bottom"].nodes] = 0.0
+
+    # a few forces of the weight of eight
+    np.testing.assert_allclose(caught.value.unbalanced, total[:2].T, rtol=0.0, atol=1e-14 * 8.0 * MASS * G)
+    assert np.abs(total).max() > 1e-3 * MASS * G
+
+
+def test_the_force_ratio_is_over_the_pairs_that_act(bar) -> None:
+    ratios: list[float] = []
+    static = {"ratio": 1e-8, "max_steps": LOOK, "boundary": {"bottom": FIXED}}
+    tough = {"material.law": "linearpbond", "material.elastic_start": False, "material.fric": 0.5}
+    body = scene(bar, **{**STANDING, **tough, "static": static})
+    with pytest.raises(StalledError) as caught:
+        settle(body, lambda _, ratio: ratios.append(ratio))
+    lacking = np.hypot(*caught.value.unbalanced.T)
+    pair = np.hypot(*caught.value.run.system.contacts["body"].force[:, :2].T)
+
+    # pairs of the list that do not push say nothing of how strong forces are; those that are held lack nothing
+    assert 0 < np.count_nonzero(pair == 0.0) < len(pair)
+    assert np.count_nonzero(lacking) == body.count - len(body.edges["bottom"].nodes)
+    assert ratios[-1] == pytest.approx(lacking.mean() / pair[pair > 0.0].mean(), rel=1e-12)
+
+
+def test_what_dashpots_alone_hold_lacks_its_force(bar) -> None:
+    # as `LOOSE` between free-field sides: a disk of the right one is pulled off, which only its dashpots slow
+    static = {"ratio": 1e-8, "max_steps": LOADED, "boundary": {"bottom": FIXED}}
+    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
+    pull = {"name": "pull", "force": [4.0, 0.0], "position": [1.75, 1.75]}
+    body = scene(bar, load=[pull], static=static, boundary=boundary, **LOOSE)
+    node = int(np.flatnonzero(body.steady_load[0])[0])
+    assert node in body.edges["right"].nodes
+    with pytest.raises(StalledError) as caught:
+        settle(body)
+
+    unbalanced = np.zeros((body.count, 2))
+    unbalanced[node] = [4.0, 0.0]
+    assert np.array_equal(caught.value.unbalanced, unbalanced)
+
+
+def test_a_floating_body_is_kept_from_moving_and_turning_as_a_whole(bar) -> None:
+    uneven = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+    static = {"ratio": 1e-8, "max_steps": LOOK // 2, "stress": [-3e6, 2e6, 1e6]}
+    body = scene(bar, packing=uneven, static=static)
+    with pytest.raises(StalledError) as caught:  # right after a look
+        settle(body)
+    state = caught.value.run.state
+    x, y = body.positions.T + state.displacement[:2]
+    vx, vy, spin = state.velocity
+    momenta = np.stack([
+        np.stack([body.mass * vx, np.zeros(body.count)]),
+        np.stack([body.mass * vy, np.zeros(body.count)]),
+        np.stack([body.mass * ((x - x.mean()) * vy - (y - y.mean()) * vx), body.inertia * spin]),
+    ])  # fmt: skip
+
+    # local damping takes from each disk alone, so that without a cure something would be left; some 150 disks' parts,
+    # each rounded by 1e-16, cancel
+    assert np.abs(momenta[2, 1].sum()) > 1e-3 * np.abs(momenta[2, 1]).sum()
+    assert (np.abs(momenta.sum(axis=(1, 2))) < 1e-13 * np.abs(momenta).sum(axis=(1, 2))).all()

@@ -1,0 +1,394 @@
+"""The forces that balance a settled body: on which sides they turn, how they end on debris, and their work."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dembound.boundaries import OPPOSITE
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stepping.balance import Balance, mean_rotations
+from dembound.disks.stepping.part import DiskPart
+from dembound.disks.stepping.system import DiskSystem
+from dembound.kernels.contacts import TENSION
+from dembound.kernels.follower import extra_work, side_rotations, turn_forces
+
+BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": [], "material.law": "linearpbond"}
+LATTICE = {"pattern": "A", "size": [2.5, 2.0], "radius": 0.25}
+RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+FREE_FIELD = {"type": "free_field"}
+STEP = 0.1
+
+
+@pytest.fixture
+def scene(bar, in_order):
+    """Makes five disks by four that nothing holds, or other packings under other boundaries."""
+
+    def make(packing: dict = LATTICE, ground: dict | None = None, **boundary: dict) -> DiskScene:
+        return in_order(build(bar({**BODY, "packing": packing, "boundary": boundary, **(ground or {})})))
+
+    return make
+
+
+def shaken(body: DiskScene, seed: int, size: float = 1.0) -> np.ndarray:
+    """Random numbers (3, n), of motions or forces."""
+    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, body.count))
+
+
+def balance_of(body: DiskScene, across: np.ndarray | None = None) -> tuple[Balance, np.ndarray]:
+    """Random forces, which also act on other particles than those of the sides, and the other steady forces."""
+    steady = shaken(body, 2)
+    across = np.zeros((3, body.count)) if across is None else across
+    return Balance(body, shaken(body, 1), steady, shaken(body, 3, 0.1), across), steady
+
+
+def at(body: DiskScene, x: float, y: float) -> int:
+    """The particle there."""
+    found = np.flatnonzero(np.isclose(body.positions, [x, y]).all(axis=1))
+    assert len(found) == 1
+    return int(found[0])
+
+
+def fitted(places: np.ndarray, moved: np.ndarray) -> float:
+    """Rotation that is nearest to the motion of some places (2, m), by a polar decomposition."""
+    a, r = (x - x.mean(axis=1, keepdims=True) for x in (places, places + moved))
+    left, _, right = np.linalg.svd(r @ a.T)
+    rotation = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
+    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+
+
+def test_work_is_that_of_constant_forces_since_the_datum(scene) -> None:
+    body = scene()
+    force, datum, moved = shaken(body, 1), shaken(body, 3), shaken(body, 4)
+    balance = Balance(body, force, shaken(body, 2), datum, np.zeros_like(force))
+
+    # sixty terms of size 1
+    assert balance.work(moved) == pytest.approx(np.sum(force * (moved - datum)), rel=0.0, abs=1e-13)
+    assert balance.work(datum) == 0.0
+
+
+def test_forces_belong_to_their_sides_those_of_corners_half_to_each(scene) -> None:
+    body = scene()
+    across = shaken(body, 5)
+    force, steady = shaken(body, 1), shaken(body, 2)
+    table = Balance(body, force, steady, shaken(body, 3, 0.1), across).followers
+    sides = list(body.edges)
+    on_side = np.array([np.isin(table.node, edge.nodes) for edge in body.edges.values()])
+
+    assert np.array_equal(table.node, np.unique(np.concatenate([edge.nodes for edge in body.edges.values()])))
+    assert [sides[k] for k in table.opposite] == ["right", "left", "top", "bottom"]
+    assert np.count_nonzero(on_side.sum(axis=0) == 2) == 4
+    for q, node in enumerate(table.node):
+        numbers = np.flatnonzero(on_side[:, q])
+        assert table.side[: len(numbers), q].tolist() == numbers.tolist()
+        assert table.side[len(numbers) :, q].tolist() == [-1] * (2 - len(numbers))
+        for s in range(2):
+            expected = (force + across)[:2, node] / len(numbers) * (s < len(numbers))
+            assert np.array_equal(table.force[s, :, q], expected)
+        assert np.array_equal(table.steady[:, q], (steady + force)[:2, node])
+    assert not table.extra.any()
+
+
+def test_members_of_a_side_stand_where_they_do_at_the_datum(scene) -> None:
+    body = scene()
+    balance, _ = balance_of(body)
+    table = balance.followers
+    datum = shaken(body, 3, 0.1)
+    places = body.positions.T + datum[:2]
+    for k, edge in enumerate(body.edges.values()):
+        members = slice(table.start[k], table.start[k + 1])
+        assert np.array_equal(table.member[members], edge.nodes)
+        here = places[:, edge.nodes]
+        # means of some five numbers of size 1
+        np.testing.assert_allclose(table.arm[:, members], here - here.mean(axis=1)[:, None], rtol=0.0, atol=1e-15)
+    assert np.array_equal(table.rest, datum[:2, table.member])
+    assert (table.twin == -1).all()
+
+
+def test_sides_turn_by_their_mean_with_the_opposite_one(scene) -> None:
+    body = scene()
+    moved = shaken(body, 4, 0.2)
+    own = {side: fitted(edge.positions.T, moved[:2, edge.nodes]) for side, edge in body.edges.items()}
+    expected = {side: 0.5 * (own[side] + own[other]) for side, other in OPPOSITE.items()}
+    found = mean_rotations(body, moved)
+
+    assert list(found) == list(body.edges)
+    # some ten sums of numbers of size 1
+    assert found == pytest.approx(expected, rel=0.0, abs=1e-14)
+    assert abs(own["left"] - own["right"]) > 0.02
+    assert abs(found["left"] - found["top"]) > 0.05
+
+
+def test_a_side_without_an_opposite_one_turns_by_itself(scene) -> None:
+    body = scene(RANDOM, left=FREE_FIELD)
+    wrapped = scene({**LATTICE, "size": [0.5, 2.0]})
+    assert set(mean_rotations(body, np.zeros((3, body.count)))) == set(body.edges)
+    # one disk alone has no rotation of its own: bottom and top of a column of four
+    angle, moved = 0.3, np.zeros((3, 4))
+    x, y = wrapped.positions.T
+    moved[:2] = [np.cos(angle) * x - np.sin(angle) * y - x, np.sin(angle) * x + np.cos(angle) * y - y]
+    assert mean_rotations(wrapped, moved) == pytest.approx({"left": angle, "right": angle}, rel=0.0, abs=1e-14)
+
+
+@pytest.mark.parametrize("sides", [("left", "right"), ("right",)])
+def test_beside_a_free_field_forces_turn_with_the_body_relative_to_its_column(scene, sides: tuple[str, ...]) -> None:
+    body = scene(RANDOM, **{side: FREE_FIELD for side in sides})
+    count = body.seam.count
+    # a disk of the right side, which has contacts beyond it, counts as no disk of that side
+    right = body.edges["right"]
+    hidden = np.setdiff1d(body.seam.node, [*body.edges["bottom"].nodes, *body.edges["top"].nodes])[-1]
+    assert hidden in right.nodes
+    body = replace(body, edges={**body.edges, "right": replace(right, nodes=np.setdiff1d(right.nodes, hidden))})
+    balance, _ = balance_of(body)
+    table = balance.followers
+
+    # of bottom and top those of the body alone; of the others also what has contacts beyond
+    assert table.node.min() >= count
+    assert table.member.min() >= count
+    assert np.array_equal(table.twin, body.seam.twin[table.member])
+    pushed = {side: edge.nodes[edge.nodes >= count] for side, edge in body.edges.items()}
+    beyond = body.positions[body.seam.node, 0] > 4.0
+    if "left" in sides:
+        pushed["left"] = np.union1d(pushed["left"], body.seam.node[~beyond])
+    assert np.all(beyond) == ("left" not in sides)
+    pushed["right"] = np.union1d(pushed["right"], body.seam.node[beyond])
+    assert hidden in pushed["right"]
+    assert hidden not in table.member
+    for k, nodes in enumerate(pushed.values()):
+        assert np.array_equal(table.node[(table.side == k).any(axis=0)], nodes)
+
+    # bricks that all move alike do not turn
+    together = shaken(body, 4)[:, body.seam.twin]
+    assert mean_rotations(body, together) == pytest.approx(dict.fromkeys(body.edges, 0.0), abs=1e-15)
+    turned = together + [[0.0], [0.0], [1.0]] * (np.arange(body.count) >= count)
+    turned[1] += 1e-3 * body.positions[:, 0] * (np.arange(body.count) >= count)
+    assert mean_rotations(body, turned)["top"] > 0.5e-3
+
+
+def resultants(body: DiskScene, force: np.ndarray) -> np.ndarray:
+    """Force along x and y and torque about the origin of forces and moments (3, n) at the datum."""
+    x, y = body.positions.T + shaken(body, 3, 0.1)[:2]
+    return np.array([force[0].sum(), force[1].sum(), np.sum(x * force[1] - y * force[0]) + force[2].sum()])
+
+
+def parts_of(body: DiskScene) -> tuple[DiskPart, ...]:
+    """Its parts as built."""
+    return DiskSystem(body, STEP).parts
+
+
+def isolate(parts: tuple[DiskPart, ...], particles: list[int]) -> None:
+    """Break all bonds of some particles, and none other."""
+    for part in parts:
+        pairs = part.pairs
+        broken = np.isin(pairs.first, particles) | np.isin(pairs.second, particles)
+        pairs.state[broken], pairs.cracked[broken] = TENSION, 1
+
+
+def test_on_a_box_in_the_ground_forces_turn_at_all_four_sides(scene) -> None:
+    """Where the column does not end at the level of the box: its lower and upper side have the disks with ties there.
+
+    A rigid rotation of the box relative to its column turns all forces by its angle, so that a pressure from all sides,
+    through the ground or as a load, has no torque on it.
+    """
+    sides = {side: {"type": "outside"} for side in OPPOSITE}
+    sides["bottom"] |= {"wave_s": "pulse"}
+    pulse = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
+    ground = {"ground": {"size": [6.5, 8.0]}, "outside": {"element": 2.0}, "wave": {"pulse": pulse}}
+    body = scene(LATTICE | {"origin": [2.0, 2.0]}, ground, **sides)
+    box, positions = np.arange(body.seam.count, body.disk_count), body.positions.T[:2]
+    arm = positions - positions[:, box].mean(axis=1, keepdims=True)
+    across, still = np.zeros((3, body.count)), np.zeros((3, body.count))
+    for axis in (0, 1):  # a pressure
+        low, high = positions[axis, box].min(), positions[axis, box].max()
+        across[axis, box] = np.isclose(positions[axis, box], low) * 1.0 - np.isclose(positions[axis, box], high)
+    angle = 1e-3
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    moved = still.copy()
+    moved[:2, box] = (turn - np.eye(2)) @ arm[:, box]
+
+    assert mean_rotations(body, moved) == pytest.approx(dict.fromkeys(OPPOSITE, angle), rel=1e-9)
+    balance, load = Balance(body, still, still, still, across), still.copy()
+    turn_forces(balance.followers, moved, still, load, STEP)
+    np.testing.assert_allclose((across + load)[:2], turn @ across[:2], rtol=0.0, atol=1e-15)
+    places = arm + moved[:2]
+    torque = np.sum(places[0] * (across + load)[1] - places[1] * (across + load)[0])
+    assert abs(torque) < 1e-12
+
+
+def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:
+    body = scene()
+    parts, (balance, steady) = parts_of(body), balance_of(body)
+    before, u, v = balance.force.copy(), shaken(body, 4), shaken(body, 5)
+    load = steady + balance.force
+    turn_forces(balance.followers, u, v, load, STEP)
+    turned = load.copy()
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert np.array_equal(balance.force, before)
+    assert np.array_equal(load, turned)
+
+    # a corner, one in the middle of a side and one inside, which no side turns
+    debris = [at(body, 0.25, 0.25), at(body, 2.25, 0.75), at(body, 1.25, 0.75)]
+    isolate(parts, debris)
+    balance.end_on_debris(parts, u, v, STEP, load)
+    rest = np.setdiff1d(np.arange(body.count), debris)
+    assert np.array_equal(balance.force[:, debris], np.zeros((3, 3)))
+    borne = (balance.force - before)[:, rest]
+    np.testing.assert_allclose(load[:, rest], turned[:, rest] + borne, rtol=0.0, atol=1e-15)
+    # what has ended the other disks of the sides bear, and they alone: resultant and torque stay
+    sides = np.isin(rest, balance.followers.node)
+    assert not borne[:, ~sides].any()
+    assert borne[:2, sides].all()
+    np.testing.assert_allclose(resultants(body, balance.force), resultants(body, before), rtol=0.0, atol=1e-13)
+    # what is taken off has been added: three sums of size 1
+    np.testing.assert_allclose(load[:, debris], steady[:, debris], rtol=0.0, atol=1e-15)
+    assert not balance.followers.extra[:, np.isin(balance.followers.node, debris)].any()
+
+    # and they stay ended however the sides turn
+    turn_forces(balance.followers, 2.0 * u, v, load, STEP)
+    np.testing.assert_allclose(load[:, debris], steady[:, debris], rtol=0.0, atol=1e-15)
+    assert np.abs(load - turned)[:2, balance.followers.node].max() > 0.1
+
+
+def test_what_is_left_of_the_sides_turns_by_its_own_rotation(scene) -> None:
+    body = scene()
+    parts, (balance, steady) = parts_of(body), balance_of(body)
+    datum, debris = balance.datum, [at(body, 0.25, 0.25), at(body, 2.25, 0.75)]
+    isolate(parts, debris)
+    balance.end_on_debris(parts, datum.copy(), np.zeros((3, body.count)), STEP, steady + balance.force)
+
+    places, angle = body.positions.T + datum[:2], 0.3
+    turn = np.array([[np.cos(angle) - 1.0, -np.sin(angle)], [np.sin(angle), np.cos(angle) - 1.0]])
+    moved = datum.copy()
+    moved[:2] += turn @ places
+    moved[:2, debris] += 7.0
+    # some ten operations on numbers of size 1
+    assert side_rotations(moved, balance.followers) == pytest.approx(np.full(4, angle), rel=1e-14)
+
+
+def test_a_contact_that_pushes_still_carries_the_forces(scene) -> None:
+    body = scene()
+    parts, (balance, steady) = parts_of(body), balance_of(body)
+    corner = at(body, 0.25, 0.25)
+    isolate(parts, [corner])
+    pairs = parts[0].pairs
+    pairs.force[0, np.flatnonzero(pairs.first == corner)[0]] = -1.0
+    load = steady + balance.force
+    balance.end_on_debris(parts, shaken(body, 4), shaken(body, 5), STEP, load)
+
+    assert np.array_equal(load, steady + balance.force)
+    assert balance.force[:, corner].all()
+
+
+def test_a_break_is_remembered_when_its_pair_has_left_the_list(scene) -> None:
+    body = scene()
+    parts, (balance, steady) = parts_of(body), balance_of(body)
+    corner, load = at(body, 0.25, 0.25), steady + balance.force
+    u, v = np.zeros((3, body.count)), np.zeros((3, body.count))
+    isolate(parts, [corner])
+    pairs = parts[0].pairs
+    pairs.force[0, np.flatnonzero(pairs.first == corner)[0]] = -1.0
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert balance.force[:, corner].all()
+
+    # it flies away: a search finds no pair of it any more, so nothing in the list tells that it was ever bonded
+    u[:2, corner] = -5.0
+    contacts = parts[0].contacts
+    assert contacts is not None
+    contacts.search(u)
+    assert not contacts.freshly_torn()[corner]
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert not balance.force[:, corner].any()
+
+
+def test_the_work_goes_on_from_where_forces_end(scene) -> None:
+    body = scene()
+    rng, parts, (balance, steady) = np.random.default_rng(6), parts_of(body), balance_of(body)
+    debris = {3: [at(body, 0.25, 0.25)], 8: [at(body, 1.75, 1.75), at(body, 1.25, 1.25)]}
+    u, v, load = balance.datum.copy(), np.zeros((3, body.count)), steady + balance.force
+    whole = turning = 0.0
+    worst = []
+    for number in range(14):
+        half = turn_forces(balance.followers, u, v, load, STEP)
+        force, after = load - steady, rng.uniform(-1.0, 1.0, v.shape)
+        # of all that balances, turned or not: F·(v⁻ + v⁺)/2·Δt, half of that up to the whole step
+        until_now = whole + 0.5 * STEP * np.sum(force * v)
+        worst.append(abs(until_now - (balance.work(u) + turning + half)))
+        whole += 0.5 * STEP * np.sum(force * (v + after))
+        turning += half + extra_work(balance.followers, after, STEP)
+        u, v = u + STEP * after, after
+        if number in debris:
+            isolate(parts, debris[number])
+            balance.end_on_debris(parts, u, v, STEP, load)
+
+    # fourteen sums of sixty terms of size 0.1
+    assert max(worst) < 1e-13
+    assert np.count_nonzero(balance.force[0] == 0.0) == 3
+    assert abs(whole) > 0.1
+
+
+def test_what_keeps_coming_through_a_seam_is_taken_off(scene) -> None:
+    body = scene(RANDOM, left=FREE_FIELD, right=FREE_FIELD)
+    across = np.zeros((3, body.count))
+    across[:, body.seam.node] = np.random.default_rng(7).uniform(-1.0, 1.0, (3, len(body.seam.node)))
+    parts, (balance, steady) = parts_of(body), balance_of(body, across)
+    before, u, v = balance.force.copy(), shaken(body, 4), shaken(body, 5)
+    node = int(body.seam.node[3])
+    inside = int(np.setdiff1d(np.arange(body.seam.count, body.count), balance.followers.node)[20])
+    in_column = 5
+    load = steady + balance.force
+    isolate(parts, [node, inside, in_column])
+    balance.end_on_debris(parts, u, v, STEP, load)
+
+    ended = [node, inside, in_column]
+    rest = np.setdiff1d(np.arange(body.count), ended)
+    # the seam's particle has lost as much of its load as still comes through; across is zero elsewhere
+    assert across[:, node].all()
+    np.testing.assert_allclose(balance.force[:, ended], -across[:, ended], rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose(load[:, ended], (steady - across)[:, ended], rtol=0.0, atol=1e-15)
+    sides = np.isin(rest, balance.followers.node)
+    assert np.array_equal(balance.force[:, rest[~sides]], before[:, rest[~sides]])
+    beside = np.arange(body.count) >= body.seam.count
+    kept = np.where(beside, balance.force, 0.0), np.where(beside, before, 0.0)
+    np.testing.assert_allclose(*(resultants(body, force) for force in kept), rtol=0.0, atol=1e-12)
+    # the force of the last step acted until half a step before u
+    lost = np.sum((balance.force - before) * (u - 0.5 * STEP * v - balance.datum))
+    expected = np.sum(balance.force * (u - balance.datum)) - lost
+    # some 400 terms of size 1
+    assert balance.work(u) == pytest.approx(expected, rel=0.0, abs=1e-12)
+    # what has ended does not end again
+    ended_load, ended_force, work = load.copy(), balance.force.copy(), balance.work(u)
+    balance.end_on_debris(parts, 2.0 * u, v, STEP, load)
+    assert np.array_equal(load, ended_load)
+    assert np.array_equal(balance.force, ended_force)
+    assert balance.work(u) == work
+    # what comes through turns no more with the body
+    turn_forces(balance.followers, u, v, load, STEP)
+    np.testing.assert_allclose(load[:, ended], (steady - across)[:, ended], rtol=0.0, atol=1e-15)
+
+
+def test_a_break_counts_where_an_older_one_has_left_the_list(scene) -> None:
+    body = scene()
+    parts, (balance, steady) = parts_of(body), balance_of(body)
+    corner, load = at(body, 0.25, 0.25), steady + balance.force
+    right, top = at(body, 0.75, 0.25), at(body, 0.25, 0.75)
+    u, v = np.zeros((3, body.count)), np.zeros((3, body.count))
+    contacts = parts[0].contacts
+    assert contacts is not None
+
+    def break_bond_to(other: int) -> None:
+        pairs = contacts.arrays
+        ends = np.sort(np.stack([pairs.first, pairs.second]).astype(np.int64), axis=0)
+        broken = (ends == np.sort([corner, other])[:, None]).all(axis=0)
+        assert broken.sum() == 1
+        pairs.state[broken], pairs.cracked[broken] = TENSION, 1
+
+    break_bond_to(right)
+    balance.count_breaks_from(parts)
+    u[0, corner] = -0.5  # it opens further, so that the search drops the pair that broke before
+    contacts.search(u)
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert balance.force[:, corner].any()
+    break_bond_to(top)
+    contacts.arrays.force[...] = 0.0
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert not balance.force[:, corner].any()

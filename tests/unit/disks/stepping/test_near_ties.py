@@ -1,0 +1,189 @@
+"""What leaves the elastic range near the ties to a continuum is noted, with its time, place and side."""
+
+import numpy as np
+import pytest
+from small_cases import SURROUNDED, small
+
+from dembound.boundaries.sides import SIDES
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stepping.near_ties import OPENED, near_tie_warnings, sides_near
+from dembound.disks.stepping.system import DiskSystem
+from dembound.kernels.contacts import TENSION
+from dembound.motion.simulation import Simulation
+
+FULL = {"material.law": "linearpbond", "material.elastic_start": False}
+STEP = 1e-4
+
+
+@pytest.fixture(scope="module")
+def scene() -> DiskScene:
+    """12 × 6 disks of 1 m, tied at x = 0.5 and 11.5 m and at y = 0.5 m."""
+    return build(small(SURROUNDED, "near", FULL))
+
+
+class Watched:
+    """A run of a scene at its beginning, whose pairs and displacements are changed by hand."""
+
+    def __init__(self, scene: DiskScene) -> None:
+        self.scene = scene
+        self.run = Simulation(scene, STEP)
+        system = self.run.system
+        assert isinstance(system, DiskSystem)
+        self.system, self.watch, self.pairs = system, system.near_ties, system.contacts["body"]
+        self.pairs.arrays.force[0, self.pairs.live[-1]] = 1e6
+        self.stiffness = float(self.pairs.arrays.constants[0, 6])
+
+    def between(self, *places: tuple[float, float]) -> int:
+        """Place in the arrays of the pair of disks at two places."""
+        positions = self.pairs.assembly.positions
+        disks = [int(np.argmin(np.hypot(*(positions - place).T))) for place in places]
+        (found,) = np.flatnonzero([set(pair) == set(disks) for pair in np.transpose(self.pairs.pairs)])
+        return int(self.pairs.live[found])
+
+    def look(self, step: int) -> dict[str, dict]:
+        """What has been found near each side once this step is done."""
+        self.run.state.step = step
+        self.watch.look(self.run.state, self.pairs)
+        found = {side: self.watch.describe(side, STEP) for side in SIDES}
+        return {side: event for side, event in found.items() if event is not None}
+
+
+def test_near_are_disks_within_two_diameters_of_a_tied_one(scene) -> None:
+    """To the side of the nearest of them; in a corner one disk is tied by both sides and belongs to the first."""
+    x, y = scene.assembly.positions.T
+    near = sides_near(scene)
+    expected = np.select([x < 3.0, x > 9.0, y < 3.0], [0, 1, 2], -1)
+    corner = (y < 3.0) & ((x < 3.0) | (x > 9.0))
+    np.testing.assert_array_equal(near[~corner], expected[~corner])
+    assert set(near[corner]) == {0, 1, 2}
+    assert (near >= 0).sum() == 12 * 6 - 6 * 3
+
+
+def test_slip_near_a_side_is_found_with_its_time_and_place(scene) -> None:
+    run = Watched(scene)
+    assert run.look(10) == {}
+    far = run.between((5.5, 4.5), (6.5, 4.5))
+    run.pairs.arrays.slip[far] = 0.1
+    assert run.look(20) == {}
+    near = run.between((2.5, 4.5), (3.5, 4.5))
+    run.pairs.arrays.slip[near] = -0.99e-3 * 1e6 / run.stiffness
+    assert run.look(30) == {}
+    run.pairs.arrays.slip[near] = -1.01e-3 * 1e6 / run.stiffness
+    assert run.look(40) == {"left": {"time": 40 * STEP, "position": [3.0, 4.5]}}
+    run.pairs.arrays.slip[run.between((5.5, 0.5), (5.5, 1.5))] = 0.1
+    run.pairs.arrays.slip[run.between((6.5, 1.5), (6.5, 2.5))] = 0.2
+    found = run.look(50)
+    assert found["left"]["time"] == 40 * STEP
+    assert found["bottom"] == {"time": 50 * STEP, "position": [6.5, 2.0]}  # the larger one
+    assert set(found) == {"left", "bottom"}
+
+
+def test_beside_a_column_places_are_those_of_the_body() -> None:
+    """Whose disks come after those of the column, beyond the continuum."""
+    wave = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
+    changes = {"boundary.bottom": {"type": "outside", "wave_s": "up"}, "wave.up": wave}
+    scene = build(small(SURROUNDED, "column", FULL | changes))
+    assert scene.seam is not None
+    assert (sides_near(scene)[: scene.seam.count] == -1).all()
+    run = Watched(scene)
+    run.pairs.arrays.slip[run.between((2.5, 4.5), (3.5, 4.5))] = 0.1
+    assert run.look(30) == {"left": {"time": 30 * STEP, "position": [3.0, 4.5]}}
+
+
+@pytest.mark.parametrize(("way", "opens"), [(1.0, True), (-1.0, False)])
+def test_a_contact_that_is_open_without_slip_is_found(scene, way, opens) -> None:
+    run = Watched(scene)
+    displacement = np.zeros((3, scene.count))
+    displacement[0, : scene.disk_count] = 1e-2 * way * (scene.assembly.positions[:, 0] > 10.0)
+    run.run.state.displacement = displacement
+    found = run.look(7)
+    assert set(found) == ({"right", "bottom"} if opens else set())  # and below, where the nearest ties are those
+    if opens:
+        assert {event["position"][0] for event in found.values()} == {10.0}
+
+
+def test_slip_from_before_does_not_count(scene) -> None:
+    """Such as that of a body that has settled."""
+    run = Watched(scene)
+    near = run.between((2.5, 4.5), (3.5, 4.5))
+    run.pairs.arrays.slip[near] = 0.3
+    run.watch.begin(run.pairs)
+    assert run.look(10) == {}
+    run.pairs.arrays.slip[near] = 0.2
+    assert set(run.look(20)) == {"left"}
+
+
+def test_pairs_are_followed_as_lists_are_renewed(scene) -> None:
+    """Those that are no longer listed are far apart."""
+    run = Watched(scene)
+    near = run.between((2.5, 4.5), (3.5, 4.5))
+    assert run.look(10) == {}
+    run.pairs.arrays.slip[near] = 0.3
+    run.pairs.search(np.zeros((3, scene.count)))
+    run.pairs.arrays.force[0, run.pairs.live[0]] = 1e6
+    assert run.look(20) == {"left": {"time": 20 * STEP, "position": [3.0, 4.5]}}
+
+    run = Watched(scene)
+    run.pairs.arrays.state[run.between((10.5, 4.5), (11.5, 4.5))] = TENSION
+    apart = np.zeros((3, scene.count))
+    apart[0, : scene.disk_count] = 0.2 * (np.abs(scene.assembly.positions - [11.5, 4.5]).max(axis=1) < 0.1)
+    run.pairs.search(apart)
+    run.pairs.arrays.force[0, run.pairs.live[0]] = 1e6
+    assert run.look(30) == {"right": {"time": 30 * STEP, "position": [11.0, 4.5]}}
+
+
+def test_a_continued_run_remembers_it(scene) -> None:
+    run, later = Watched(scene), Watched(scene)
+    near = run.between((2.5, 4.5), (3.5, 4.5))
+    run.pairs.arrays.slip[near] = 0.3
+    run.watch.begin(run.pairs)
+    run.pairs.arrays.slip[run.between((5.5, 0.5), (5.5, 1.5))] = 0.1
+    found = run.look(50)
+    later.run.state.take(run.run.state.arrays())
+    later.pairs = later.system.contacts["body"]
+    later.pairs.arrays.force[0, later.pairs.live[0]] = 1e6
+    assert later.look(60) == found == {"bottom": {"time": 50 * STEP, "position": [5.5, 1.0]}}
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {**FULL, "boundary": {"left": {"type": "viscous"}}}], ids=["elastic law", "no continuum"]
+)
+def test_nothing_is_watched_without_a_history_or_a_continuum(changes) -> None:
+    scene = build(small(SURROUNDED, "not_watched", changes))
+    assert Simulation(scene, STEP).system.near_ties is None
+    nothing = {"time": np.ones(1), "position": np.ones((1, 2)), "particles": np.array([[0, 1]])}
+    assert list(near_tie_warnings(scene, {}, nothing)) == []
+
+
+def warnings(scene, opened: dict, *cracks: tuple[float, tuple[float, float]]) -> list[str]:
+    """Of a run in which contacts have opened or slid near sides, and bonds broke at times (s) and places (m)."""
+    boundaries = {side: {OPENED: opened.get(side)} for side in ("left", "right", "bottom")}
+    places = np.array([place for _, place in cracks]).reshape(-1, 2)
+    pairs = scene.assembly.pairs
+    middles = scene.assembly.positions[pairs].mean(axis=1)
+    broken = [int(np.argmin(np.hypot(*(middles - place).T))) for place in places]
+    columns = {
+        "time": np.array([time for time, _ in cracks]),
+        "position": places,
+        "particles": pairs[np.array(broken, dtype=int)],
+    }
+    return list(near_tie_warnings(scene, {"boundaries": boundaries}, columns))
+
+
+def test_cracks_near_a_side_are_warned_of_once_with_the_first(scene) -> None:
+    assert warnings(scene, {}, (0.1, (6.0, 4.5))) == []
+    (line,) = warnings(scene, {}, (0.1, (6.0, 4.5)), (0.3, (5.5, 2.0)), (0.2, (6.5, 1.0)))
+    assert line == (
+        "boundary.bottom: the first of 2 bonds broke at t = 0.2 s near (6.5, 1) m, within 2 diameters of the ties to "
+        "the continuum, which stays elastic; take a larger packing.size"
+    )
+    (line,) = warnings(scene, {}, (0.1, (9.0, 4.5)))
+    assert line.startswith("boundary.right: a bond broke at t = 0.1 s near (9, 4.5) m")
+
+
+def test_each_side_has_one_line_for_what_was_first(scene) -> None:
+    slid = {"time": 0.15, "position": [3.0, 4.5]}
+    lines = warnings(scene, {"left": slid, "bottom": slid}, (0.1, (2.0, 4.5)), (0.3, (5.5, 2.0)))
+    assert len(lines) == 2
+    assert lines[0].startswith("boundary.left: a bond broke at t = 0.1 s near (2, 4.5) m")
+    assert lines[1].startswith("boundary.bottom: contacts opened or slid by t = 0.15 s near (3, 4.5) m")

@@ -1,0 +1,158 @@
+"""The rotation of a body as a whole: which bodies can turn, and the motion of one that has."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stepping.rotation import turned_as_a_whole, turns_freely
+
+BODY = {"wave": {}, "monitor": [], "motion.held": [], "boundary": {}}
+RANDOM = {
+    "pattern": "C",
+    "size": [4.0, 4.0],
+    "radius": 0.25,
+    "radius_ratio": 1.5,
+    "brick": [4.0, 4.0],
+    "edge_radius": 0.25,
+}
+VISCOUS = {"type": "viscous"}
+PUSHED = {"wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.1}}}
+SIDES = ("left", "right", "bottom", "top")
+EPS = np.finfo(float).eps
+
+
+def wrapped(*sides: str) -> dict[str, dict[str, str]]:
+    """Some sides periodic."""
+    return {side: {"type": "periodic"} for side in sides}
+
+
+@pytest.mark.parametrize(
+    ("changes", "free"),
+    [
+        ({}, True),
+        ({"boundary": {side: VISCOUS for side in SIDES}}, True),
+        ({"boundary": {"left": {"type": "viscous_input", "wave_p": "pulse"}}, **PUSHED}, True),
+        ({"boundary": {"left": {**VISCOUS, "half_mass": True}}}, True),
+        ({"boundary": {"left": VISCOUS, "bottom": {"type": "fixed"}}}, False),
+        ({"boundary": {"bottom": {"type": "roller"}}}, False),
+        ({"boundary": {"left": {"type": "symmetry"}}}, False),
+        ({"boundary": {"left": {"type": "velocity", "wave_p": "pulse"}}, **PUSHED}, False),
+        ({"boundary": {"right": {"type": "viscoelastic", "distance": 40.0}}}, False),
+        ({"boundary": wrapped("left", "right")}, False),
+        ({"boundary": wrapped("bottom", "top")}, False),
+        ({"boundary": {"left": {"type": "free_field"}}}, False),
+        ({"motion.held": ["y"]}, False),
+        ({"motion.held": ["rotation"]}, False),
+    ],
+)
+def test_only_what_nothing_but_dashpots_holds_turns_freely(bar, changes: dict, free: bool) -> None:
+    assert turns_freely(build(bar({**BODY, "packing.size": [4.0, 2.0], **changes}))) is free
+
+
+@pytest.fixture
+def body(bar) -> DiskScene:
+    """Random disks, those on the left half cells: masses differ, and their centre is not that of the places."""
+    return build(bar({**BODY, "packing": RANDOM, "boundary": {"left": {**VISCOUS, "half_mass": True}}}))
+
+
+def datum_of(body: DiskScene) -> np.ndarray:
+    """Displacements (3, n) of a body that has settled."""
+    return 0.1 * np.random.default_rng(1).uniform(-1.0, 1.0, (3, body.count))
+
+
+def arms(body: DiskScene, datum: np.ndarray) -> np.ndarray:
+    """Places (2, n) at the datum from the centre of mass."""
+    places = body.positions.T + datum[:2]
+    return places - (places * body.mass).sum(axis=1, keepdims=True) / body.mass.sum()
+
+
+def tangent(body: DiskScene, datum: np.ndarray, angle: float) -> np.ndarray:
+    """Displacements (3, n) of a turn as the law of small displacements has it."""
+    x, y = arms(body, datum)
+    return angle * np.stack([-y, x, np.ones(body.count)])
+
+
+def turn(angle: float) -> np.ndarray:
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+@pytest.mark.parametrize("angle", [0.01, -0.4])
+def test_a_turn_along_the_tangent_becomes_one_that_keeps_all_distances(body: DiskScene, angle: float) -> None:
+    datum = datum_of(body)
+    drift = np.array([[3.0], [-2.0], [0.0]])
+    moved = datum + tangent(body, datum, angle) + drift
+    spun = moved[2].copy()
+    moved, _ = turned_as_a_whole(body, moved, np.zeros((3, body.count)), datum)
+    arm = arms(body, datum)
+
+    # the centre of mass goes on as before; sums of 60 numbers of size 10
+    np.testing.assert_allclose(moved[:2], datum[:2] + drift[:2] + (turn(angle) - np.eye(2)) @ arm, rtol=0.0, atol=1e-13)
+    places = [body.positions.T + displacement[:2] for displacement in (datum, moved)]
+    before, after = (np.hypot(*(p[:, None] - p[:, :, None])) for p in places)
+    np.testing.assert_allclose(after, before, rtol=0.0, atol=2e-13)
+    assert np.array_equal(moved[2], spun)
+
+
+def test_the_rotation_is_that_of_the_whole_body_disks_own_spin_included(body: DiskScene) -> None:
+    # each disk moves along the tangent of one angle and rolls by another: the angular momentum is that of both
+    datum, orbit, spin = datum_of(body), 0.02, 0.3
+    moved = datum + tangent(body, datum, orbit)
+    moved[2] = datum[2] + spin
+    arm = arms(body, datum)
+    around, own = np.sum(body.mass * (arm**2).sum(axis=0)), body.inertia.sum()
+    angle = (around * orbit + own * spin) / (around + own)
+    moved, _ = turned_as_a_whole(body, moved, np.zeros((3, body.count)), datum)
+
+    stretched = (orbit - angle) * np.stack([-arm[1], arm[0]])
+    # as above
+    expected = datum[:2] + turn(angle) @ (arm + stretched) - arm
+    np.testing.assert_allclose(moved[:2], expected, rtol=0.0, atol=1e-13)
+    assert abs(angle - orbit) > 1e-3
+
+
+def test_a_deformation_turns_with_the_body(body: DiskScene) -> None:
+    datum, angle = datum_of(body), 0.2
+    arm = arms(body, datum)
+    strain = np.array([[1e-3, 4e-4], [4e-4, -2e-3]])
+    stretched = strain @ arm
+    # what has no angular momentum as a whole: the symmetric strain less the little turn it comes with
+    spin = np.sum(body.mass * (arm[0] * stretched[1] - arm[1] * stretched[0]))
+    stretched -= spin / np.sum(body.mass * (arm**2).sum(axis=0)) * np.stack([-arm[1], arm[0]])
+    moved = datum + tangent(body, datum, angle)
+    moved[:2] += stretched
+    moved, _ = turned_as_a_whole(body, moved, np.zeros((3, body.count)), datum)
+
+    # as above
+    np.testing.assert_allclose(moved[:2], datum[:2] + turn(angle) @ (arm + stretched) - arm, rtol=0.0, atol=1e-13)
+
+
+def test_velocities_turn_about_that_of_the_centre(body: DiskScene) -> None:
+    datum, angle = datum_of(body), 0.5
+    v = np.random.default_rng(2).uniform(-1.0, 1.0, (3, body.count)) + np.array([[5.0], [3.0], [1.0]])
+    turned, moved = v.copy(), datum + tangent(body, datum, angle)
+    moved, turned = turned_as_a_whole(body, moved, turned, datum)
+    mean = np.average(v[:2], axis=1, weights=body.mass)[:, None]
+
+    # sums of 60 numbers of size 10
+    np.testing.assert_allclose(turned[:2], mean + turn(angle) @ (v[:2] - mean), rtol=0.0, atol=1e-13)
+    assert np.array_equal(turned[2], v[2])
+    np.testing.assert_allclose((turned * body.mass).sum(axis=1), (v * body.mass).sum(axis=1), rtol=60 * EPS)
+    kinetic = [np.sum(body.mass * (each[:2] ** 2).sum(axis=0)) for each in (v, turned)]
+    assert kinetic[1] == pytest.approx(kinetic[0], rel=120 * EPS)
+    # and with it the angular momentum about the centre of what has turned
+    arm = arms(body, datum)
+    momentum = [
+        np.sum(body.mass * (r[0] * w[1] - r[1] * w[0])) for r, w in ((arm, v - 0.0), (turn(angle) @ arm, turned))
+    ]
+    assert momentum[1] == pytest.approx(momentum[0], rel=1e-10)
+
+
+def test_what_has_not_turned_stays_where_it_is(body: DiskScene) -> None:
+    datum = datum_of(body)
+    moved, v = datum + np.array([[0.25], [-0.5], [0.0]]), np.full((3, body.count), 2.0)
+    before = moved.copy()
+    moved, v = turned_as_a_whole(body, moved, v, datum)
+
+    # angles of 1e-17 from sums that cancel
+    np.testing.assert_allclose(moved, before, rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(v, 2.0, rtol=0.0, atol=1e-14)

@@ -1,0 +1,120 @@
+"""Stress, particle by particle, where it is known by hand, and that looking at it changes nothing."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.contacts import forces as module
+from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.rest.block_stress import block_stress
+from dembound.disks.rest.stage import settle
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.disks.stepping.stress import particle_stress
+from dembound.disks.stepping.system import DiskSystem
+from dembound.kernels.contacts import REFERENCE, UPDATED
+from dembound.motion.simulation import Simulation
+
+K = 2500.0 * 1000.0**2
+"""Normal stiffness of a lattice contact and its bond, N/m; without friction the bond's half carries the shear."""
+
+BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
+RANDOM = {"pattern": "B", "size": [5.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
+
+
+def elastic_stress(scene: DiskScene, displacement: np.ndarray) -> np.ndarray:
+    """Of the pairs of the elastic law, which have no forces of their own."""
+    return particle_stress(
+        scene, plain_contacts(scene.ground, scene.assembly, scene.layout.slot), displacement, REFERENCE
+    )
+
+
+def test_a_strained_lattice_answers_with_its_stiffness(bar) -> None:
+    scene = build(bar({**BODY, "packing.size": [4.0, 4.0]}))
+    xx, yy, shear = 1e-6, -2e-6, 3e-6
+    x, y = scene.assembly.positions.T
+    displacement = np.stack([xx * x + shear * y, yy * y, np.full(scene.count, -0.5 * shear)])
+    inner = ((scene.assembly.positions > 0.5) & (scene.assembly.positions < 3.5)).all(axis=1)
+    stress = elastic_stress(scene, displacement)[inner]
+
+    # one contact per row and column: no Poisson effect; with a rotation of −γ/2 both shear stresses are k_s γ/2.
+    # Displacements of 1e-5 m are rounded by 1e-21 m, 2e-15 of a contact's stretch
+    expected = [K * xx, K * yy, 0.5 * K * 0.5 * shear]
+    np.testing.assert_allclose(stress, np.tile(expected, (len(stress), 1)), rtol=0.0, atol=1e-14 * K * shear)
+
+
+def test_half_cells_answer_as_whole_ones_do(bar) -> None:
+    sides = {side: {"type": "viscous", "half_mass": True} for side in ("left", "bottom")}
+    scene = build(bar({**BODY, "packing.size": [4.0, 4.0], "boundary": sides}))
+    xx, yy = 1e-6, -2e-6
+    x, y = scene.assembly.positions.T
+    displacement = np.stack([xx * x, yy * y, 0.0 * x])
+    stress = elastic_stress(scene, displacement)
+
+    assert set(scene.cell_fraction) == {0.25, 0.5, 1.0}
+    kept = (x < 3.5) & (y < 3.5)  # right and top are whole cells with one contact less
+    # rounding as above
+    np.testing.assert_allclose(stress[kept, :2], np.tile([K * xx, K * yy], (kept.sum(), 1)), atol=1e-14 * K * abs(yy))
+
+
+@pytest.mark.parametrize("piece", [100, module.PIECE])
+def test_elastic_stress_is_that_of_the_pairs_forces_at_the_start(bar, monkeypatch, piece: int) -> None:
+    monkeypatch.setattr(module, "PIECE", piece)
+    scene = build(bar({**BODY, "boundary": WRAP, "packing": RANDOM}))
+    displacement = np.random.default_rng(5).normal(0.0, 1e-4, (3, scene.count))
+    contacts = scene.contact_lists()["body"]
+    contacts.push(displacement)
+    listed = particle_stress(scene, contacts.arrays, np.zeros_like(displacement), UPDATED)
+
+    assert len(contacts.arrays.first) > 2 * 100
+    # the order of summation differs: some ten terms of about the largest stress
+    np.testing.assert_allclose(elastic_stress(scene, displacement), listed, rtol=0.0, atol=1e-14 * np.abs(listed).max())
+
+
+LOCKED_IN = {"material.law": "linearpbond", "material.locked_in": 3e6, "static": {}}
+
+
+def test_the_locked_in_stress_is_in_it(bar) -> None:
+    scene = build(bar({**BODY, "boundary": WRAP, "packing": RANDOM, **LOCKED_IN}))
+    simulation = Simulation(scene, choose_step(scene)[0])
+    system, displacement = simulation.system, simulation.state.displacement
+    system.contacts["body"].push(displacement)
+    area = np.pi * scene.assembly.radii**2
+    mean = np.average(system.stress(displacement), axis=0, weights=area)
+
+    # 3 MPa in place of the 10 MPa it was packed under; overlaps are 2e-3 of the diameter, rounding is 1e-13 of them
+    packed = scene.ground.brick.stress
+    np.testing.assert_allclose(mean, 3e6 * packed / -(0.5 * packed[:2].sum()), rtol=1e-11)
+
+
+@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
+def test_a_run_after_a_static_stage_begins_with_its_stress(bar, law: str) -> None:
+    static = {"ratio": 1e-6, "stress": [-1e6, -2e6, 0.0]}
+    scene = build(bar({**BODY, "static": static, "packing.size": [6.0, 6.0], "material.law": law}))
+    settled = settle(scene)
+    step, start = choose_step(scene)[0], settled.start
+    system = DiskSystem(scene, step, start)
+    simulation = Simulation(scene, step, system=system, datum=start.displacement)
+    stress = block_stress(scene, system, simulation.state.displacement)
+
+    # summation in another order
+    np.testing.assert_allclose(stress.mean(axis=(0, 1)), settled.stress, rtol=0.0, atol=1e-12 * 2e6)
+
+
+def test_to_look_changes_nothing(bar) -> None:
+    brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, "wave.pulse.amplitude": -5.0, "monitor": []}
+    scene = build(bar({**brittle, "boundary.left": {"type": "velocity", "wave_p": "pulse"}}))
+    step, _ = choose_step(scene)
+    alone, looked_at = (Simulation(scene, step) for _ in range(2))
+    for _ in range(15):
+        for simulation in (alone, looked_at):
+            simulation.advance(4)
+        looked_at.system.stress(looked_at.state.displacement)
+
+    assert [name for name, _ in alone.state.laws] == ["elastic", "linearpbond"]
+    assert looked_at.state.laws == alone.state.laws
+    assert np.array_equal(looked_at.state.displacement, alone.state.displacement)
+    assert np.array_equal(looked_at.state.work, alone.state.work)
+    cracks = [simulation.system.take_cracks(60) for simulation in (alone, looked_at)]
+    assert len(cracks[0]) > 0
+    assert np.array_equal(cracks[0].step, cracks[1].step)
