@@ -10,8 +10,10 @@ import hashlib
 from collections.abc import Callable
 from functools import wraps
 from importlib import import_module
+from inspect import signature
 from typing import Any, NamedTuple
 
+import numba
 from llvmlite import binding  # type: ignore[import-untyped]
 from numba import config
 from numba.core import cgutils, types
@@ -41,7 +43,25 @@ class _Needed(NamedTuple):
         return f"{self.module}.{self.name}.{types_of}"
 
 
+KEPT = ["target_context", "libdata", "fndesc", "env", "signature", "objectmode", "lifted", "typeann"]
+KEPT += ["reload_init", "referenced_envs"]
+"""What numba keeps of compiled code on disk, in the versions with which `_rebuilt` works."""
+
+
+def require_known(rebuild: Callable[..., Any]) -> None:
+    """Raise ImportError if numba's own function for loading compiled code takes something else than `KEPT`.
+
+    Loaded code would then call kernels that are not linked.
+    """
+    if (found := list(signature(rebuild).parameters)) != KEPT:
+        raise ImportError(
+            f"numba {numba.__version__} loads compiled code in a way that this dembound does not know "
+            f"({', '.join(found)}); install a version of numba that dembound's requirements name"
+        )
+
+
 _rebuild = CompileResult._rebuild
+require_known(_rebuild)
 
 
 def _rebuilt(*kept: Any) -> Any:

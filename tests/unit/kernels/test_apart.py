@@ -9,7 +9,7 @@ import pytest
 from numba import njit
 from numba.core.errors import TypingError
 
-from dembound.kernels.apart import apart
+from dembound.kernels.apart import apart, require_known
 from dembound.kernels.common import EXACT
 
 
@@ -110,3 +110,11 @@ def test_callers_that_are_loaded_find_it_wherever_it_is_then(tmp_path) -> None:
     assert printed() == ["71.0 6.0", "caller"]  # from another one that was loaded
     forget("largest")
     assert printed() == ["71.0 6.0", "largest"]  # before the callers that need it are loaded
+
+
+def test_a_numba_that_loads_code_in_another_way_is_refused() -> None:
+    def rebuild(target_context, libdata, fndesc, env):
+        raise AssertionError("is not called")
+
+    with pytest.raises(ImportError, match=r"does not know \(target_context, libdata, fndesc, env\); install a version"):
+        require_known(rebuild)
