@@ -9,6 +9,7 @@ from dembound.boundaries import Motion, axis_of_motion
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.boundaries.words import reflected
 from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.errors import CaseError
 
 
 def homogenised_beta(scene: DiskScene, side: str, motion: Motion) -> float:
@@ -29,6 +30,22 @@ def supports_of(scene: DiskScene, side: str) -> Supports:
     medium = boundary_medium(scene.case, scene.ground, edge.axis)
     scene.case.side(side).support(edge, medium, scene.case.wave, builder)
     return builder.table()
+
+
+def require_dashpots_alone(scene: DiskScene, side: str) -> None:
+    """Raise CaseError if a side that should have dashpots alone has springs, or follows a free-field column.
+
+    Factors of dashpots are defined for plane waves that only dashpots absorb; springs would be made up for by them.
+    """
+    table = supports_of(scene, side)
+    if table.stiffness.any() or table.follow.any():
+        given = scene.case.side(side).type
+        raise CaseError(
+            [
+                f'boundary.{side}.type: "{given}" still has springs where dashpots are needed alone, so no factor of '
+                "dashpots can be found for it; a type with springs needs the method dashpots_alone()"
+            ]
+        )
 
 
 class Held(NamedTuple):

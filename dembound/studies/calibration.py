@@ -19,7 +19,7 @@ import numpy as np
 
 from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.disks.matching import factors_in, homogenised_beta
+from dembound.disks.matching import factors_in, homogenised_beta, require_dashpots_alone
 from dembound.disks.reduced.reduction import reduced
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
@@ -146,7 +146,8 @@ def calibrate(
     full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.
 
-    Raises CaseError when the side has no dashpots or its motion is held, RunError when β does not converge.
+    Raises CaseError when the side has no dashpots, keeps springs beside them, or its motion is held, RunError when β
+    does not converge.
     """
     if not 0.0 < tolerance < np.inf:
         raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
@@ -161,6 +162,7 @@ def calibrate(
         return Calibration(case, side, motion, method, kind, pulse.peak(), [], result=beta, particles=scene.count)
     strip, shortened = full_scene(plain, side, motion, pulse) if full else short_strip(plain, side, motion, pulse)
     scene = build(strip)
+    require_dashpots_alone(scene, side)
     found = Calibration(
         case=case,
         side=side,

@@ -14,7 +14,7 @@ import numpy as np
 
 from dembound.boundaries import Motion
 from dembound.disks.beyond.frequencies import frequencies_of
-from dembound.disks.matching import factors_in, homogenised_beta
+from dembound.disks.matching import factors_in, homogenised_beta, require_dashpots_alone
 from dembound.disks.scene import DiskScene, with_boundaries
 from dembound.errors import CaseError
 from dembound.studies.reflection.bricks import end_scene
@@ -55,6 +55,7 @@ def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Ref
     case = scene.case
     table = case.side(side).dashpots_alone()
     end = end_scene(replace(case, boundary={**case.boundary, side: table}), side)
+    require_dashpots_alone(end, side)
     matched, wide = ({m: homogenised_beta(each, side, m) for m in table.factors} for each in (scene, end))
     known = {motion: factor for motion, factor in factors_in(scene, side).items() if math.isfinite(matched[motion])}
     # sides of narrow bodies have more disks for their length than those of a periodic one

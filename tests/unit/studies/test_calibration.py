@@ -1,9 +1,12 @@
 """Calibration: what is modelled, how the factor is found, what is refused."""
 
+from dataclasses import replace
+
 import h5py
 import numpy as np
 import pytest
 
+from dembound.boundaries.viscous import Viscous
 from dembound.errors import CaseError, RunError
 from dembound.results.reader import text_of
 from dembound.studies import calibration as module
@@ -48,6 +51,22 @@ def test_the_impedance_relation_finds_the_factor_in_one_step(long_bar, side: str
 )  # fmt: skip
 def test_a_factor_has_the_digits_that_are_known(beta, ratio, digits) -> None:
     assert known(beta, ratio) == digits
+
+
+class Sprung(Viscous):
+    """Dashpots and springs, without a word on how the dashpots are alone."""
+
+    def support(self, edge, medium, waves, supports) -> None:
+        super().support(edge, medium, waves, supports)
+        supports.add(edge.nodes, 0, stiffness=1e6 * edge.diameters)
+
+
+def test_a_type_whose_springs_stay_beside_its_dashpots_is_refused(long_bar) -> None:
+    case = long_bar()
+    sprung = replace(case, boundary={**case.boundary, "right": Sprung(type="viscous")})
+
+    with pytest.raises(CaseError, match=r"boundary\.right\.type: \"viscous\" still has springs .* dashpots_alone\(\)"):
+        calibrate(sprung, "right")
 
 
 @pytest.mark.parametrize(("side", "passes"), [("right", 6), ("left", 5)])
