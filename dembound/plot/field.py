@@ -153,7 +153,7 @@ class FieldInRecord:
     in the unit.
     """
 
-    groups: list[h5py.Group]
+    groups: Sequence[h5py.Group]
     dataset: str
     beyond: str | None
     column: int
