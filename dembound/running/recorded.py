@@ -20,11 +20,13 @@ def recorded_case(record: Path) -> Case:
     A settled state of another run (``static.from``) is not used, as it is not in the record; the body settles itself,
     with the same result.
 
-    Raises CaseError if there is no record with a case, RecordError, in one line, if that cannot be read.
+    Raises CaseError for a record of no run, RecordError, in one line, if there is none or its case cannot be read.
     """
     with open_record(record) as file:
-        if "case" not in file.attrs or "inputs" not in file:
-            raise CaseError([f"{record}: has no case that could be run again"])
+        if "particles" not in file:
+            raise CaseError([f"{record}: is of no run, it has no case that could be run again"])
+        if missing := [name for name, there in (("case", file.attrs), ("inputs", file)) if name not in there]:
+            raise RecordError([f"{record}: is damaged: it has no {' and no '.join(missing)}"])
         text, name = text_of(file.attrs["case"]), text_of(file.attrs["name"])
         files = {text_of(given.attrs["path"]): given[()].tobytes().decode() for given in file["inputs"].values()}
     data = tables_of(text, record)

@@ -60,10 +60,13 @@ def test_books_close(layer: Around, mesh: Callable[[Around], Mesh]) -> None:
 
 
 def test_layers_take_the_energy_of_waves() -> None:
-    """What remains is the work of the load that goes into its static field.
+    """What remains is the work of the load that goes into its static field, and modes that do not travel.
 
-    The energy of motion that enters the balance, ½m v⁻·v⁺, is gone to 1e-4. The kinetic energy of the mean velocity has
-    3e-4, which `stepping` takes off again in the balance.
+    The load begins at once on one node, which goes on swinging beside its neighbours with an amplitude A of velocity at
+    about ωΔt = √2. With E = ½mA² and s = sin(ωΔt/2), its kinetic energy of the mean velocity is E(1 − s²)cos²ωt and
+    `stepping` −E s² sin²ωt, so the first, its sum with the second, and the second alone change with the phase at the
+    end; kinetic − stepping is E/2 at any phase for s² = ½. A load F that begins at once brings E = ½F²/(mω²) =
+    F²Δt²/4m of such a node.
     """
     books = entries(equal(Around(3, 3, 3, 0)))
     most = max(entry.kinetic for entry in books)
