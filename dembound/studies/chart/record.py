@@ -120,7 +120,7 @@ def _read_gauge(group: h5py.Group) -> Gauge:
     if position.shape != (2,) or not np.isfinite(position).all():
         raise _damaged(group, "attribute position")
     time = increasing(group["time"])
-    values = {name: finite(group[name]).astype(float) for name in MOTION if name in group}
+    values = {name: finite(group[name]).astype(float) for name in MOTION if name in group or name != "stress"}
     for name, column in values.items():
         if column.shape != (len(time), 3)[: 1 if name == "stress" else 2]:
             raise _damaged(group, name)
