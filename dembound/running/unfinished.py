@@ -130,8 +130,9 @@ def _require_facts(facts: Mapping[str, Any], path: Path) -> None:
 
 
 def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
-    """The folder that has a checkpoint: the one that was given, or the partial one; raises CaseError if none has, RecordError
-    if there is no record either.
+    """The folder that has a checkpoint: the one that was given, or the partial one.
+
+    Raises CaseError if none has, RecordError if there is no record either.
     """
     places = [place for place in (folder, partial) if place.is_dir()]
     if not places:
