@@ -58,7 +58,7 @@ class Record:
             if not isinstance(values["failure"], str) or (not values["failure"] and values["work"] < 1):
                 raise _damaged(group, "attribute failure or work")
             found = Outcome(**values)
-            found.gauges = {name: _read_gauge(inner) for name, inner in group["gauges"].items()}
+            found.gauges = {name: _read_gauge(inner, found) for name, inner in group["gauges"].items()}
             found.findings = {
                 name: Finding(float(value[()]), text_of(value.attrs["unit"]))
                 for name, value in _scalars(group["findings"]).items()
@@ -114,12 +114,14 @@ def write_gauges(group: h5py.Group, gauges: Gauges) -> None:
                 dataset.attrs["unit"] = unit
 
 
-def _read_gauge(group: h5py.Group) -> Gauge:
+def _read_gauge(group: h5py.Group, run: Outcome) -> Gauge:
     """The history of a monitor that `write_gauges` has written; raises RecordError for any other."""
     position = np.asarray(group.attrs["position"], dtype=float)
     if position.shape != (2,) or not np.isfinite(position).all():
         raise _damaged(group, "attribute position")
     time = increasing(group["time"])
+    if len(time) == 0 or time[0] < 0.0 or time[-1] > (run.steps + 1) * run.time_step:
+        raise _damaged(group, "time")
     values = {name: finite(group[name]).astype(float) for name in MOTION if name in group or name != "stress"}
     for name, column in values.items():
         if column.shape != (len(time), 3)[: 1 if name == "stress" else 2]:

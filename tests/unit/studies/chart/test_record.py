@@ -57,7 +57,10 @@ def replaced(place, values):
         described(f"runs/{KEY}", "work", 0),
         described(f"runs/{KEY}", "failure", 3.0),
         *(described(GAUGE, "position", value) for value in (3.0, "x", [1.0, np.nan], np.zeros(3))),
-        *(replaced(f"{GAUGE}/time", np.array(times)) for times in ([0, 1, 1, 2.0], [0, 2, 1, 3.0], [0, 1, 2.0], 1.0)),
+        *(
+            replaced(f"{GAUGE}/time", np.array(times))
+            for times in ([0, 1, 1, 2.0], [0, 2, 1, 3.0], [0, 1, 2, 1e300], [0, 1, 2.0], 1.0)
+        ),
         *(replaced(f"{GAUGE}/velocity", np.zeros(shape)) for shape in ((0, 3), (4, 2), (5, 3), (4,))),
         *(replaced(f"{GAUGE}/stress", values) for values in (np.full(4, np.nan), np.zeros((4, 1)), ["a"] * 4)),
         *(replaced(f"runs/{KEY}/cpu", np.array(costs)) for costs in ([np.inf], [-1.0], [[1.0]], 1.0, [1e300])),
