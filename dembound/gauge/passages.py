@@ -6,17 +6,19 @@ For one pulse all are equal but for noise. A second impact, lost samples, an amp
 jumps, or ends that take energy or time, change one part more than another.
 """
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from dembound.gauge.estimates import Estimate, attenuation, tension_peaks, wave_speed
 from dembound.gauge.matching import matched
-from dembound.gauge.peaks import Peaks, positive_peaks
+from dembound.gauge.peaks import Peaks, positive_peaks, white_noise
 
 ENDED = 0.05
 """Share of the largest value below which a pulse has ended between two passages."""
+
+STRONG = 10.0
+"""Least height of a passage in standard deviations of noise: a lower one is found where noise makes it too high."""
 
 
 class Part(NamedTuple):
@@ -36,15 +38,20 @@ def parts(time: np.ndarray, stress: np.ndarray, bar: tuple[float, float], peaks:
     peaks : tension peaks from which everything is estimated. speed : c in m/s for attenuations.
     """
     position, length = bar
-    lines = {"the first two returns": Peaks(*(each[:2] for each in peaks))} if len(peaks.time) > 2 else {}
-    lines |= {"the returns behind the first": Peaks(*(each[1:] for each in peaks))} if len(peaks.time) > 2 else {}
+    least, lines = STRONG * white_noise(stress), {}
+    if len(peaks.time) > 2:
+        lines["the first two returns"] = _some(peaks, peaks.height[:2] > least)
+        lines["the returns behind the first"] = _some(peaks, (peaks.height > least) & (peaks.time > peaks.time[0]))
     first = first_passages(time, stress)
     way = 2.0 * (length - position)
     found = [Part("the first passages", np.nan, float(-np.diff(np.log(first.height))[0]) / way)] if first else []
     out = tension_peaks(time, -stress, len(peaks.time) + 1)
     if first is not None and len(out.time) > 1 and _ends_between(time, stress, first.time[1], out.time[1]):
-        lines["the compressions"] = matched(time, -stress, out)
+        passed = matched(time, -stress, out)
+        lines["the compressions"] = _some(passed, passed.height > least)
     for name, some in lines.items():
+        if len(some.time) < 2:
+            continue
         passing = wave_speed(some.time, length, some.height).value
         found.append(Part(name, passing, attenuation(*some, speed).value))
     return found
@@ -80,6 +87,12 @@ def first_return(time: np.ndarray, stress: np.ndarray, position: float, length: 
     if not between > 0.0:
         return None
     return Estimate(way / between, way / between * share * np.sqrt(2.0) * float(time[1] - time[0]) / between, 2)
+
+
+def _some(peaks: Peaks, chosen: np.ndarray) -> Peaks:
+    """The peaks of which this (k,) or a shorter array is true."""
+    places = np.flatnonzero(chosen)
+    return Peaks(peaks.time[places], peaks.height[places])
 
 
 def _ends_between(time: np.ndarray, stress: np.ndarray, first: float, last: float) -> bool:

@@ -40,7 +40,8 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
     The history is smoothed by parabolas over a quarter of its largest peak's width, and a peak is a maximum of the
     smoothed history, from a parabola through the three samples there. Its prominence must be at least `SMALLEST` of the
     largest peak, `NOISE_FACTOR` times the noise, and `LEVELS` steps of the digitiser. It must be at least half as wide
-    as the largest peak, and its distance from a higher one must exceed that width. The position of a long flat crest depends on the noise.
+    as the largest peak, and its distance from a higher one must exceed that width. The
+    position of a long flat crest depends on the noise.
 
     Parameters
     ----------

@@ -211,8 +211,8 @@ def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[st
     if off > FAR:
         yield (
             f"the returns give {speed.value:.5g} m/s, the first passages {first.value:.5g} m/s: {100.0 * off:.2g} % "
-            f"apart, so what is taken for returns is none of this pulse, or the gauge is elsewhere; {CAUSES}, or "
-            "--position and --length; --peaks 2 takes the first returns alone"
+            f"apart: these are not the returns of one pulse; {CAUSES}, check --position and --length, "
+            "and try --peaks 2"
         )
     elif off > allowed:
         yield (
@@ -229,8 +229,9 @@ def misfit(found: Findings, of: str) -> Iterator[str]:
         if each.of == of and off > least:
             unit = "1/m" if of == "attenuation" else "m/s"
             yield (
-                f"one pulse to and fro does not explain the record: the {of} is {each.value:.4g} {unit} by all returns, "
-                f"{each.there:.4g} by {each.part}, {off:.2g} apart where noise explains {each.noise:.1g}; {CAUSES}"
+                "one pulse to and fro does not explain the record: "
+                f"the {of} is {each.value:.4g} {unit} by all returns, {each.there:.4g} by {each.part}, "
+                f"{off:.2g} apart where noise explains {each.noise:.1g}; {CAUSES}"
             )
 
 

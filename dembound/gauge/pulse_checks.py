@@ -36,7 +36,7 @@ def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate |
     the level, as a pulse that begins with a bend has it. The error is the difference of this from the lowest level, and
     half a sample. None where the pulses overlap, or noise hides the onsets.
     """
-    (first, last), (begin, end), _ = found_windows(signals, setup, windows)
+    (first, last), (_, end), _ = found_windows(signals, setup, windows)
     time, values = signals.time, denoised(signals.incident)
     out = (time >= first) & (time <= last)
     back = (time > last - 0.1 * (last - first)) & (time <= end)
@@ -46,10 +46,10 @@ def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate |
     )
     if levels[-1] > 0.5:
         return None
-    between = [_onsets(time[part], np.abs(values[part]), levels) for part in (out, back)]
-    if any(each is None for each in between):
+    leaves, returns = (_onsets(time[part], np.abs(values[part]), levels) for part in (out, back))
+    if leaves is None or returns is None:
         return None
-    delays = between[1] - between[0]
+    delays = returns - leaves
     delay = float(np.polyfit(np.sqrt(levels), delays, 1)[1])
     error = abs(delay - float(delays[0])) + 0.5 * float(time[1] - time[0])
     if not delay > 0.0:
@@ -63,8 +63,8 @@ def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Wind
     off = max((unbalanced(faces, setup, found, end) for end in (found.largest + 1, len(faces.time))), key=abs)
     if abs(off) > BALANCED:
         yield (
-            f"the impulses of both faces of the specimen differ by {100.0 * off:+.2g} %, beyond its inertia: look for a "
-            "baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut"
+            f"the impulses of both faces of the specimen differ by {100.0 * off:+.2g} %, beyond its inertia: look for "
+            "a baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut"
         )
     travelled = None if signals.second is not None else travel_speed(signals, setup, windows)
     if travelled is not None:
@@ -72,8 +72,8 @@ def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Wind
         if abs(apart) > max(TOLD, travelled.error / setup.bar.speed):
             yield (
                 f"the reflected pulse begins at its gauge as with a wave speed of {travelled.value:.5g} ± "
-                f"{travelled.error:.2g} m/s, {100.0 * apart:+.2g} % from --wave-speed: check it and --incident-gauge, or "
-                "look for lost samples"
+                f"{travelled.error:.2g} m/s, {100.0 * apart:+.2g} % from --wave-speed: check it and --incident-gauge, "
+                "or look for lost samples"
             )
 
 

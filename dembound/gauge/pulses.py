@@ -209,15 +209,15 @@ def at_faces(signals: Signals, setup: Setup, windows: Windows | None = None) -> 
     length = min(last - first for first, last in cuts)
     step = float(time[-1] - time[0]) / (len(time) - 1)
     since = step * np.arange(int(length / step))
-    pulses = (
+    pulses = [
         np.interp(begin + delay + since, time, moved(time, values, way, bar))
         for values, way, delay in (
             (incident, setup.incident_gauge, 0.0),
             (reflected, -setup.incident_gauge, late[0]),
             (transmitted, -setup.transmitted_gauge, late[1]),
         )
-    )
-    return Faces(since, *pulses, digits=signals.digits)
+    ]
+    return Faces(since, pulses[0], pulses[1], pulses[2], signals.digits)
 
 
 def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Window, Window, Window]:

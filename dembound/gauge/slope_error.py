@@ -8,8 +8,8 @@
 - Line. The standard error by the deviations from the line, of which as many count as there are correlation times
   within it: of the specimen's reverberations, and of a law that bends.
 - Noise. The scatter of slopes from the same pulses with the same noise once more, as drawn some tens of times; as the
-  strain is an integral, noise makes it drift. A digitiser rounds once more, too, between levels that lie anywhere.
-- Balance. The impulses of both faces differ by more than inertia makes: the strain that this adds at the largest stress.
+  strain is an integral, noise makes it drift. A digitiser rounds once more, too, between levels anywhere.
+- Balance. The impulses of both faces differ by more than inertia makes: the strain this adds at the largest stress.
 """
 
 import math
