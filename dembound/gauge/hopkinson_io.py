@@ -36,7 +36,11 @@ def read_strain(
     recorded = is_record(path)
     signal = _recorded(path, reading) if recorded else read_signal(path, reading, usual="strain")
     if signal.unit not in ("strain", "Pa"):
-        said = f"are in {signal.unit}" if signal.unit else "have no known unit"
+        said = (
+            f"are in {signal.unit}"
+            if signal.unit
+            else "have no unit in the header that is read (Pa, MPa, V, mV, strain, %, µε)"
+        )
         raise CaseError([f"{path}: the values {said}, needs strains or stresses: --gauge-factor, --unit or --scale"])
     if not recorded and (problems := list(implausible_signal(signal.values, may_be_clipped=may_be_clipped))):
         raise CaseError([f"{path}: {problem}" for problem in problems])
