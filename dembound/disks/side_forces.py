@@ -13,7 +13,7 @@ from dembound.disks.constants import brick_constants
 from dembound.disks.contact_forces import Piece
 from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.memory import PIECE
-from dembound.packings.cut import CutContacts, beyond, cut_contacts
+from dembound.packings.cut import CutContacts, cut_contacts
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,24 +28,16 @@ class SideForces:
     ----------
     node : (k,) disks on which the contacts act, ascending. per_stress : (3, k, 3) N and N·m, forces along x and y and
     moment about the disk's centre, per Pa of the elastic stress xx, yy, xy. as_built : (3, k) those of the stress as
-    built. shown_per_stress, shown_as_built : the same, as the side is recorded with them, see `_shown`: in all the
-    stress times its length.
+    built.
     """
 
     node: np.ndarray
     per_stress: np.ndarray
     as_built: np.ndarray
-    shown_per_stress: np.ndarray
-    shown_as_built: np.ndarray
 
     def under(self, stress: np.ndarray) -> np.ndarray:
         """Forces and moments (3, k) under a stress (3,) Pa, that of the packing as built included."""
         forces: np.ndarray = self.per_stress @ stress + self.as_built
-        return forces
-
-    def shown_under(self, stress: np.ndarray) -> np.ndarray:
-        """Those (3, k) with which the side is recorded."""
-        forces: np.ndarray = self.shown_per_stress @ stress + self.shown_as_built
         return forces
 
 
@@ -53,37 +45,16 @@ def side_forces(scene: DiskBody) -> dict[str, SideForces]:
     """Those of all sides of a body that are not periodic, by side."""
     ends, part = _ends(scene)
     per_stress, as_built = _through(scene, ends)
-    through = np.dstack([per_stress * part[:, None], as_built * part])
+    per_stress, as_built = per_stress * part[:, None], as_built * part
     found = {}
     for number, side in enumerate(SIDES):
         if side in scene.edges:
-            shares = np.stack([ends.side == number, _shown(scene, ends, number)])
-            here = np.flatnonzero(shares.any(axis=0))
-            node, place = np.unique(ends.node[here], return_inverse=True)
-            sums = np.zeros((2, 3, len(node), 4))
-            for of, share in zip(sums, shares[:, here], strict=True):
-                np.add.at(of, (slice(None), place), share[:, None] * through[:, here])
-            found[side] = SideForces(node, sums[0, ..., :3], sums[0, ..., 3], sums[1, ..., :3], sums[1, ..., 3])
+            here = np.flatnonzero(ends.side == number)
+            here = here[np.argsort(ends.node[here], kind="stable")]
+            node, first = np.unique(ends.node[here], return_index=True)
+            sums = np.add.reduceat(np.dstack([per_stress[:, here], as_built[:, here]]), first, axis=1)
+            found[side] = SideForces(node, sums[..., :3], sums[..., 3])
     return found
-
-
-def _shown(scene: DiskBody, ends: CutContacts, number: int) -> np.ndarray:
-    """Which parts (e,) of contacts a side, by its number in `SIDES`, is recorded with, so that its length has each once.
-
-    These are all contacts with disks beyond it, also those with disks beyond another side, which act by one of the two:
-    what one side has too much at a corner the opposite corner takes. Between the centres of rows of disks on the ends of
-    the side contacts along these count half, those that leave it not at all; then all are as much larger as the side.
-    """
-    brick, along = scene.ground.brick, 1 - number // 2
-    closing = brick.edge_rows[ends.other]
-    out = beyond(ends.tile, closing, scene.assembly.copies)
-    own = brick.edge_rows[scene.assembly.brick_particle[ends.node], along]
-    last = np.isin(scene.assembly.tile[ends.node, along], (0, scene.assembly.copies[along]))
-    part = np.where(own & last & closing[:, along], 0.5, 1.0)
-    part[own & out[:, 2 * along : 2 * along + 2].any(axis=1)] = 0.0
-    longer = scene.assembly.extent[along] / (scene.assembly.copies[along] * brick.size[along])
-    shown: np.ndarray = longer * np.where(out[:, number], part, ends.side == number)
-    return shown
 
 
 def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:

@@ -290,7 +290,7 @@ def _bearers(
 def _in_proportion(
     share: np.ndarray, known: list[tuple[np.ndarray, np.ndarray, np.ndarray]], node: np.ndarray
 ) -> np.ndarray:
-    """Shares (s, 2, q) of nodes (q,) by the known forces of sides: recorded over acting ones; as they are without any."""
+    """Shares (s, 2, q) of nodes (q,) by known forces of sides, recorded over acting ones; as they are without any."""
     forces, total = np.zeros_like(share), np.zeros_like(share[0])
     for row, (nodes, acting, shown) in zip(forces, known, strict=True):
         here = np.searchsorted(node, nodes)

@@ -78,7 +78,7 @@ def cut_contacts(
     reach = np.abs(brick.images).max(axis=0, initial=1)
     outer = ((where < reach) | (where >= np.array(body.copies) - reach)).any(axis=1)
     found = _ends_at(brick, body, np.flatnonzero(outer), periodic)
-    out = beyond(found.tile, brick.edge_rows[found.other], body.copies)
+    out = _beyond(found.tile, brick.edge_rows[found.other], body.copies)
     found = replace(found, side=np.argmax(out, axis=1))
     allowed = np.array([side in sides for axis in BEYOND for side in axis])
     there = np.array([tops.get(side, np.inf) for axis in BEYOND for side in axis])[found.side] > _heights(
@@ -94,7 +94,7 @@ def contacts_into(brick: Brick, body: Assembly, hole: Hole) -> CutContacts:
     near = ((body.positions >= np.array([x0, y0]) - reach) & (body.positions <= np.array([x1, y1]) + reach)).all(axis=1)
     found = _ends_at(brick, body, np.flatnonzero(near))
     removed = hole.contains(body.positions[found.node] + found.vectors(brick)) & _is_absent(found, brick, body)
-    never_there = beyond(found.tile, brick.edge_rows[found.other], body.copies).any(axis=1)
+    never_there = _beyond(found.tile, brick.edge_rows[found.other], body.copies).any(axis=1)
     return found.only(removed & ~never_there)
 
 
@@ -125,7 +125,7 @@ def _heights(found: CutContacts, brick: Brick, body: Assembly) -> np.ndarray:
     return body.positions[found.node, 1] + found.vectors(brick)[:, 1]
 
 
-def beyond(tile: np.ndarray, closing: np.ndarray, copies: tuple[int, int]) -> np.ndarray:
+def _beyond(tile: np.ndarray, closing: np.ndarray, copies: tuple[int, int]) -> np.ndarray:
     """Whether disks (e,) lie beyond each of the sides of `BEYOND`, (e, 4).
 
     tile : (e, 2) in which copies of the brick they are; closing : (e, 2) bool, whether they are of its regular rows,
