@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -85,7 +86,7 @@ def change(case: Case, changes: Mapping[str, Any], name: str | None = None) -> C
     """
     plain = {key: _in_toml_words(value, key) for key, value in changes.items()}
     changed = kinds.with_changes(case, plain)
-    return changed if name is None else kinds.loads(changed.text, changed.folder, name)
+    return changed if name is None else replace(changed, name=name)
 
 
 def run(
