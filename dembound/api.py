@@ -51,6 +51,8 @@ __all__ = [
 
 def load(path: Path | str) -> Case:
     """Read a case file; raises CaseError with one line per mistake."""
+    if isinstance(path, str) and "\n" in path:
+        raise CaseError(["path: is the text of a case, must be the path of a case file; give dembound.loads(text)"])
     return kinds.load(Path(path))
 
 

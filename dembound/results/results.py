@@ -7,7 +7,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dembound.results.named import Named, missing
+from dembound.results.named import Named, Numbered, missing
 from dembound.results.reader import (
     datasets_in,
     energy_of,
@@ -94,7 +94,8 @@ class Results:
             self.particles = self._array(file, "particles")
             self.histories = self._arrays(file, "histories", "monitor")
             self.boundaries = self._arrays(file, "boundaries", "side")
-            self.snapshots = [Arrays(self._record, group.name, group) for group in snapshots_of(file)]
+            snapshots = (Arrays(self._record, group.name, group) for group in snapshots_of(file))
+            self.snapshots = Numbered(snapshots, "snapshot", str(self._record))
             self.cracks = self._array(file, "cracks")
             self.laws: list[tuple[str, float]] = laws_of(file)
 

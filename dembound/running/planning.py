@@ -112,6 +112,11 @@ def _unused_waves(case: Case) -> Iterator[str]:
 def _interval_warnings(planned: Plan) -> Iterator[str]:
     """Warnings about outputs that the case asks for more often than there are steps."""
     output = planned.scene.case.output
+    if output.snapshots == 0 and (asked := [key for key in ("stress", "contacts") if getattr(output, key)]):
+        yield (
+            f"output.{' and output.'.join(asked)}: asks for what snapshots hold, but output.snapshots is 0, so nothing "
+            "is written; give output.snapshots = 1 or more"
+        )
     if output.snapshots > planned.steps:
         yield f"output.snapshots: is {output.snapshots}, the run has {planned.steps:,} steps and as many snapshots"
     for key in ("history_interval", "side_interval", "energy_interval"):

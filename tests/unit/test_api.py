@@ -242,3 +242,9 @@ def test_a_case_is_shown_in_ten_lines(name) -> None:
     assert lines[0].startswith(f"{type(case).__name__} {case.name}: {case.title}"[:99])
     for table in tomllib.loads(case.text):
         assert table == "title" or re.search(rf"\b{table}\b", repr(case))
+
+
+def test_the_text_of_a_case_is_no_path() -> None:
+    for ask in (dembound.load, dembound.run):
+        with pytest.raises(dembound.CaseError, match=r"is the text of a case, .*give dembound\.loads\(text\)"):
+            ask('[packing]\npattern = "A"\n')
