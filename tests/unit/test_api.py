@@ -105,6 +105,8 @@ def test_results_are_those_of_the_record(results) -> None:
         assert [shot.attributes["time"] for shot in results.snapshots] == [
             group.attrs["time"] for group in file["snapshots"].values()
         ]
+        with pytest.raises(IndexError, match=r"snapshot: there is no 2, they are 0 to 1"):
+            results.snapshots[2]
         assert np.array_equal(results.snapshots[-1]["velocity"], file["snapshots/0001/velocity"][:])
         assert set(results.boundaries) == set(file["boundaries"])
         assert np.array_equal(results.boundaries["right"]["peak_velocity"], file["boundaries/right/peak_velocity"][:])
