@@ -46,6 +46,12 @@ def places_of_sources(scene: DiskScene) -> dict[str, np.ndarray]:
 def _wrong_source(scene: DiskScene, side: str, table: Springs, places: dict[str, np.ndarray]) -> Iterator[str]:
     """A source from which the springs would be far softer or stiffer than from the places where waves begin."""
     if table.source is None:
+        times = (table.distance or 0.0) / math.hypot(*scene.size)
+        if times > FAR:
+            yield (
+                f"boundary.{side}.distance: is {table.distance:g} m, {times:.3g} times the scene's diagonal; "
+                "the springs hold nearly nothing; is it in m?"
+            )
         return
     edge, where = scene.edges[side], f"boundary.{side}.source: is ({table.source[0]:g}, {table.source[1]:g}) m"
     own = np.mean(1.0 / np.hypot(*(edge.positions - np.array(table.source)).T))

@@ -98,6 +98,7 @@ def warnings_before(planned: Plan) -> list[str]:
     return [
         *unlikely(planned.scene.case),
         *_unused_waves(planned.scene.case),
+        *_same_place(planned.scene),
         *planned.kind.warnings_before(planned.scene, planned.time_step),
         *_interval_warnings(planned),
     ]
@@ -107,6 +108,16 @@ def _unused_waves(case: Case) -> Iterator[str]:
     """Waves that no side and no load uses, probably as a name is misspelt."""
     for name in case.wave.keys() - waves_used(case):
         yield f"wave.{name}: no side and no load uses it"
+
+
+def _same_place(scene: Scene) -> Iterator[str]:
+    """Monitors that record the particle or node of another one."""
+    first: dict[tuple[float, ...], str] = {}
+    for name in (monitor.name for monitor in scene.case.monitor):
+        place = tuple(float(each) for each in scene.monitored[name])
+        if (other := first.setdefault(place, name)) != name:
+            listed = ", ".join(f"{each:.4g}" for each in place)
+            yield f"monitor.{name}: is nearest to the same place as monitor.{other}, ({listed}) m, and records the same"
 
 
 def _interval_warnings(planned: Plan) -> Iterator[str]:

@@ -52,3 +52,10 @@ def test_springs_of_another_modulus_are_warned_of(modulus: float, wrong: bool) -
     """The disks have G = ρc_s² = 1.25 GPa, with c_s = c_p/√2 or c_p/2 of 625 MPa."""
     found = said({"distance": 10.0, "young_modulus": modulus}, load=[BLOW])
     assert len(found) == wrong and (not wrong or "young_modulus: gives springs of G = 1e+" in found[0])
+
+
+@pytest.mark.parametrize(("distance", "wrong"), [(220.0, False), (230.0, True)])
+def test_a_distance_far_beyond_the_scene_is_warned_of(distance: float, wrong: bool) -> None:
+    """Ten diagonals of 20 × 10 m are 223.6 m."""
+    found = said({"distance": distance}, load=[BLOW])
+    assert len(found) == wrong and (not wrong or "boundary.bottom.distance: is 230 m, 10.3 times" in found[0])

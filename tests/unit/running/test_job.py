@@ -282,6 +282,13 @@ def test_what_would_stop_a_case_is_foreseen(bar, spalling) -> None:
     preflight(spalling())
 
 
+@pytest.mark.parametrize(("x", "said"), [(5.2, True), (5.8, False)])
+def test_monitors_of_one_particle_are_warned_of(bar, x: float, said: bool) -> None:
+    """Disks are 0.5 m wide; one is centred at (5.25, 0.25) m."""
+    case = bar({"monitor": [{"name": "a", "position": [5.25, 0.25]}, {"name": "b", "position": [x, 0.3]}]})
+    assert [line[:10] for line in warnings_before(plan(case)) if "records the same" in line] == said * ["monitor.b:"]
+
+
 @pytest.mark.parametrize(("snapshots", "said"), [(0, True), (1, False)])
 def test_what_only_snapshots_hold_is_missed_without_them(bar, snapshots: int, said: bool) -> None:
     case = bar({"output": {"stress": True, "contacts": True, "snapshots": snapshots}})
