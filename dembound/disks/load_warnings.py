@@ -19,7 +19,7 @@ def load_warnings(scene: DiskScene) -> Iterator[str]:
         if load.force is None:
             continue
         nodes, forces = forces_of(load, scene)
-        for side, edge in scene.edges.items():
+        for edge in scene.edges.values():
             on_side = np.isin(nodes, edge.nodes)
             if on_side.any():
                 yield from (f"load.{load.name}: {words}" for words in _at_side(scene, load, edge, forces, on_side))
