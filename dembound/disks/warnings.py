@@ -16,11 +16,13 @@ from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.continuum_facts import continuum_warnings
 from dembound.disks.load_factor import load_factor_in_words
+from dembound.disks.load_warnings import load_warnings
 from dembound.disks.near_ties import near_tie_warnings
 from dembound.disks.outcome import SHOWN, block_in_words
 from dembound.disks.packing_errors import in_percent
 from dembound.disks.scene import DiskScene
 from dembound.disks.side_warnings import side_warnings
+from dembound.disks.spring_warnings import spring_warnings
 from dembound.disks.wave_front import slowest_speed
 from dembound.disks.wave_warnings import wave_warnings
 from dembound.meanings import MEANINGS
@@ -57,6 +59,8 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_settles_in_tension(scene),
         *wave_warnings(scene, time_step),
         *side_warnings(scene),
+        *spring_warnings(scene),
+        *load_warnings(scene),
         *_speed_of_the_packing(scene),
         *_unlikely_speed(scene),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
@@ -160,7 +164,7 @@ def _unlikely_speed(scene: DiskScene) -> Iterator[str]:
     if material.p_wave_speed is not None or any(unlikely_in("", material, scene.case)):
         return
     speed = scene.ground.wave_speeds(0)[0]
-    if found := MEANINGS["wave speed"].doubt(speed, "m/s"):  # nan is not
+    if found := MEANINGS["wave speed"].doubt(speed, "m/s", given=False):  # nan is not
         yield f"material.emod: makes P waves of a speed that {found}; are emod and pb_emod in Pa, density in kg/m³?"
 
 
