@@ -122,9 +122,12 @@ def _pulls(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
 
 def _not_downwards(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
     """An acceleration of the whole body that stays and is not gravity: upwards, sideways or in another unit."""
-    if getattr(table, "wave", None) is not None or not getattr(table, "is_everywhere", False):
+    if not getattr(table, "is_everywhere", False):
         return None
     across, up = numbers
+    if (wave := getattr(table, "wave", None)) is not None:
+        is_weight = across == 0.0 and math.isclose(-up, GRAVITY, rel_tol=0.01)
+        return f'is gravity times wave "{wave}"; a weight that stays has no wave' if is_weight else None
     if up > 0.0:
         return f"is {up:g} m/s² upwards; likely gravity: write [{across:g}, {-up:g}]"
     for size, unit in GRAVITY_IN:

@@ -1,6 +1,6 @@
 """Warnings about loads of which less than the given force acts, as a side takes or holds it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -15,6 +15,7 @@ HELD = 0.1
 
 def load_warnings(scene: DiskScene) -> Iterator[str]:
     """All of them, one line each."""
+    yield from _twice(scene.case.load)
     for load in scene.case.load:
         if load.force is None:
             continue
@@ -39,3 +40,13 @@ def _at_side(scene: DiskScene, load: Load, edge: Edge, forces: np.ndarray, on_si
             f"has {100.0 * share:.3g} % of its force along {'xy'[prescribed[0]]} on disks of boundary.{side}, which "
             "prescribes their motion, so that this part moves nothing"
         )
+
+
+def _twice(loads: Sequence[Load]) -> Iterator[str]:
+    """Loads that are the same as an earlier one but for their name."""
+    seen: dict[str, str] = {}
+    for load in loads:
+        same = repr(load.model_copy(update={"name": ""}))
+        if same in seen:
+            yield f"load.{load.name}: is the same as load.{seen[same]}, so that it acts twice"
+        seen.setdefault(same, load.name)

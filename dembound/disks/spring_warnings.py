@@ -24,7 +24,9 @@ def spring_warnings(scene: DiskScene) -> Iterator[str]:
     places = places_of_sources(scene)
     for side in scene.edges:
         table = scene.case.side(side)
-        if isinstance(table, Springs):
+        if isinstance(table, Springs) and table.alpha_n == table.alpha_s == 0.0:
+            yield f'boundary.{side}: alpha_n and alpha_s are 0, so it has no springs; type = "viscous" is the same'
+        elif isinstance(table, Springs):
             yield from _wrong_source(scene, side, table, places)
             yield from _wrong_modulus(scene, side, table)
 

@@ -36,6 +36,9 @@ The mean is the bonds' share of the stiffness times the locked-in pressure; the 
 times that (three bricks, radius ratio 1.5).
 """
 
+UNLIKE_STRENGTHS = 100.0
+"""Factor between the strengths of bonds in tension and shear above which one is taken for a mistake."""
+
 SPEED_ERROR = 0.1
 """Share by which the P-wave speed of the packing may differ from the given one without a warning."""
 
@@ -54,6 +57,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
     return [
         *_empty_holes(scene),
         *_holes_at_periodic_sides(scene),
+        *_unlike_strengths(scene),
         *_steady_without_static(scene),
         *_locked_in(scene),
         *_settles_in_tension(scene),
@@ -68,18 +72,33 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
 
 
 def _empty_holes(scene: DiskScene) -> Iterator[str]:
-    """Holes that remove no disk, as none of the packing is centred in them."""
+    """Holes that remove no disk, as none of the packing is centred in them, or others have removed all of them."""
     brick, (left, bottom, right, top) = scene.ground.brick, scene.case.packing.box
     origin = np.array([left, bottom])
-    for place, hole in numbered("hole", scene.case.hole):
+    for number, (place, hole) in enumerate(numbered("hole", scene.case.hole)):
         x0, y0, x1, y1 = hole.box
         low, high = np.array([max(x0, left), max(y0, bottom)]), np.array([min(x1, right), min(y1, top)])
         first, last = np.floor((low - origin) / brick.size), np.floor((high - origin) / brick.size)
         last = np.minimum(last, np.array(scene.case.packing.copies) - (not brick.edge_rows.any()))
         across, up = (np.arange(begin, end + 1.0) for begin, end in zip(first, last, strict=True))
         tiles = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 1, 2)
-        if not hole.contains((origin + tiles * brick.size + brick.positions).reshape(-1, 2)).any():
+        places = (origin + tiles * brick.size + brick.positions).reshape(-1, 2)
+        inside = places[hole.contains(places)]
+        if len(inside) == 0:
             yield f"{place}: no particle is centred in it, so it removes none"
+        for other in scene.case.hole[:number]:
+            if len(inside) and other.contains(inside).all() and (other.stage == "before" or hole.stage == "after"):
+                yield f"{place}: lies within hole.{other.name}, so it removes no more particles"
+
+
+def _unlike_strengths(scene: DiskScene) -> Iterator[str]:
+    """Strengths of bonds in tension and in shear that differ more than those of any rock."""
+    tension, shear = scene.case.material.pb_ten, scene.case.material.pb_coh
+    if tension is not None and shear is not None and not 1.0 / UNLIKE_STRENGTHS <= shear / tension <= UNLIKE_STRENGTHS:
+        yield (
+            f"material.pb_coh: is {shear / tension:.3g} times material.pb_ten; bonds of rock and soil have 0.5 to 10, "
+            "are both in Pa?"
+        )
 
 
 def _holes_at_periodic_sides(scene: DiskScene) -> Iterator[str]:

@@ -48,3 +48,10 @@ def test_the_images_of_a_load_beside_a_plane_of_symmetry_are_counted() -> None:
     facts = disk_facts(scene({"type": "symmetry"}, position=[0.5, 5.5]))
     assert facts["load blow"].endswith("; with the images beyond left (0, -2e+05) N/m")
     assert "images" not in disk_facts(scene({"type": "symmetry"}, position=[5.5, 5.5]))["load blow"]
+
+
+def test_a_load_that_is_there_twice_is_warned_of() -> None:
+    blow = {"name": "blow", "force": [3e5, 0.0], "position": [5.5, 5.5], "wave": "blow"}
+    again, other = {**blow, "name": "again"}, {**blow, "name": "other", "position": [7.5, 5.5]}
+    found = list(load_warnings(build(small(GROUND, changes={"load": [blow, other, again]}))))
+    assert found == ["load.again: is the same as load.blow, so that it acts twice"]

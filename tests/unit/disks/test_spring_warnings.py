@@ -62,3 +62,9 @@ def test_a_distance_far_beyond_the_scene_is_warned_of(distance: float, wrong: bo
     found = said({"distance": distance}, load=[BLOW])
     assert len(found) == wrong
     assert not wrong or "boundary.bottom.distance: is 230 m, 10.3 times" in found[0]
+
+
+def test_springs_without_stiffness_are_warned_of() -> None:
+    (found,) = said({"distance": 10.0, "alpha_n": 0.0, "alpha_s": 0.0})
+    assert found.startswith("boundary.bottom: alpha_n and alpha_s are 0, so it has no springs")
+    assert said({"distance": 10.0, "alpha_n": 0.0}) == []
