@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +51,8 @@ __all__ = [
 
 def load(path: Path | str) -> Case:
     """Read a case file; raises CaseError with one line per mistake."""
+    if isinstance(path, str) and "\n" in path:
+        raise CaseError(["path: is the text of a case, must be the path of a case file; give dembound.loads(text)"])
     return kinds.load(Path(path))
 
 
@@ -85,7 +88,7 @@ def change(case: Case, changes: Mapping[str, Any], name: str | None = None) -> C
     """
     plain = {key: _in_toml_words(value, key) for key, value in changes.items()}
     changed = kinds.with_changes(case, plain)
-    return changed if name is None else kinds.loads(changed.text, changed.folder, name)
+    return changed if name is None else replace(changed, name=name)
 
 
 def run(

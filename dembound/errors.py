@@ -66,6 +66,10 @@ class NameMissingError(CaseError, KeyError):
     __str__ = Exception.__str__  # without the quotes of a KeyError
 
 
+class NumberMissingError(CaseError, IndexError):
+    """A number beyond those that results have; the message has their range. Also an IndexError, as of any list."""
+
+
 class RecordError(CaseError):
     """A record of results that cannot be read, is damaged, or lacks what every record has."""
 

@@ -48,8 +48,11 @@ class Meaning:
         """Whether no size is unlikely."""
         return self.low == 0.0 and self.high == math.inf
 
-    def doubt(self, value: float, unit: str) -> str | None:
-        """What is unlikely about a value, in words, with what to write instead; None for a likely one."""
+    def doubt(self, value: float, unit: str, *, given: bool = True) -> str | None:
+        """What is unlikely about a value, in words, and what to write for it if it is given; None for a likely one.
+
+        Not given are values that follow from others.
+        """
         size = abs(value)
         if size == 0.0 or self.low <= size <= self.high or size in self.spared:
             return None
@@ -57,6 +60,8 @@ class Meaning:
         limits = f"{self.low:,.12g} to {self.high:,.12g}" if self.high >= 1.0 else f"{self.low:g} to {self.high:g}"
         says = f"is {value:g}{of}, where {self.whose} {limits if max(self.high, 1 / self.low) < 1e7 else self._short}"
         found = [f"{slip.what}: write {mended:.4g}" for slip, mended in self._mended(value)]
+        if not given:
+            return says
         return f"{says}; likely {' or '.join(found)}" if found else f"{says}; is it in {unit}?" if of else says
 
     @property

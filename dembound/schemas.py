@@ -5,6 +5,7 @@ them.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,9 +29,11 @@ def loads(text: str, folder: Path = Path(), name: str = "case", files: Mapping[s
 
 def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
     """The case with some keys changed, see `case.writer.with_changes`."""
-    return writer.with_changes(case, changes, SCHEMAS)
+    return replace(writer.with_changes(case, changes, SCHEMAS), origin=case.origin)
 
 
 def checked(case: Case) -> Case:
     """The case, its tables checked as if they had been read from a file; errors as `load`."""
-    return case if case.is_checked else loads(case.text, case.folder, case.name, case.files)
+    if case.is_checked:
+        return case
+    return replace(loads(case.text, case.folder, case.name, case.files), origin=case.origin)

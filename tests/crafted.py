@@ -1,4 +1,4 @@
-"""Results that no run has written: links, cycles, wrong types and shapes, missing parts, sizes without numbers."""
+"""Results that no run has written: links, cycles, wrong types, shapes and numbers, missing parts, absurd sizes."""
 
 import json
 import random
@@ -183,6 +183,62 @@ def told(path: Path, draw: random.Random) -> str:
         return f"{item.name} {key} = {value!r:.30}"
 
 
+def one_changed(values: np.ndarray, draw: random.Random) -> tuple[np.ndarray, str]:
+    """The same numbers, of at least one row, with one of them changed, or with rows in another order."""
+    new = np.array(values)
+    flat, at = new.reshape(-1), draw.randrange(new.size)
+    row, other = at // (new.size // len(new)), draw.randrange(len(new))
+    name = draw.choice(
+        ["nan", "inf", "minus inf", "huge", "tiny", "negative", "one more", "one less", "swap", "repeat"]
+    )
+    if name == "swap":
+        new[[row, other]] = new[[other, row]]
+    elif name == "repeat":
+        new[other:] = new[other]
+    else:
+        old = float(flat[at])
+        found = {
+            "nan": np.nan, "inf": np.inf, "minus inf": -np.inf, "huge": 1e300, "tiny": 1e-300,
+            "negative": -old or -1.0, "one more": old + 1.0, "one less": old - 1.0,
+        }[name]  # fmt: skip
+        if new.dtype.kind == "f":
+            flat[at] = found
+        else:
+            limits = (0, 1) if new.dtype.kind == "b" else (np.iinfo(new.dtype).min, np.iinfo(new.dtype).max)
+            flat[at] = int(min(max(limits[0], np.nan_to_num(found, nan=limits[1])), limits[1] // 2 + 1))
+    return new, f"{name} at {at}"
+
+
+def miscounted(path: Path, draw: random.Random) -> str:
+    """One number of a dataset that is another one, or rows in another order."""
+    with h5py.File(path, "a") as file:
+        place = some(file, draw, h5py.Dataset)
+        item = file[place]
+        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iufb" or item.size == 0:
+            return f"{place} left"
+        values, how = one_changed(np.atleast_1d(item[()]), draw)
+        item[...] = values.reshape(item.shape)
+        return f"{place} {how}"
+
+
+def misdescribed(path: Path, draw: random.Random) -> str:
+    """An attribute anywhere that is another number, or of another type."""
+    with h5py.File(path, "a") as file:
+        found: list[Any] = [file] * bool(file.attrs)
+        file.visititems(lambda _, item: found.append(item) if len(item.attrs) > ("unit" in item.attrs) else None)
+        item = draw.choice(found)
+        key = draw.choice(sorted(item.attrs))
+        value = np.asarray(item.attrs[key])
+        if value.dtype.kind in "iufb" and value.size > 0 and draw.random() < 0.6:
+            new, how = one_changed(np.atleast_1d(value), draw)
+            item.attrs[key] = new.reshape(value.shape)[()]
+        else:
+            made = {"text": "x", "number": 1.5, "count": 3, "list": [1.0, 2.0, 3.0], "texts": ["a", "b"]}
+            how = draw.choice(sorted(made))
+            item.attrs[key] = made[how]
+        return f"{item.name} {key} {how}"
+
+
 def written(path: Path, draw: random.Random) -> str:
     """Another text in place of a file of JSON, or of an archive; or with one entry changed."""
     if path.suffix == ".json" and draw.random() < 0.7:
@@ -194,6 +250,8 @@ def written(path: Path, draw: random.Random) -> str:
         whole = json.loads(path.read_text())
         target = whole if tables is not inner else whole[next(k for k in whole if whole[k] == inner)]
         value = draw.choice([None, "x", -1, 1e308, [], {}, [{}], True])
+        if isinstance(tables[key], int | float) and draw.random() < 0.5:
+            value = draw.choice([tables[key] + 1, -tables[key], float("nan"), float("inf")])
         if draw.random() < 0.3:
             target.pop(key, None)
         else:
@@ -215,10 +273,15 @@ def repacked(path: Path, draw: random.Random) -> str:
     if name == "facts":
         facts = json.loads(arrays[name].tobytes())
         key = draw.choice(sorted(facts))
-        facts[key] = draw.choice([None, "x", -1, 1e308, [], {}, "[run\n"])
+        facts[key] = draw.choice([None, "x", -1, 1e308, [], {}, "[run\n", float("nan"), 2**70])
         arrays[name] = np.frombuffer(json.dumps(facts).encode(), np.uint8)
         name = f"fact {key}"
     else:
+        if arrays[name].size > 0 and arrays[name].dtype.kind in "iufb" and draw.random() < 0.6:
+            values, how = one_changed(np.atleast_1d(arrays[name]), draw)
+            arrays[name] = values.reshape(arrays[name].shape)
+            np.savez(path, **arrays)
+            return f"{name} {how}"
         change = draw.choice((lambda a: a[None], lambda a: a.ravel()[:0], lambda a: a.astype("S4"), lambda a: None))
         arrays[name] = change(arrays[name])
     kept = {name: values for name, values in arrays.items() if values is not None}
@@ -226,7 +289,10 @@ def repacked(path: Path, draw: random.Random) -> str:
     return name
 
 
-CHANGES = (linked, linked, retyped, retyped, swollen, spread, removed, told, told)
+CHANGES = (
+    linked, retyped, retyped, swollen, spread, removed, told,
+    misdescribed, misdescribed, miscounted, miscounted, miscounted,
+)  # fmt: skip
 FILES = (written, repacked)
 
 

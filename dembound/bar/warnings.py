@@ -21,6 +21,7 @@ from dembound.casefile.magnitudes import (
     is_quasi_static,
     large_stress,
     large_velocity,
+    stress_in_words,
     stress_warnings,
     time_warnings,
 )
@@ -51,7 +52,9 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *(times or ends_too_soon(case)),  # with doubtful times of waves the second check means nothing
         *_dashpots_at_soft_ends(case),
         *_unmatched_dashpots(scene),
+        *_loads_at_dashpots(case),
         *_long_bonds_across_cracks(case),
+        *_too_tough(case),
         *stress_beside_strength(case),
         *_unlikely_speeds(case),
         *_large_strains(case),
@@ -181,6 +184,41 @@ def _dashpots_at_soft_ends(case: BarCase) -> Iterator[str]:
                 f"boundary.{side}: is at a soft end of peridynamics and reflects a part of every wave; "
                 "give method.corrected_ends = true"
             )
+
+
+def _loads_at_dashpots(case: BarCase) -> Iterator[str]:
+    """Loads on ends that absorb: what enters is the part that dashpots or a layer beyond leave to the bar."""
+    for load in case.load:
+        end, supports = case.bar.end(load.side), end_supports(case, load.side)
+        impedance = end.density * end.speed * end.area
+        beyond = impedance if case.side(load.side).layer else float(supports.damping.sum())
+        if beyond > TOO_MUCH * impedance:
+            taken = beyond / (impedance + beyond)
+            stress = stress_in_words((1.0 - taken) * abs(load.pressure) * case.wave[load.wave].peak())
+            yield (
+                f"load.{load.name}: is on an end that absorbs: boundary.{load.side} takes {100.0 * taken:.3g} % of it, "
+                f"and up to {stress} enters the bar; on a free end all of it does"
+            )
+
+
+def _too_tough(case: BarCase) -> Iterator[str]:
+    """A fracture energy above the energy of all waves that enter: no crack can open all the way."""
+    bar = case.bar
+    if bar.range or bar.fracture_energy is None or not (case.load or case.driving):
+        return
+    energy = 0.0
+    for side in ("left", "right"):
+        if end_supports(case, side).prescribed.any():
+            return  # grips work as long as the run lasts
+        time = moments(case, side)
+        time = np.minimum(time, case.run.duration)
+        power = entering_pressure(case, side, time) ** 2 / (bar.density * bar.speed)
+        energy += float(np.sum(0.5 * (power[1:] + power[:-1]) * np.diff(time)))
+    if 0.0 < energy < bar.fracture_energy:
+        yield (
+            f"bar.fracture_energy: is {bar.fracture_energy:.4g} J/m², more than all waves bring in, {energy:.3g} J/m², "
+            "so no crack can open all the way; is it in J/m² (1 N/mm is 1,000 J/m²)?"
+        )
 
 
 def _unmatched_dashpots(scene: BarScene) -> Iterator[str]:

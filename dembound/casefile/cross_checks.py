@@ -8,6 +8,9 @@ from dembound.casefile.messages import choices, show
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
 
+MOST_MONITORS = 1000
+"""Largest number of monitors; a record of them is searched for damage in seconds, see `results.structure`."""
+
 
 def unknown_waves(named: Iterable[tuple[str, str]], waves: Mapping[str, object]) -> Iterator[str]:
     """Keys that name a wave the case does not define; named: each key with the name in it."""
@@ -30,6 +33,12 @@ def repeated_names(key: str, tables: Sequence[Any]) -> Iterator[str]:
     for number, table in enumerate(tables, start=1):
         if table and first.setdefault(table.name, number) != number:
             yield f"{key}[{number}].name: {show(table.name)} is taken by {key}[{first[table.name]}]"
+
+
+def too_many(monitors: Sequence[Any]) -> Iterator[str]:
+    """More monitors than a record is searched for."""
+    if len(monitors) > MOST_MONITORS:
+        yield f"monitor: there are {len(monitors):,}, must be {MOST_MONITORS:,} or less; snapshots have all places"
 
 
 def never_silent(run: Run, monitors: Sequence[Any]) -> Iterator[str]:

@@ -177,12 +177,12 @@ def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, 
             yield f"{place}: {what} is {stress_in_words(stress)}, {100.0 * stress / strength:.2g} % of {against}"
 
 
-def large_velocity(place: str, velocity: float, speed: float, reason: str) -> Iterator[str]:
+def large_velocity(place: str, velocity: float, speed: float, reason: str, waves: str = "waves") -> Iterator[str]:
     """A particle velocity (m/s) that is a large part of the speed (m/s) of waves; reason : why, and what to do."""
     if velocity > LARGE_STRAIN * speed:
         yield (
-            f"{place}: its velocity, {velocity:.3g} m/s, is {100.0 * velocity / speed:.2g} % of that of waves, "
-            f"{speed:.4g} m/s, and so are strains; {reason}"
+            f"{place}: particles move at up to {velocity:.3g} m/s, {waves} run at {speed:.4g} m/s, so strains are "
+            f"v/c = {100.0 * velocity / speed:.2g} %; {reason}"
         )
 
 

@@ -29,12 +29,13 @@ class Case:
     wave : name -> table.
     load, monitor : in the order of the file.
     run, output, chart, sweep : the tables of these names.
-    name : the file's name without folder and ending.
+    name : of the results; the file's name without folder and ending, unless another one is given.
+    origin : the first of these names, which it keeps; by it a run finds that it would replace another case's results.
     folder : where relative paths in the case start.
     text : the TOML text the case was read from; for a case made in another way, an equivalent text. checked : the
     tables that have been read from `text` and checked against each other, by field.
 
-    Two cases are equal if their tables are equal; the last four attributes are not compared.
+    Two cases are equal if their tables are equal; the last five attributes are not compared.
     """
 
     title: str = ""
@@ -47,11 +48,13 @@ class Case:
     chart: Chart = field(default_factory=Chart)
     sweep: Sweep = field(default_factory=Sweep)
     name: str = field(default="case", compare=False)
+    origin: str = field(default="", compare=False, repr=False)
     folder: Path = field(default=Path(), compare=False)
     text: str = field(default="", compare=False, repr=False)
     checked: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "origin", self.origin or self.name)
         if not self.is_checked:  # also a case changed by `dataclasses.replace`
             given = {name: as_toml(table) for name, table in self.tables.items()}
             text = tomli_w.dumps({name: table for name, table in given.items() if table not in (None, "", {}, [])})

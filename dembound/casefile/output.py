@@ -2,8 +2,11 @@
 
 from dembound.table import Table, quantity
 
-MOST_SNAPSHOTS = 100_000
-"""Largest number of snapshots: each is a file for ParaView, and folders of more can hardly be opened."""
+MOST_SNAPSHOTS = 10_000
+"""Largest number of snapshots: a movie of them lasts minutes, and each is a file for ParaView.
+
+Most commands go through all snapshots of a record, which takes 1 ms each and more.
+"""
 
 
 class Output(Table):

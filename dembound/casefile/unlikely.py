@@ -10,6 +10,7 @@ from typing import Any
 from dembound.casefile.magnitudes import sampling_warnings, waves_used
 from dembound.casefile.messages import places
 from dembound.casefile.model import Case
+from dembound.casefile.wave_uses import wave_use_warnings
 from dembound.meanings import GRAVITY, MEANINGS
 from dembound.table import Table
 
@@ -26,7 +27,7 @@ GRAVITY_IN = ((1.0, "g"), (9810.0, "mm/s²"), (981.0, "cm/s²"), (0.00981, "km/s
 def unlikely(case: Case) -> list[str]:
     """All of them, one line each."""
     lines = [line for path, table in _all_tables(case) for line in unlikely_in(path, table, case)]
-    return [*lines, *sampling_warnings(case)]
+    return [*lines, *sampling_warnings(case), *wave_use_warnings(case)]
 
 
 def unlikely_in(path: str, table: Table, case: Case) -> Iterator[str]:
@@ -121,9 +122,12 @@ def _pulls(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
 
 def _not_downwards(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
     """An acceleration of the whole body that stays and is not gravity: upwards, sideways or in another unit."""
-    if getattr(table, "wave", None) is not None or not getattr(table, "is_everywhere", False):
+    if not getattr(table, "is_everywhere", False):
         return None
     across, up = numbers
+    if (wave := getattr(table, "wave", None)) is not None:
+        is_weight = across == 0.0 and math.isclose(-up, GRAVITY, rel_tol=0.01)
+        return f'is gravity times wave "{wave}"; a weight that stays has no wave' if is_weight else None
     if up > 0.0:
         return f"is {up:g} m/s² upwards; likely gravity: write [{across:g}, {-up:g}]"
     for size, unit in GRAVITY_IN:

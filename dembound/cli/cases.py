@@ -84,6 +84,7 @@ def run(
     """
     from dembound.results.folder import Folder
     from dembound.running import preflight
+    from dembound.running.recorded import require_replaceable
     from dembound.studies.estimate import require_budget
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
@@ -105,7 +106,9 @@ def run(
     if bound is not None and name is None:
         loaded = [replace(case, name=name_within(case.name, bound)) for case in loaded]
     for case in loaded:
-        Folder(output, case.name).check()
+        folder = Folder(output, case.name)
+        folder.check()
+        require_replaceable(folder, case)
     if bound is not None:
         loaded = [chosen(case, bound, keep, changes) for case in loaded]
     for case in loaded[1:]:  # the first is planned below, before anything is written

@@ -139,6 +139,7 @@ def hopkinson(
     """
     from dembound.gauge.hopkinson import specimen
     from dembound.gauge.hopkinson_io import combined
+    from dembound.gauge.pulse_checks import doubts_of_pulses
     from dembound.gauge.pulses import Setup, Windows, at_faces
     from dembound.gauge.slope_error import doubts_of_slope, slope_error
 
@@ -161,15 +162,15 @@ def hopkinson(
     if second_gauge is not None:
         sources.append((second or incident, second_column))
     strains = _strains(sources, reading, treatment, setup.modulus, clipped)
-    faces = at_faces(
-        combined(*strains, opposite=opposite), setup, Windows(incident_window, reflected_window, transmitted_window)
-    )
+    signals = combined(*strains, opposite=opposite)
+    windows = Windows(incident_window, reflected_window, transmitted_window)
+    faces = at_faces(signals, setup, windows)
     found = specimen(faces, setup, equilibrium)
     if found.equilibrium is None:
         said = f"the forces on the specimen never agree to {100.0 * equilibrium:g} %"
         err.print(f"warning: {said}: stress over strain is no law of it")
     error = slope_error(faces, setup, equilibrium, found)
-    for warning in doubts_of_slope(found, error):
+    for warning in (*doubts_of_slope(found, error), *doubts_of_pulses(signals, faces, setup, windows, found)):
         err.print(f"warning: {warning}")
     out.print(_overview(found, equilibrium, error))
     _write(faces, found, output, title, table)
@@ -238,6 +239,7 @@ def _overview(found: Specimen, tolerance: float, error: SlopeError | None) -> Ta
     overview.add_row("mean strain rate (1/s)", rates[0], "", rates[1])
     if error is not None:
         overview.add_row("stress over strain (GPa)", f"{found.slope / 1e9:.4g} ± {error.half_width / 1e9:.2g}", "", "")
-        shares = (f"{100.0 * each / found.slope:.2g}" for each in (error.inertia, error.time, error.line, error.noise))
-        overview.add_row("± by inertia, time, line, noise (%)", ", ".join(shares), "", "")
+        parts = error.inertia, error.time, error.line, error.noise, error.balance
+        shares = ", ".join(f"{100.0 * each / found.slope:.2g}" for each in parts)
+        overview.add_row("± by inertia, time, line, noise, balance (%)", shares, "", "")
     return overview

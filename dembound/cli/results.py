@@ -21,7 +21,7 @@ from dembound.cli.plotted import (
     QuantityOfMonitors,
     SceneField,
 )
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RecordError
 
 
 class Field(StrEnum):
@@ -194,7 +194,7 @@ def compare_histories(
 
 
 def results_file(path: Path) -> Path:
-    """The HDF5 file of a results argument; raises CaseError for a folder without one."""
+    """The HDF5 file of a results argument; raises RecordError for a folder without one, CaseError for no folder."""
     for candidate in (path, path / "run.h5", path / "calibration.h5"):
         if candidate.is_file():
             return candidate
@@ -204,4 +204,5 @@ def results_file(path: Path) -> Path:
         members = path / MEMBERS
         advice = f"name runs in {members}" if members.is_dir() else "its numbers are in sweep.csv"
         raise CaseError([f"{path}: is a sweep, not results of a single run; {advice}"])
-    raise CaseError([f"{path}: contains no results, must be a folder with run.h5 or calibration.h5"])
+    error = RecordError if path.exists() else CaseError  # a name that is mistyped is an argument
+    raise error([f"{path}: contains no results, must be a folder with run.h5 or calibration.h5"])

@@ -122,6 +122,13 @@ class DiskBody(Scene):
         """The particles; nodes of the continuum are recorded apart."""
         return self.disk_count
 
+    @cached_property
+    def in_snapshots(self) -> tuple[str, ...]:  # type: ignore[override]
+        """What the case asks for, and the motion of a continuum."""
+        beside = () if self.outside is None else ("displacement", "velocity", "stress")
+        asked = ("stress", self.case.output.stress), ("contacts", self.case.output.contacts)
+        return (*(name for name, there in asked if there), *(f"continuum/{name}" for name in beside))
+
     @property
     def nodes_beside(self) -> slice:
         """The nodes of the continuum round the body."""

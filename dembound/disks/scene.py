@@ -40,6 +40,10 @@ UPRIGHT = (True, False)
 """Along which axes a free-field column is periodic."""
 
 
+CANCELS = 1e-6
+"""Part of the forces on sides that their differences from stress times length may leave over, of rounding."""
+
+
 @dataclass(frozen=True)
 class DiskScene(DiskBody):
     """The arrays of a case, also those before an excavation.
@@ -74,13 +78,30 @@ class DiskScene(DiskBody):
         return particle_stress(self, contacts, displacement, REFERENCE)
 
     @property
-    def forces_by_side(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """Those of the target stress of the static stage, if there is one."""
+    def forces_by_side(self) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Those of the target stress of the static stage, if there is one.
+
+        A contact across a corner, and the disks that are left out there as they touch none of the body, act by one side
+        or by none, so that a side has not quite the stress times its length. It is recorded with that: its disk with
+        the largest force has the rest. Over all sides this cancels; where it does not, as a hole takes a part of a
+        side, sides are recorded with what acts by them.
+        """
         static = self.case.static
         if static is None or static.stress is None:
             return {}
-        stress = np.array(static.stress)
-        return {side: (each.node, each.under(stress)[:2]) for side, each in side_forces(self).items()}
+        stress, found, rests = np.array(static.stress), {}, np.zeros(2)
+        for side, each in side_forces(self).items():
+            acting, edge = each.under(stress)[:2], self.edges[side]
+            rest = edge.length * stress[[0, 2] if edge.axis == 0 else [2, 1]]
+            rest = rest * (1.0 if side in ("right", "top") else -1.0) - acting.sum(axis=1)
+            shown, most = acting.copy(), np.abs(acting).argmax(axis=1)
+            shown[[0, 1], most] += rest
+            rests += rest
+            found[side] = each.node, acting, shown
+        whole = sum(np.abs(acting).sum() for _, acting, _ in found.values())
+        if np.abs(rests).max() <= CANCELS * whole:
+            return found
+        return {side: (node, acting, acting) for side, (node, acting, _) in found.items()}
 
     @property
     def places_in_whole(self) -> np.ndarray:

@@ -1,10 +1,12 @@
 """What is found from a gauge on a bar."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from dembound.gauge.estimates import Estimate
+from dembound.gauge.passages import Part
 from dembound.gauge.peaks import Peaks
 
 
@@ -28,12 +30,25 @@ class Strength:
     attenuated_error: float = np.nan
 
 
+class Misfit(NamedTuple):
+    """A part of the passages that contradicts all returns: its name, its value, theirs, and what noise explains.
+
+    `of` is "wave speed", in m/s, or "attenuation", in 1/m.
+    """
+
+    of: str
+    part: str
+    there: float
+    value: float
+    noise: float
+
+
 @dataclass(frozen=True)
 class Findings:
     """Estimates from a gauge: wave speed in m/s, attenuation in 1/m, strengths in Pa; None where not estimated.
 
-    `peaks` are the tension peaks from which speed or attenuation are estimated, None if both were given; `warnings` say
-    what is doubtful.
+    `peaks` are the tension peaks from which speed or attenuation are estimated, None if both were given; `parts` what
+    parts of the passages give; `misfits` the parts that contradict them; `warnings` say what is doubtful.
     """
 
     peaks: Peaks | None
@@ -41,4 +56,6 @@ class Findings:
     attenuation: Estimate | None
     strength: Strength | None
     pull_back: float | None
+    parts: tuple[Part, ...] = ()
+    misfits: tuple[Misfit, ...] = ()
     warnings: tuple[str, ...] = ()

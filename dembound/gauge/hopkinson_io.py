@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.gauge.noise import undithered
 from dembound.gauge.plausibility import implausible_signal
 from dembound.gauge.pulses import Signals
 from dembound.gauge.recorded import is_record
@@ -15,6 +16,9 @@ from dembound.results.reader import history_of, open_record
 
 RISEN = 0.2
 """Share of the largest value at which the sign of the incident pulse, the first wave at its gauge, is seen."""
+
+LARGEST_STRAIN = 0.05
+"""Strain that no bar of a test has: those of steel yield at 1 %."""
 
 
 def read_strain(
@@ -32,12 +36,20 @@ def read_strain(
     recorded = is_record(path)
     signal = _recorded(path, reading) if recorded else read_signal(path, reading, usual="strain")
     if signal.unit not in ("strain", "Pa"):
-        said = f"are in {signal.unit}" if signal.unit else "have no known unit"
+        said = (
+            f"are in {signal.unit}"
+            if signal.unit
+            else "have no unit in the header that is read (Pa, MPa, V, mV, strain, %, µε)"
+        )
         raise CaseError([f"{path}: the values {said}, needs strains or stresses: --gauge-factor, --unit or --scale"])
     if not recorded and (problems := list(implausible_signal(signal.values, may_be_clipped=may_be_clipped))):
         raise CaseError([f"{path}: {problem}" for problem in problems])
     if not recorded:
         signal, _ = treated(signal, treatment)
+        scale = 1.0 if signal.unit == "strain" else modulus
+        if not (largest := float(np.abs(signal.values).max()) / scale) < LARGEST_STRAIN:
+            said = f"the largest strain is {100.0 * largest:.3g} %, of a bar below {100.0 * LARGEST_STRAIN:g} %"
+            raise CaseError([f"{path}: {said}: check --unit, --gain, --gauge-factor or --scale"])
     elif treatment is not None:
         signal, _ = treated(signal, replace(treatment, baseline=False))
     values = signal.values if signal.unit == "strain" else signal.values / modulus
@@ -64,7 +76,8 @@ def combined(incident: Signal, transmitted: Signal, second: Signal | None = None
             ["TRANSMITTED: its sign is opposite to that of the incident pulse; if it is wired so, --opposite"]
         )
     extra = None if second is None else sign * np.interp(time, second.time, second.values)
-    return Signals(time, sign * values, behind, extra)
+    digits = (undithered(incident.values)[1], undithered(transmitted.values)[1])
+    return Signals(time, sign * values, behind, extra, digits)
 
 
 def _recorded(path: Path, reading: Reading) -> Signal:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.gauge.baseline import Baseline
+from dembound.gauge.peaks import CREST, digit, smooth, white_noise, width_of
 
 SEED = 20160315
 """Of the random numbers: the same signal always has the same errors."""
@@ -30,13 +31,16 @@ class Noise:
     """Noise of a signal (k,).
 
     residuals : (r,) of quiet samples in a row; block : length of the pieces drawn from them; functions : (k, m) and
-    root : (m, m), a root of the covariance of the baseline's shares.
+    root : (m, m), a root of the covariance of the baseline's shares; smoothed : (k,) the signal, for what its
+    digitiser rounds to steps of the size `digit`, 0 if noise is larger.
     """
 
     residuals: np.ndarray
     block: int
     functions: np.ndarray
     root: np.ndarray
+    smoothed: np.ndarray
+    digit: float
 
     def draws(self) -> Iterator[np.ndarray]:
         """Possible errors (k,) of the signal, the same in every call."""
@@ -46,7 +50,27 @@ class Noise:
         for _ in range(int(np.clip(SAMPLES // count, FEWEST_DRAWS, MOST_DRAWS))):
             begins = random.integers(0, starts, size=-(-count // self.block))
             noise = self.residuals[(begins[:, None] + np.arange(self.block)).ravel()[:count]]
+            noise = noise + rounding(self.smoothed, self.digit, random)
             yield noise + self.functions @ (self.root @ random.standard_normal(self.root.shape[1]))
+
+
+def rounding(values: np.ndarray, digit: float, random: np.random.Generator) -> np.ndarray:
+    """Error (k,) of a digitiser with this step, 0 for none, whose levels lie anywhere; values : (k,) before it."""
+    if not digit > 0.0:
+        return np.zeros_like(values)
+    levels = values / digit + random.uniform()
+    return digit * (np.round(levels) - levels)
+
+
+def undithered(values: np.ndarray) -> tuple[np.ndarray, float]:
+    """A signal (k,) smoothed over an eighth of its largest passage, and the step of its digitiser.
+
+    The step is 0 without one, and where noise is larger than half of it, which then has the rounding in it.
+    """
+    step = digit(values)
+    if white_noise(values) > 0.5 * step:
+        return values, 0.0
+    return smooth(values, max(1, round(CREST * width_of(np.abs(values))))), step
 
 
 def noise_of(values: np.ndarray, baseline: Baseline) -> Noise:
@@ -63,4 +87,5 @@ def noise_of(values: np.ndarray, baseline: Baseline) -> Noise:
     if not baseline.worthwhile:
         functions = np.column_stack([functions, baseline.values])
         root = np.block([[root, np.zeros((len(root), 1))], [np.zeros((1, len(root))), np.ones((1, 1))]])
-    return Noise(residuals - residuals.mean(), max(1, min(50, len(residuals) // BLOCKS)), functions, root)
+    block = max(1, min(50, len(residuals) // BLOCKS))
+    return Noise(residuals - residuals.mean(), block, functions, root, *undithered(values))

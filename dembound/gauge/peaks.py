@@ -10,6 +10,12 @@ SMALLEST = 0.01
 NOISE_FACTOR = 5.0
 """Least height of a peak in standard deviations of the noise: noise alone reaches it in one of some 10⁶ samples."""
 
+LEVELS = 1.5
+"""Least height of a peak in steps of the digitiser: one is what rounding makes of any change."""
+
+FEW_LEVELS = 8
+"""Samples per distinct value from which a history is that of a digitiser."""
+
 CREST = 0.125
 """Range of the smoothing on either side, in widths of the largest peak at half its height.
 
@@ -33,8 +39,9 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
 
     The history is smoothed by parabolas over a quarter of its largest peak's width, and a peak is a maximum of the
     smoothed history, from a parabola through the three samples there. Its prominence must be at least `SMALLEST` of the
-    largest peak and `NOISE_FACTOR` times the noise. It must be at least half as wide as the largest peak, and its
-    distance from a higher one must exceed that width. The position of a long flat crest depends on the noise.
+    largest peak, `NOISE_FACTOR` times the noise, and `LEVELS` steps of the digitiser. It must be at least half as wide
+    as the largest peak, and its distance from a higher one must exceed that width. The
+    position of a long flat crest depends on the noise.
 
     Parameters
     ----------
@@ -47,7 +54,8 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
     width = width_of(values)
     reach = max(1, round(CREST * width))
     smoothed = smooth(values, reach)
-    least = max(SMALLEST * smoothed.max(), NOISE_FACTOR * white_noise(values) * noise_left(reach))
+    noise = NOISE_FACTOR * white_noise(values) * noise_left(reach)
+    least = max(SMALLEST * smoothed.max(), noise, LEVELS * digit(values))
     places = _summits(np.maximum(smoothed, 0.0), prominence=least, width=0.5 * width, distance=width)[:count]
     before, here, after = (smoothed[places + shift] for shift in (-1, 0, 1))
     bend = before - 2.0 * here + after
@@ -116,6 +124,12 @@ def width_of(values: np.ndarray) -> int:
 def white_noise(values: np.ndarray) -> float:
     """Standard deviation of white noise: from the median second difference, which is small for a smooth history."""
     return float(1.4826 * np.median(np.abs(np.diff(values, 2))) / np.sqrt(6.0))
+
+
+def digit(values: np.ndarray) -> float:
+    """The step of the digitiser of a history (k,); 0 where values are too many to be its levels."""
+    levels = np.unique(values)
+    return float(np.diff(levels).min()) if 1 < len(levels) * FEW_LEVELS <= len(values) else 0.0
 
 
 def _worthwhile_reach(noise: float, width: int) -> int:

@@ -6,6 +6,7 @@ import numpy as np
 
 from dembound.gauge.estimates import Estimate, tension_peaks
 from dembound.gauge.findings import Findings
+from dembound.gauge.passages import first_return
 from dembound.gauge.peaks import NOISE_FACTOR, SMALLEST, positive_peaks, white_noise, width_of
 from dembound.meanings import MEANINGS
 
@@ -32,6 +33,13 @@ SCATTER = 10.0
 
 CLOSE, FAR = 0.01, 0.2
 """Relative differences of two wave speeds that are never too large, and that are refused."""
+
+PART_SPEED, PART_DECAY, PART_FALL = 0.003, 0.05, 0.005
+"""Relative differences of wave speed and attenuation by parts of the passages, and difference of the latter, 1/m, from
+which a warning is due."""
+
+CAUSES = "look for another impact, lost samples, a jump of the baseline, an amplifier at its limit, AC coupling"
+"""Of passages that are not those of one pulse."""
 
 NOISY = 0.015
 """Noise over the height of a wave from which strengths get a warning: it has raised them by 2 to 3 % there."""
@@ -190,18 +198,6 @@ def unlikely_speed(speed: float) -> Iterator[str]:
     yield f"--wave-speed: {said}" + (f"; {fitting[0]}" if fitting else "")
 
 
-def first_return(time: np.ndarray, values: np.ndarray, position: float, length: float) -> Estimate | None:
-    """Wave speed from the first passages, 2(L − x_g)/Δt; None where the first wave is not followed by its reflection.
-
-    time, values : (k,) s and any unit; position, length : m. The error is that of half a sample at either crest.
-    """
-    out, back = positive_peaks(time, -values, 1), positive_peaks(time, values, 1)
-    if not len(out.time) or not len(back.time) or not back.time[0] > out.time[0]:
-        return None
-    way, between = 2.0 * (length - position), float(back.time[0] - out.time[0])
-    return Estimate(way / between, way / between * np.sqrt(0.5) * float(time[1] - time[0]) / between, 2)
-
-
 def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[str]:
     """Message if the wave speed from the returns differs from that of the first passages by more than both scatter."""
     if first is None:
@@ -211,12 +207,32 @@ def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[st
         )
         return
     off = abs(speed.value / first.value - 1.0)
-    allowed = max(SCATTER * np.hypot(np.nan_to_num(speed.error), first.error) / first.value, CLOSE)
-    if off > allowed:
+    allowed = min(max(SCATTER * np.hypot(np.nan_to_num(speed.error), first.error) / first.value, CLOSE), FAR)
+    if off > FAR:
+        yield (
+            f"the returns give {speed.value:.5g} m/s, the first passages {first.value:.5g} m/s: {100.0 * off:.2g} % "
+            f"apart: these are not the returns of one pulse; {CAUSES}, check --position and --length, "
+            "and try --peaks 2"
+        )
+    elif off > allowed:
         yield (
             f"the returns give {speed.value:.5g} m/s, the first passages {first.value:.5g} m/s: {100.0 * off:.2g} % "
             f"apart, must be within {100.0 * allowed:.2g} %; check --position and --length"
         )
+
+
+def misfit(found: Findings, of: str) -> Iterator[str]:
+    """Message about a part of the passages that contradicts the wave speed or the attenuation, as `of` names them."""
+    for each in found.misfits:
+        off = abs(each.there - each.value)
+        least = max(PART_DECAY * each.value, PART_FALL) if of == "attenuation" else PART_SPEED * each.value
+        if each.of == of and off > least:
+            unit = "1/m" if of == "attenuation" else "m/s"
+            yield (
+                "one pulse to and fro does not explain the record: "
+                f"the {of} is {each.value:.4g} {unit} by all returns, {each.there:.4g} by {each.part}, "
+                f"{off:.2g} apart where noise explains {each.noise:.1g}; {CAUSES}"
+            )
 
 
 def raised_by_noise(noise: float, crest: float) -> Iterator[str]:

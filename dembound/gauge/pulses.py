@@ -151,21 +151,29 @@ class Setup:
 
 
 class Signals(NamedTuple):
-    """Strains at the gauges at the same even times (k,) s, loads positive; second : of the second gauge, or None."""
+    """Strains at the gauges at the same even times (k,) s, loads positive; second : of the second gauge, or None.
+
+    digits : as of `Faces`.
+    """
 
     time: np.ndarray
     incident: np.ndarray
     transmitted: np.ndarray
     second: np.ndarray | None = None
+    digits: tuple[float, float] = (0.0, 0.0)
 
 
 class Faces(NamedTuple):
-    """Strains (n,) of the pulses at the faces of the specimen, loads positive; time : s from when the pulse arrives."""
+    """Strains (n,) of the pulses at the faces of the specimen, loads positive; time : s from when the pulse arrives.
+
+    digits : steps of the digitisers of the incident and of the transmission bar, 0 where noise is larger.
+    """
 
     time: np.ndarray
     incident: np.ndarray
     reflected: np.ndarray
     transmitted: np.ndarray
+    digits: tuple[float, float] = (0.0, 0.0)
 
 
 class Windows(NamedTuple):
@@ -201,15 +209,15 @@ def at_faces(signals: Signals, setup: Setup, windows: Windows | None = None) -> 
     length = min(last - first for first, last in cuts)
     step = float(time[-1] - time[0]) / (len(time) - 1)
     since = step * np.arange(int(length / step))
-    pulses = (
+    pulses = [
         np.interp(begin + delay + since, time, moved(time, values, way, bar))
         for values, way, delay in (
             (incident, setup.incident_gauge, 0.0),
             (reflected, -setup.incident_gauge, late[0]),
             (transmitted, -setup.transmitted_gauge, late[1]),
         )
-    )
-    return Faces(since, *pulses)
+    ]
+    return Faces(since, pulses[0], pulses[1], pulses[2], signals.digits)
 
 
 def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Window, Window, Window]:

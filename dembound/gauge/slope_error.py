@@ -8,7 +8,8 @@
 - Line. The standard error by the deviations from the line, of which as many count as there are correlation times
   within it: of the specimen's reverberations, and of a law that bends.
 - Noise. The scatter of slopes from the same pulses with the same noise once more, as drawn some tens of times; as the
-  strain is an integral, noise makes it drift.
+  strain is an integral, noise makes it drift. A digitiser rounds once more, too, between levels anywhere.
+- Balance. The impulses of both faces differ by more than inertia makes: the strain this adds at the largest stress.
 """
 
 import math
@@ -19,7 +20,8 @@ import numpy as np
 
 from dembound.gauge.estimates import FEWEST
 from dembound.gauge.hopkinson import Specimen, slope_of, specimen
-from dembound.gauge.peaks import white_noise
+from dembound.gauge.noise import rounding
+from dembound.gauge.peaks import CREST, smooth, white_noise, width_of
 from dembound.gauge.pulses import Faces, Setup
 
 SEED, DRAWS = 0, 40
@@ -37,17 +39,18 @@ WIDE = 2.0
 
 @dataclass(frozen=True)
 class SlopeError:
-    """What is uncertain about a slope, Pa: what inertia has added, and standard errors of time, of line, of noise."""
+    """What is uncertain about a slope, Pa: what inertia has added, and standard errors of the other parts."""
 
     inertia: float
     time: float
     line: float
     noise: float
+    balance: float
 
     @property
     def half_width(self) -> float:
         """Largest error, Pa, in 95 of 100 tests."""
-        return abs(self.inertia) + WIDE * math.hypot(self.time, self.line, self.noise)
+        return abs(self.inertia) + WIDE * math.hypot(self.time, self.line, self.noise, self.balance)
 
 
 def slope_error(faces: Faces, setup: Setup, tolerance: float, found: Specimen) -> SlopeError | None:
@@ -60,7 +63,22 @@ def slope_error(faces: Faces, setup: Setup, tolerance: float, found: Specimen) -
         _of_time(faces, setup, tolerance, there),
         _of_line(found.strain[there], found.stress[there]),
         _of_noise(faces, setup, tolerance),
+        _of_balance(faces, setup, found),
     )
+
+
+def unbalanced(faces: Faces, setup: Setup, found: Specimen, end: int) -> float:
+    """Difference of the impulses of both faces in so many samples over their mean, less what inertia may make.
+
+    A specimen of no more than the density of the bars makes 0 to ρ_b L_s A_s v of it, v its mean velocity.
+    """
+    until = slice(0, end)
+    step = float(faces.time[1] - faces.time[0])
+    front, back = (step * float(np.sum(each[until])) for each in (found.front, found.back))
+    velocity = 0.5 * setup.bar.speed * (faces.incident - faces.reflected + faces.transmitted)
+    inertia = setup.modulus / setup.bar.speed**2 * setup.specimen_length * float(np.abs(velocity[until]).max())
+    difference = front - back
+    return (difference - min(max(difference, 0.0), inertia)) / (0.5 * (abs(front) + abs(back)))
 
 
 def doubts_of_slope(found: Specimen, error: SlopeError | None) -> Iterator[str]:
@@ -105,6 +123,15 @@ def _of_time(faces: Faces, setup: Setup, tolerance: float, there: slice) -> floa
     return math.hypot(*changes)
 
 
+def _of_balance(faces: Faces, setup: Setup, found: Specimen) -> float:
+    """Standard error of the slope, Pa, by impulses of the faces that differ: what they change in the strain."""
+    until = slice(0, found.largest + 1)
+    impulse = 0.5 * float(np.sum(found.front[until] + found.back[until])) * float(faces.time[1] - faces.time[0])
+    compliance = setup.bar.speed / setup.specimen_length * setup.specimen_area / (setup.modulus * setup.area)
+    change = compliance * impulse * unbalanced(faces, setup, found, until.stop)
+    return abs(found.slope * change) / abs(float(found.strain[found.largest]))
+
+
 def _of_line(strain: np.ndarray, stress: np.ndarray) -> float:
     """Standard error of the slope, Pa, by the deviations of stresses from the line over strains (m,)."""
     from scipy.signal import fftconvolve
@@ -123,11 +150,20 @@ def _of_noise(faces: Faces, setup: Setup, tolerance: float) -> float:
     """Standard error of the slope, Pa, by the noise of the signals; 0 without noise."""
     pulses = {name: getattr(faces, name) for name in ("incident", "reflected", "transmitted")}
     noise = {name: white_noise(values) for name, values in pulses.items()}
-    if max(noise.values()) < NO_NOISE * float(np.abs(faces.incident).max()):
+    digits = dict(zip(pulses, (faces.digits[0], *faces.digits), strict=True))
+    if max(*noise.values(), *digits.values()) < NO_NOISE * float(np.abs(faces.incident).max()):
         return 0.0
     random, slopes = np.random.default_rng(SEED), []
+    smoothed = {
+        name: smooth(values, max(1, round(CREST * width_of(np.abs(values))))) for name, values in pulses.items()
+    }
     for _ in range(DRAWS):
-        drawn = {name: pulses[name] + noise[name] * random.standard_normal(len(faces.time)) for name in pulses}
+        drawn = {
+            name: values
+            + noise[name] * random.standard_normal(len(faces.time))
+            + rounding(smoothed[name], digits[name], random)
+            for name, values in pulses.items()
+        }
         slopes.append(specimen(faces._replace(**drawn), setup, tolerance).slope)
     known = np.array(slopes)[~np.isnan(slopes)]
-    return float(known.std(ddof=1)) if len(known) >= FEWEST else math.inf
+    return 0.5 * float(np.ptp(np.percentile(known, [16.0, 84.0]))) if len(known) >= FEWEST else math.inf

@@ -23,6 +23,7 @@ from dembound.gauge.findings import Findings, Strength
 from dembound.gauge.gauge_io import FREE, Gauge, not_above_zero, not_on_bar
 from dembound.gauge.matching import matched
 from dembound.gauge.noise import Noise
+from dembound.gauge.passages import Part, first_return, parts
 from dembound.gauge.peaks import Peaks, width_of
 from dembound.gauge.plausibility import (
     FAR,
@@ -30,8 +31,8 @@ from dembound.gauge.plausibility import (
     as_doubtful,
     contradicting_speeds,
     few_returns,
-    first_return,
     implausible_size,
+    misfit,
     raised_by_noise,
     uncertain_decay,
     uncertain_speed,
@@ -94,19 +95,21 @@ def evaluate(
         found = replace(found, pull_back=_pull_back(gauge, found.speed.value, free_end))
     if gauge.metadata is not None:
         return found
-    if gauge.noise is not None:
-        same = given if found.peaks is None else given._replace(first=len(found.peaks.time))
-        found = with_errors(found, list(_replicates(gauge, gauge.noise, same)))
+    same = given if found.peaks is None else given._replace(first=len(found.peaks.time))
+    found = with_errors(found, [] if gauge.noise is None else list(_replicates(gauge, gauge.noise, same)))
     return replace(found, warnings=tuple(_doubts(gauge, found)))
 
 
 def _estimated(gauge: Gauge, given: Given) -> Findings:
     """All estimates from one signal."""
     peaks, speed, decay = _waves(gauge, given.speed, given.coefficient, given.first)
-    if given.spall is None:
-        return Findings(peaks, speed, decay, None, None)
-    strength = _strength(gauge.in_pascals(speed.value), speed.value, decay, given.spall, given.pulse_end)
-    return Findings(peaks, speed, decay, strength, None)
+    found: list[Part] = []
+    if gauge.metadata is None and peaks is not None and len(peaks.time) > 1:
+        found = parts(gauge.time, gauge.stress, (gauge.position, gauge.length), peaks, speed.value)
+    strength = None
+    if given.spall is not None:
+        strength = _strength(gauge.in_pascals(speed.value), speed.value, decay, given.spall, given.pulse_end)
+    return Findings(peaks, speed, decay, strength, None, tuple(found))
 
 
 def _replicates(gauge: Gauge, noise: Noise, given: Given) -> Iterator[Findings]:
@@ -124,7 +127,7 @@ def _doubts(gauge: Gauge, found: Findings) -> Iterator[str]:
         yield f"the sampling is coarse: {width} samples above half the height of the largest wave"
     if about_speed:
         yield from as_doubtful(found)
-    elif doubts := list(uncertain_decay(found.attenuation)):
+    elif doubts := list(misfit(found, "attenuation")) or list(uncertain_decay(found.attenuation)):
         yield from doubts
         if found.strength is not None and found.strength.attenuated is not None:
             yield "as doubtful, as by this attenuation: the attenuated strength"
@@ -141,9 +144,10 @@ def _doubts_of_speed(gauge: Gauge, found: Findings) -> Iterator[str]:
     first = first_return(gauge.time, gauge.stress, gauge.position, gauge.length)
     doubts = list(contradicting_speeds(found.speed, first))
     if first is not None and doubts and abs(found.speed.value / first.value - 1.0) > FAR:
-        raise CaseError([f"--wave-speed: {doubts[0]}"])
+        raise CaseError([f"RECORD: {doubts[0]}"])
     yield from doubts
-    yield from uncertain_speed(found.speed)
+    told = list(misfit(found, "wave speed"))
+    yield from told or uncertain_speed(found.speed)
 
 
 def _problems_with_options(

@@ -1,38 +1,73 @@
-"""Standard errors of findings, from those of signals with other noise."""
+"""Standard errors of findings: from signals with other noise, and from parts of the passages that contradict them."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from dembound.gauge.estimates import FEWEST, Estimate
-from dembound.gauge.findings import Findings
+from dembound.gauge.findings import Findings, Misfit
+from dembound.gauge.passages import Part
+
+SURE = 4.0
+"""Difference of a part of the passages from all returns, in its standard errors by noise, that contradicts them."""
+
+EXACT = 5e-4
+"""Relative difference that the samples of a record may make without any noise."""
 
 
-def with_errors(found: Findings, others: list[Findings]) -> Findings:
+def with_errors(found: Findings, others: Sequence[Findings]) -> Findings:
     """The findings with the scatter of those from other signals as standard errors.
 
-    Errors of speed and attenuation remain those of the lines through the peaks if these are larger.
+    Errors of speed and attenuation remain those of the lines through the peaks if these are larger, and they are at
+    least the difference of a part of the passages that contradicts all returns.
     """
-    speed = _less_certain(found.speed, [other.speed for other in others])
-    decay = found.attenuation
-    if decay is not None:
-        decay = _less_certain(decay, [other.attenuation for other in others if other.attenuation is not None])
+    speed, of_speed = _estimated("wave speed", found, others, lambda each: each.speed, lambda part: part.speed)
+    decay, of_decay = _estimated("attenuation", found, others, lambda each: each.attenuation, lambda part: part.decay)
+    assert speed is not None
     strength = found.strength
     if strength is not None:
         spalls = [other.strength for other in others if other.strength is not None]
         attenuated = [each.attenuated for each in spalls if each.attenuated is not None]
         nominal_error, attenuated_error = _scatter([each.nominal for each in spalls]), _scatter(attenuated)
         strength = replace(strength, nominal_error=nominal_error, attenuated_error=attenuated_error)
-    return replace(found, speed=speed, attenuation=decay, strength=strength)
+    misfits = tuple(each for each in (of_speed, of_decay) if each is not None)
+    return replace(found, speed=speed, attenuation=decay, strength=strength, misfits=misfits)
 
 
-def _less_certain(estimate: Estimate, others: list[Estimate]) -> Estimate:
-    """An estimate with the scatter of others as its standard error if this is larger."""
-    if not estimate.points:
-        return estimate
-    return estimate._replace(error=float(np.fmax(estimate.error, _scatter([each.value for each in others]))))
+def _estimated(
+    of: str,
+    found: Findings,
+    others: Sequence[Findings],
+    whole: Callable[[Findings], Estimate | None],
+    partial: Callable[[Part], float],
+) -> tuple[Estimate | None, Misfit | None]:
+    """An estimate with its error, and the part that contradicts it most, if one does.
+
+    of : its name. whole : takes it from findings; partial : the same from a part of the passages.
+    """
+    estimate = whole(found)
+    if estimate is None or not estimate.points:
+        return estimate, None
+    values = [each.value for each in map(whole, others) if each is not None]
+    error, worst = float(np.fmax(estimate.error, _scatter(values))), None
+    for part in found.parts:
+        off = abs(partial(part) - estimate.value)
+        changes = [
+            partial(other_part) - other_whole.value
+            for other in others
+            if (other_whole := whole(other)) is not None
+            for other_part in other.parts
+            if other_part.name == part.name
+        ]
+        noise = float(np.nan_to_num(_scatter(changes)))
+        if off > max(SURE * noise, EXACT * estimate.value) and (worst is None or off > abs(worst.there - worst.value)):
+            worst = Misfit(of, part.name, partial(part), estimate.value, noise)
+    if worst is not None:
+        error = float(np.fmax(error, abs(worst.there - worst.value)))
+    return estimate._replace(error=error), worst
 
 
-def _scatter(values: list[float]) -> float:
+def _scatter(values: Sequence[float]) -> float:
     """Standard deviation of some values; nan for fewer than a few."""
     return float(np.std(values, ddof=1)) if len(values) >= FEWEST else np.nan

@@ -42,6 +42,7 @@ VALUES = {
         "strain": {
             **dict.fromkeys(("strain", "Strain", "ε", "m/m", "mm/mm"), 1.0),
             "mm/m": 1e-3,
+            "%": 1e-2,
             **dict.fromkeys((f"{micro}{name}" for micro in MICRO for name in ("ε", "m/m", "strain")), 1e-6),
             **dict.fromkeys(("ue", "microstrain"), 1e-6),
         },
@@ -78,7 +79,9 @@ def required_value_unit(name: str) -> Unit:
     """The same as `value_unit`; raises CaseError for other texts."""
     found = value_unit(name)
     if found is None:
-        raise CaseError([f"--unit: is {name}, must be Pa, kPa, MPa, GPa, V, mV, µV (uV), strain or µε (ue)"])
+        raise CaseError(
+            [f"--unit: is {name}, must be Pa, kPa, MPa, GPa, V, mV, µV (uV), strain, % (of strain) or µε (ue)"]
+        )
     return found
 
 

@@ -107,8 +107,12 @@ class Scene(ABC):
         """(3, n) forces and moments (N, N·m) of the loads without a wave."""
 
     @property
-    def forces_by_side(self) -> Mapping[str, tuple[np.ndarray, np.ndarray]]:
-        """Nodes (k,) and forces (2, k) N by which each side holds a body at rest, by side; empty where not known."""
+    def forces_by_side(self) -> Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Nodes (k,) and forces (2, k) N by which each side holds a body at rest, by side; empty where not known.
+
+        Beside them the forces (2, k) N with which the side is recorded, in all those along its length; the sum of all
+        sides is the same.
+        """
         return {}
 
     @property

@@ -258,14 +258,14 @@ def _has_loads(scene: Scene) -> bool:
 
 
 def _bearers(
-    edges: list[Edge], known: Mapping[str, tuple[np.ndarray, np.ndarray]]
+    edges: list[Edge], known: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Of each side nodes (q,) and the shares (2, q) of the steady forces on them, along x and y, that belong to it.
 
     The force on a node of several sides is the sum of what each side would exert with the mean traction of its other
     nodes, which are on no other side, and of a rest, which belongs to the side along whose normal it is. Under a
-    uniform stress there is no rest. known : by side, nodes (k,) and forces (2, k) N on them, in the proportion of which
-    sides share nodes; empty where they are not known.
+    uniform stress there is no rest. known : by side, nodes (k,), forces (2, k) N on them, in the proportion of which
+    sides share nodes, and those (2, k) N with which it is recorded; empty where they are not known.
     """
     node = np.unique(np.concatenate([np.zeros(0, np.int64), *(edge.nodes for edge in edges)]))
     on = np.array([np.isin(node, edge.nodes) for edge in edges]).reshape(len(edges), len(node))
@@ -287,12 +287,15 @@ def _bearers(
     return [(node[(of != 0.0).any(axis=0)], of[:, (of != 0.0).any(axis=0)]) for of in share]
 
 
-def _in_proportion(share: np.ndarray, known: list[tuple[np.ndarray, np.ndarray]], node: np.ndarray) -> np.ndarray:
-    """Shares (s, 2, q) of nodes (q,) in proportion to the known forces of sides; as they are where there are none."""
-    forces = np.zeros_like(share)
-    for row, (nodes, force) in zip(forces, known, strict=True):
-        row[:, np.searchsorted(node, nodes)] = force
-    total = forces.sum(axis=0)
+def _in_proportion(
+    share: np.ndarray, known: list[tuple[np.ndarray, np.ndarray, np.ndarray]], node: np.ndarray
+) -> np.ndarray:
+    """Shares (s, 2, q) of nodes (q,) by known forces of sides, recorded over acting ones; as they are without any."""
+    forces, total = np.zeros_like(share), np.zeros_like(share[0])
+    for row, (nodes, acting, shown) in zip(forces, known, strict=True):
+        here = np.searchsorted(node, nodes)
+        row[:, here] = shown
+        total[:, here] += acting
     parts: np.ndarray = np.divide(forces, total, out=share.copy(), where=total != 0.0)
     return parts
 

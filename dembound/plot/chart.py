@@ -15,7 +15,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from dembound.plot.style import COLOURS, REFERENCE, new_figure, styled
 from dembound.results.reader import open_record, text_of
-from dembound.results.structure import run_of
+from dembound.results.structure import Members, run_of
 
 LEVELS = (1.0, 0.1)
 """Errors (%) marked by horizontal lines."""
@@ -105,11 +105,12 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     Raises CaseError when the file cannot be read.
     """
     with open_record(path) as file:
-        dots = [_read(number, file["choices"][name], file) for number, name in enumerate(file["choices"], start=1)]
+        choices, runs = Members(file, "choices"), Members(file, "runs")
+        dots = [_read(number, choice, runs) for number, choice in enumerate(choices.values(), start=1)]
         reference = text_of(file["reference"].attrs["sentence"])
         own = {k + 1 for k in file["reference"].attrs["choices"]}
         quantity, title = text_of(file.attrs["quantity"]), title or text_of(file.attrs["title"] or file.attrs["name"])
-        sentence, threads = text_of(file.attrs["sentence"]), _threads(file)
+        sentence, threads = text_of(file.attrs["sentence"]), _threads(runs)
     figure = new_figure(12.0, 6.4)
     panel, side = figure.subplots(1, 2, width_ratios=(1.45, 1.0))
     good = [dot for dot in dots if not dot.failure and dot.number not in own]
@@ -130,21 +131,21 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     return figure
 
 
-def _read(number, group, file) -> Dot:  # type: ignore[no-untyped-def]
-    """A choice of an open record."""
+def _read(number, group, runs) -> Dot:  # type: ignore[no-untyped-def]
+    """A choice of an open record, with its run."""
     failure = text_of(group.attrs["failure"])
     if failure:
         return Dot(number, text_of(group.attrs["name"]), False, failure, np.nan, np.zeros(0), "")
     monitor = f"{group['monitor'].asstr()[0]} ({group['component'].asstr()[0]})"
     on_front, error = bool(group.attrs["on_front"]), 100.0 * float(group["rms"][0])
     found, apart = text_of(group.attrs["found"]), float(np.max(group["apart"]))
-    cpu = file["runs"][run_of(group)]["cpu"][:]
+    cpu = runs[run_of(group)]["cpu"][:]
     return Dot(number, text_of(group.attrs["name"]), on_front, "", error, cpu, monitor, found, apart)
 
 
-def _threads(file) -> int:  # type: ignore[no-untyped-def]
+def _threads(runs) -> int:  # type: ignore[no-untyped-def]
     """The largest number of threads of any run."""
-    return max(int(run.attrs["threads"]) for run in file["runs"].values())
+    return max(int(run.attrs["threads"]) for run in runs.values())
 
 
 def _draw(panel: Axes, dots: Sequence[Dot]) -> None:

@@ -13,7 +13,7 @@ from dembound.plot.style import COLOURS, REFERENCE, Powers, line_style, new_figu
 from dembound.results.reader import energy_of, is_line, open_record, side_energies_of, text_of
 
 COLUMNS = {
-    "outside": "in: boundaries and driven loads",
+    "outside": "in, net: boundaries (less what they absorb) and driven loads",
     "loads": "in: driven loads",
     "load": "in: steady loads",
     "balance": "in: forces that balance the settled stress",
@@ -30,7 +30,7 @@ COLUMNS = {
 """Columns of the ledger and their names in the legend."""
 
 BAR_COLUMNS = COLUMNS | {
-    "outside": "in: ends and loads",
+    "outside": "in, net: ends (less what they absorb) and loads",
     "contact": "stored in local springs",
     "bond": "stored in peridynamic bonds",
     "damping": "taken by attenuation",

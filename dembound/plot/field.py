@@ -153,7 +153,7 @@ class FieldInRecord:
     in the unit.
     """
 
-    groups: list[h5py.Group]
+    groups: Sequence[h5py.Group]
     dataset: str
     beyond: str | None
     column: int
@@ -232,7 +232,7 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
     if snapshot is not None:
         return found.at([snapshot_of(file, snapshot)])
     if most == 1:
-        return found.at([found.groups[np.argmax(found.largest)]])
+        return found.at([found.groups[int(np.argmax(found.largest))]])
     return found.at([found.groups[number] for number in evenly_chosen(len(found.groups), most)])
 
 

@@ -24,7 +24,8 @@ def plot_hopkinson(faces: Faces, found: Specimen) -> Figure:
     figure = new_figure(10.0, 7.2)
     waves, forces, rates, curve = figure.subplots(2, 2).ravel()
     time = found.time / MICRO
-    for values, name, colour in zip(faces[1:], ("incident", "reflected", "transmitted"), COLOURS, strict=False):
+    passed = {"incident": faces.incident, "reflected": faces.reflected, "transmitted": faces.transmitted}
+    for (name, values), colour in zip(passed.items(), COLOURS, strict=False):
         waves.plot(time, values / MICRO, color=colour, label=name)
     _labelled(waves, "strain of waves (µε, load positive)", found)
     forces.plot(time, found.front / MPA, color=COLOURS[0], label="front, two waves")

@@ -15,6 +15,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator
 
 from dembound.plot.style import COLOURS, REFERENCE, new_figure, outside_legend, styled
 from dembound.results.reader import open_record, text_of
+from dembound.results.structure import Members
 
 WIDEST = 0.06
 """Half the width of a cloud of members of one group, in parts of the distance of two groups."""
@@ -90,7 +91,7 @@ def read_content(path: Path) -> Content:
 
 def _read_panel(file: h5py.File, name: str, groups: list[str]) -> Panel:
     """A quantity of an open record."""
-    statistics = file["statistics"][name]
+    statistics = Members(file, "statistics")[name]
     rows = {text_of(each): row for row, each in enumerate(statistics["group"][:])}
     columns = {
         column: np.array([statistics[column][rows[group]] if group in rows else np.nan for group in groups])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 from typing import TYPE_CHECKING
 
@@ -26,6 +28,9 @@ def damage_in_words(error: Exception, size: int) -> str:
     reason = str(error) or type(error).__name__
     if found := re.search(r"truncated file: .*stored_eof = (\d+)", reason):
         return f"is truncated, it has {size:,} of {int(found[1]):,} bytes"
+    if isinstance(error, OSError) and error.errno in (errno.EAGAIN, errno.EACCES):
+        is_locked = error.errno == errno.EAGAIN
+        return f"{UNREADABLE}: {'another process is writing it' if is_locked else os.strerror(error.errno).lower()}"
     if "file signature not found" in reason:
         return f"{UNREADABLE}: it is {'no HDF5 file' if size else 'empty'}"
     if is_of_checksum(error):

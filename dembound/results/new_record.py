@@ -2,11 +2,11 @@
 
 Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit``)::
 
-    /                       attributes: name, title, case (its text), keys (all, as JSON), kind ("disks", "bar"),
-                            version, size, time_step, step_limit, steps, complete; of disks seed, of a bar loaded,
-                            which of its ends is, and ends, their types, without ranges also density, section,
-                            youngs_modulus, wave_speed, attenuation; of a run that was continued to another time
-                            regular_steps, those of the run as it was begun
+    /                       attributes: name, origin (the case's own name, whatever --name is), title, case (its text),
+                            keys (all, as JSON), kind ("disks", "bar"), version, size, time_step, step_limit, steps,
+                            complete; of disks seed, of a bar loaded, which of its ends is, and ends, their types,
+                            without ranges also density, section, youngs_modulus, wave_speed, attenuation; of a run that
+                            was continued to another time regular_steps, those of the run as it was begun
     inputs/<number>         bytes of a file that the case refers to; attribute path
     particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
                             column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
@@ -194,6 +194,7 @@ def header_of(run: Run) -> dict[str, Any]:
     scene, case = run.scene.whole, run.scene.whole.case
     return {
         "name": case.name,
+        "origin": case.origin,
         "title": case.title,
         "case": case.text,
         "keys": json.dumps(case.keys),

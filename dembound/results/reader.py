@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
-from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.errors import CaseError, DemboundError, NumberMissingError, RecordError
 from dembound.interrupts import look
 from dembound.results.committed import CommittedFile, log_of
 from dembound.results.damage import damage_in_words, is_of_checksum, require_readable
 from dembound.results.datasets import datasets_of
-from dembound.results.structure import require_structure
+from dembound.results.structure import Members, require_structure
 
 if TYPE_CHECKING:
     import h5py
@@ -32,11 +32,12 @@ _sound: set[tuple[int, ...]] = set()
 def open_record(path: Path) -> Iterator[h5py.File]:
     """Open a record (``run.h5``, ``calibration.h5``) for reading in a ``with`` statement; errors as of `reading`.
 
-    The first time it is searched for damage and for what no record has, which takes some 0.2 ms for each dataset.
+    The first time it is searched for damage and for what no record has, which takes some 0.2 ms for each dataset. Those
+    of snapshots, and of runs and choices of charts, are searched when they are used, see `snapshots_of` and `Members`.
     """
     with reading(path) as file:
         if _state_of(path) not in _sound:
-            require_structure(file, path.stat().st_size)
+            require_structure(file)
             require_equal_rows(file)
             trust(path)
         yield file
@@ -99,15 +100,17 @@ def text_of(value: str | bytes) -> str:
 
 
 def require_equal_rows(file: h5py.File) -> None:
-    """Raise RecordError if columns of a complete record that belong together differ in their number of rows."""
+    """Raise RecordError if columns of a group of a complete record, snapshots apart, differ in their number of rows."""
     if not file.attrs.get("complete", False):
         return
-    bodies = ["particles", *(f"snapshots/{number}" for number in file.get("snapshots", {}))]
-    alone = ["energy", "cracks", "laws", *(f"histories/{name}" for name in file.get("histories", {}))]
-    for names in (bodies, *([name] for name in alone)):
-        rows = {len(column) for name in names for column in file.get(name, {}).values() if hasattr(column, "shape")}
-        if len(rows) > 1:
-            raise RecordError([f"{file.filename}: is damaged: {names[0]} has columns of different lengths"])
+    for name in ("particles", "energy", "cracks", "laws", *(f"histories/{name}" for name in file.get("histories", {}))):
+        if len(_rows(file.get(name, {}))) > 1:
+            raise RecordError([f"{file.filename}: is damaged: {name} has columns of different lengths"])
+
+
+def _rows(group: Mapping[str, h5py.HLObject]) -> set[int]:
+    """The numbers of rows of the columns of a group."""
+    return {len(column) for column in group.values() if hasattr(column, "shape")}
 
 
 def finite(column: h5py.Dataset) -> np.ndarray:
@@ -123,12 +126,20 @@ def finite(column: h5py.Dataset) -> np.ndarray:
     return values
 
 
+def increasing(times: h5py.Dataset) -> np.ndarray:
+    """The times of a column, each later than the one before; raises RecordError for others, and as `finite`."""
+    values = finite(times)
+    if values.ndim != 1 or not np.all(np.diff(values) > 0.0):
+        raise RecordError([f"{times.file.filename}: is damaged: the times in {times.name[1:]} do not increase"])
+    return values
+
+
 def history_of(group: h5py.Group, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """Times (k,) in s and values (k, …) of a history; of an interrupted run up to where both were written.
 
-    Raises CaseError for an empty one, RecordError for numbers that are not finite.
+    Raises CaseError for an empty one, RecordError for numbers that are not finite, and as `increasing`.
     """
-    time, values = finite(group["time"]), finite(group[quantity])
+    time, values = increasing(group["time"]), finite(group[quantity])
     count = min(len(time), len(values))
     if count == 0:
         raise CaseError([f"{group.file.filename}: has no samples yet; a run that was interrupted can be resumed"])
@@ -157,17 +168,55 @@ def require_run(file: h5py.File) -> None:
         raise CaseError([f"{file.filename}: has histories alone, as those of `dembound exact` and `dembound respond`"])
 
 
-def snapshots_of(file: h5py.File, *, required: bool = False) -> list[h5py.Group]:
+class Snapshots(Sequence["h5py.Group"]):
     """All snapshots of an open record in the order of time, that of their numbers: HDF5 lists 10000 before 1001.
+
+    Each is searched for damage when it is first used, and has as many rows in each column as the record has particles.
+    names : of all, in this order, where they are known; listing them takes 2 µs each.
+    """
+
+    def __init__(self, file: h5py.File, names: list[str] | None = None) -> None:
+        self._file = file
+        self._members = Members(file, "snapshots")
+        self.names = sorted(self._members, key=int) if names is None else names
+        self._particles: set[int] = _rows(file.get("particles", {})) if file.attrs.get("complete", False) else set()
+
+    @overload
+    def __getitem__(self, number: int) -> h5py.Group: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> list[h5py.Group]: ...
+
+    def __getitem__(self, number: int | slice) -> h5py.Group | list[h5py.Group]:
+        if isinstance(number, slice):
+            return [self._group(name) for name in self.names[number]]
+        if not -len(self) <= number < len(self):
+            there = f"they are 0 to {len(self) - 1}" if self.names else "there are none"
+            raise NumberMissingError([f"{self._file.filename}: has no snapshot {number}, {there}"])
+        return self._group(self.names[number])
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def _group(self, name: str) -> h5py.Group:
+        """A snapshot; raises RecordError as `Members`, and for columns of different lengths in a complete record."""
+        group = self._members[name]
+        if self._particles and len(self._particles | _rows(group)) > 1:
+            raise RecordError([f"{self._file.filename}: is damaged: snapshots/{name} has columns of different lengths"])
+        return group
+
+
+def snapshots_of(file: h5py.File, *, required: bool = False) -> Snapshots:
+    """All snapshots of an open record.
 
     Raises CaseError when one is required and there is none.
     """
     if required:
         require_run(file)
-    group = file.get("snapshots", {})
-    if required and len(group) == 0:
+    found = Snapshots(file)
+    if required and len(found) == 0:
         raise CaseError([f"{file.filename}: has no snapshots, run with output.snapshots above 0"])
-    return [group[number] for number in sorted(group, key=int)]
+    return found
 
 
 def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
@@ -175,10 +224,7 @@ def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
 
     Raises CaseError when there is no such snapshot.
     """
-    snapshots = snapshots_of(file, required=True)
-    if not -len(snapshots) <= number < len(snapshots):
-        raise CaseError([f"{file.filename}: has no snapshot {number}, they are 0 to {len(snapshots) - 1}"])
-    return snapshots[number]
+    return snapshots_of(file, required=True)[number]
 
 
 def snapshot_of_largest_motion(file: h5py.File, field: str) -> h5py.Group:

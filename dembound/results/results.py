@@ -1,14 +1,15 @@
 """The results of a run as arrays, for Python: the same names as in ``run.h5`` (docs/results.md)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn, overload
 
 import h5py
 import numpy as np
 
 from dembound.results.named import Named, missing
 from dembound.results.reader import (
+    Snapshots,
     datasets_in,
     energy_of,
     laws_of,
@@ -64,6 +65,34 @@ class Arrays(Mapping[str, np.ndarray]):
             raise missing("array", name, self._names, f"{self._record}, {self._group}")
 
 
+_PARTS = ("histories", "snapshots", "particles", "boundaries", "cracks", "energy", "side_energies", "laws", "summary")
+"""Attributes of `Results` that have what was recorded."""
+
+
+class _Snapshots(Sequence[Arrays]):
+    """The snapshots of a record in the order of time, each opened when it is accessed."""
+
+    def __init__(self, record: Path, names: list[str]) -> None:
+        self._record, self._names = record, names
+
+    @overload
+    def __getitem__(self, number: int) -> Arrays: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> list[Arrays]: ...
+
+    def __getitem__(self, number: int | slice) -> Arrays | list[Arrays]:
+        """A snapshot; raises NumberMissingError, an IndexError, with the range of the existing ones."""
+        with reading(self._record) as file:
+            found = Snapshots(file, self._names)[number]
+            if isinstance(found, list):
+                return [Arrays(self._record, group.name, group) for group in found]
+            return Arrays(self._record, found.name, found)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
 class Results:
     """A folder of results, such as ``results/quickstart``.
 
@@ -82,7 +111,7 @@ class Results:
     snapshots : in the order of time: ``displacement``, ``velocity`` (n, 3) and more; ``attributes["time"]`` in s.
     cracks : ``time``, ``position``, ``particles``, ``shear`` of the bonds that broke.
 
-    Raises RecordError when there is no record that can be read.
+    Raises RecordError when there is no record that can be read, and when a snapshot that cannot be read is accessed.
     """
 
     def __init__(self, folder: Path | str) -> None:
@@ -94,12 +123,16 @@ class Results:
             self.particles = self._array(file, "particles")
             self.histories = self._arrays(file, "histories", "monitor")
             self.boundaries = self._arrays(file, "boundaries", "side")
-            self.snapshots = [Arrays(self._record, group.name, group) for group in snapshots_of(file)]
+            self.snapshots: Sequence[Arrays] = _Snapshots(self._record, snapshots_of(file).names)
             self.cracks = self._array(file, "cracks")
             self.laws: list[tuple[str, float]] = laws_of(file)
 
     def __repr__(self) -> str:
         return f"<Results of {self.name}: {len(self.histories)} histories, {len(self.snapshots)} snapshots>"
+
+    def __getitem__(self, name: str) -> NoReturn:
+        """Raises TypeError, with the attributes that there are instead."""
+        raise TypeError(f"results have no [{name!r}]; their parts are attributes: {', '.join(_PARTS)}")
 
     @property
     def name(self) -> str:

@@ -2,6 +2,9 @@
 
 A file may come from anywhere. HDF5 lets it refer to other files, contain itself, or declare petabytes that are nowhere;
 a record does none of this, and has its columns in known shapes.
+
+The search takes 0.03 to 0.07 ms for each group, dataset and attribute, which would be minutes for thousands of
+snapshots. So their groups are searched one by one when they are used, see `Members`.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from dembound.casefile.output import MOST_SNAPSHOTS
 from dembound.errors import RecordError
 from dembound.interrupts import look
 
@@ -20,8 +24,23 @@ if TYPE_CHECKING:
 DEEPEST = 10
 """Largest number of groups within each other; those of a record are at most five."""
 
-MOST_OBJECTS = 2_000_000
-"""Largest number of groups, datasets and attributes."""
+MOST_OBJECTS = 50_000
+"""Largest number of groups, datasets and attributes, apart from those in members of `COLLECTIONS`.
+
+A record has some 300, and for each monitor at most 30; a case has at most `casefile.cross_checks.MOST_MONITORS`.
+"""
+
+MOST_ATTRIBUTES = 500
+"""Largest number of attributes of one group or dataset; the header of a run has 20."""
+
+COLLECTIONS = {"snapshots": 100, "runs": MOST_OBJECTS, "choices": 100, "statistics": 100}
+"""Groups with a member for each snapshot, run, choice or quantity, and the most groups, datasets and attributes in one.
+
+A snapshot has at most 50, a choice of a chart 18, the statistics of a quantity 20, and a run of a chart 9 a monitor.
+"""
+
+MOST_MEMBERS = MOST_SNAPSHOTS + 1
+"""Largest number of members of a collection; a static stage that stalled is one more snapshot."""
 
 UNWRITTEN = 2**20
 """Bytes that a dataset may declare beyond those that it has in the file."""
@@ -68,30 +87,42 @@ ATTRIBUTES: Mapping[str, tuple[str, tuple[int, ...]]] = {
 """Attributes of a run's record, with their types and shapes."""
 
 
-def require_structure(file: h5py.File, size: int) -> None:
-    """Raise RecordError for a file that is not built like a record; size : of the file, bytes.
+def require_structure(file: h5py.File) -> None:
+    """Raise RecordError for a file that is not built like a record, apart from the members of its collections.
 
     No link of any kind is followed, and nothing is visited twice. Every group, dataset and attribute is opened once, as
     methods such as ``items`` leave out damaged ones, so this raises what h5py raises for them, too.
     """
-    from h5py import h5a, h5d
+    _search(file, "", MOST_OBJECTS, 0)
 
-    objects, declared = 0, 0
-    is_run = "histories" in file and "runs" not in file
-    for name, item in _items(file):
-        count = h5a.get_num_attrs(item)
-        objects += 1 + count
-        if objects > MOST_OBJECTS:
-            raise _refused(file, "", f"has more than {MOST_OBJECTS:,} groups, datasets and attributes")
-        if count:
-            _require_attributes(file, name, item, size, is_run and name == "")
-        if isinstance(item, h5d.DatasetID):
-            shape, dtype = item.shape, item.dtype
-            declared += _bytes_declared(file, name, item, shape, dtype)
-            if declared > SMALL + EXPANDED * size:
-                raise _refused(file, "", f"declares {declared:,} bytes of numbers in {size:,} bytes")
-            if is_run:
-                _require_column(file, name, shape, dtype)
+
+class Members(Mapping[str, "h5py.Group"]):
+    """The groups in one of the `COLLECTIONS` of an open record, by name; each is searched when it is first used.
+
+    Without any where the record has no such collection.
+    """
+
+    def __init__(self, file: h5py.File, collection: str) -> None:
+        self._file, self._collection = file, collection
+        self._group = file.get(collection, {})
+        if hasattr(self._group, "dtype"):
+            raise _refused(file, collection, "must be a group")
+        self._searched: set[str] = set()
+        self._declared = 0
+
+    def __getitem__(self, name: str) -> h5py.Group:
+        """A member; raises KeyError if there is none, and RecordError as `require_structure`."""
+        if name not in self._searched and name in self._group:
+            path = f"{self._collection}/{name}"
+            self._declared = _search(self._file, path, COLLECTIONS[self._collection], self._declared)
+            self._searched.add(name)
+        return self._group[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._group)
+
+    def __len__(self) -> int:
+        return len(self._group)
 
 
 def run_of(group: h5py.Group) -> str:
@@ -102,15 +133,44 @@ def run_of(group: h5py.Group) -> str:
     return str(getattr(link, "path", "")).rsplit("/", 1)[-1]
 
 
-def _items(file: h5py.File) -> Iterator[tuple[str, Any]]:
-    """The file itself, and all groups and datasets in it, as h5py's identifiers, by their paths.
+def _search(file: h5py.File, start: str, most: int, declared: int) -> int:
+    """Search a group and all in it; raises RecordError as `require_structure`.
+
+    start : its path, empty for the whole file. most : groups, datasets and attributes. declared : bytes of all datasets
+    that were searched before; returns them with those of this group.
+    """
+    from h5py import h5a, h5d
+
+    objects, size = 0, file.id.get_filesize()
+    is_run = "histories" in file and "runs" not in file
+    for name, item in _items(file, start, most):
+        count = h5a.get_num_attrs(item)
+        if count > MOST_ATTRIBUTES:
+            raise _refused(file, name, f"has more than {MOST_ATTRIBUTES:,} attributes")
+        objects += 1 + count
+        if objects > most:
+            raise _crowded(file, start, most)
+        if count:
+            _require_attributes(file, name, item, size, is_run and name == "")
+        if isinstance(item, h5d.DatasetID):
+            shape, dtype = item.shape, item.dtype
+            declared += _bytes_declared(file, name, item, shape, dtype)
+            if declared > SMALL + EXPANDED * size:
+                raise _refused(file, start, f"declares {declared:,} bytes of numbers in {size:,} bytes")
+            if is_run:
+                _require_column(file, name, shape, dtype)
+    return declared
+
+
+def _items(file: h5py.File, start: str, most: int) -> Iterator[tuple[str, Any]]:
+    """A group, and all groups and datasets in it, as h5py's identifiers, by their paths.
 
     These take a third of the time that its groups and datasets take.
     """
     from h5py import h5d, h5g, h5l, h5o
 
-    seen: set[int] = set()
-    waiting: list[tuple[str, Any]] = [("", h5o.open(file.id, b"/"))]
+    seen = {h5o.get_info(file.id).addr} if start else set()
+    waiting: list[tuple[str, Any]] = [(start, h5o.open(file.id, start.encode("utf-8", "surrogateescape") or b"/"))]
     while waiting:
         name, item = waiting.pop()
         place = h5o.get_info(item).addr
@@ -122,15 +182,49 @@ def _items(file: h5py.File) -> Iterator[tuple[str, Any]]:
         yield name, item
         if isinstance(item, h5g.GroupID):
             look()
-            found: list[tuple[bytes, int]] = []
-            item.links.iterate(lambda inner, info, found=found: found.append((inner, info.type)), info=True)
-            for inner, kind in found:
+            if name in COLLECTIONS:
+                places = _places_of_members(file, name, item)
+                if places & seen:
+                    raise _refused(file, name, "has a member that is linked to more than once")
+                seen |= places
+                continue
+            for inner, kind, _ in _links(item, most):
                 text = inner.decode("utf-8", "surrogateescape")
                 path = f"{name}/{text}" if name else text
                 if kind == h5l.TYPE_HARD or not _is_of_chart(file, path):
                     waiting.append((path, h5o.open(item, inner)))
+            if len(waiting) > most:
+                raise _crowded(file, start, most)
         elif not isinstance(item, h5d.DatasetID):
             raise _refused(file, name, "is neither a group nor a dataset")
+
+
+def _links(group: Any, most: int) -> list[tuple[bytes, int, int]]:
+    """The names of the links of a group, their types, and addresses they lead to; no more than one beyond `most`."""
+    found: list[tuple[bytes, int, int]] = []
+
+    def note(name: bytes, info: Any) -> bool | None:
+        found.append((name, info.type, info.u))
+        return True if len(found) > most else None  # which ends it
+
+    group.links.iterate(note, info=True)
+    return found
+
+
+def _places_of_members(file: h5py.File, name: str, group: Any) -> set[int]:
+    """The addresses of the members of a collection, none of which is opened."""
+    from h5py import h5l
+
+    links = _links(group, MOST_MEMBERS)
+    if len(links) > MOST_MEMBERS:
+        raise _refused(file, name, f"has more than {MOST_MEMBERS:,} members")
+    for inner, kind, _ in links:
+        if kind != h5l.TYPE_HARD:
+            raise _refused(file, f"{name}/{inner.decode('utf-8', 'replace')}", "is a link, of which a record has none")
+    places = {place for _, _, place in links}
+    if len(places) < len(links):
+        raise _refused(file, name, "has a member that is linked to more than once")
+    return places
 
 
 def _is_of_chart(file: h5py.File, path: str) -> bool:
@@ -209,6 +303,10 @@ def _require_column(file: h5py.File, name: str, shape: tuple[int, ...], dtype: A
 def _numbers(shape: tuple[int, ...]) -> str:
     """A shape in words."""
     return f"{' × '.join(map(str, shape))} numbers" if shape else "one number"
+
+
+def _crowded(file: h5py.File, where: str, most: int) -> RecordError:
+    return _refused(file, where, f"has more than {most:,} groups, datasets and attributes")
 
 
 def _refused(file: h5py.File, where: str, why: str) -> RecordError:

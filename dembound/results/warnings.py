@@ -64,9 +64,28 @@ def still_moving(
         worst = max(moving, key=lambda name: moving[name])
         yield (
             f"monitor.{worst}: its velocity is {100.0 * moving[worst]:.0f} % of its peak when the run ends after "
-            f"{duration:.3g} s, and still changes ({len(moving)} of {len(histories)} monitors); the motion "
-            "is not over, take a longer run.duration"
+            f"{duration:.3g} s, and still changes ({len(moving)} of {len(histories)} monitors); "
+            f"{_why_moving(scene)}"
         )
+
+
+def _why_moving(scene: Scene) -> str:
+    """What keeps waves in a body that is braked, in words: opposite sides that send them back, or too short a run."""
+    motion, kept = getattr(scene.case, "motion", None), []
+    for axis, pair in (("x", ("left", "right")), ("y", ("bottom", "top"))):
+        if motion is not None and axis in motion.held:
+            continue
+        tables = [scene.case.side(side) for side in pair if side in scene.edges]
+        if len(tables) == 2 and not any(
+            table.factors or table.is_outside or table.layer or table.needs_column for table in tables
+        ):
+            kept.append(" and ".join(f"{side} ({table.type})" for side, table in zip(pair, tables, strict=True)))
+    if not kept:
+        return "the motion is not over, take a longer run.duration"
+    return (
+        f"the motion is not over: waves between {', and between '.join(kept)} are not absorbed there, and fade only as "
+        "far as they reach what does; a longer run.duration may not end them, sides that absorb would"
+    )
 
 
 def energy_warnings(scene: Scene, energy: Mapping[str, float]) -> Iterator[str]:

@@ -30,6 +30,7 @@ from dembound.results.warnings import never_silent
 from dembound.running.disk_space import bytes_left, disk_facts, disk_warnings
 from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
+from dembound.running.recorded import require_replaceable
 from dembound.running.shared import Shared
 from dembound.running.unfinished import Unfinished, find_unfinished
 
@@ -63,11 +64,12 @@ def run_case(
     shared: with other runs, by default nothing.
 
     Raises the errors of `plan`, RunError when the static stage does not settle or the motion grows without bound,
-    Stopped after a signal, CaseError when another run is writing the same folder, and OSError when a file cannot be
-    written.
+    Stopped after a signal, CaseError when another run is writing the same folder or it has results of another case, and
+    OSError when a file cannot be written.
     """
     folder = Folder(results, case.name)
     folder.check()
+    require_replaceable(folder, case)
     return _Job(case, folder, progress or Progress(), seconds or {}, begun_for=begun_for, shared=shared).run()
 
 

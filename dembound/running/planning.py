@@ -98,6 +98,7 @@ def warnings_before(planned: Plan) -> list[str]:
     return [
         *unlikely(planned.scene.case),
         *_unused_waves(planned.scene.case),
+        *_same_place(planned.scene),
         *planned.kind.warnings_before(planned.scene, planned.time_step),
         *_interval_warnings(planned),
     ]
@@ -109,9 +110,24 @@ def _unused_waves(case: Case) -> Iterator[str]:
         yield f"wave.{name}: no side and no load uses it"
 
 
+def _same_place(scene: Scene) -> Iterator[str]:
+    """Monitors that record the particle or node of another one."""
+    first: dict[tuple[float, ...], str] = {}
+    for name in (monitor.name for monitor in scene.case.monitor):
+        place = tuple(float(each) for each in scene.monitored[name])
+        if (other := first.setdefault(place, name)) != name:
+            listed = ", ".join(f"{each:.4g}" for each in place)
+            yield f"monitor.{name}: is nearest to the same place as monitor.{other}, ({listed}) m, and records the same"
+
+
 def _interval_warnings(planned: Plan) -> Iterator[str]:
     """Warnings about outputs that the case asks for more often than there are steps."""
     output = planned.scene.case.output
+    if output.snapshots == 0 and (asked := [key for key in ("stress", "contacts") if getattr(output, key)]):
+        yield (
+            f"output.{' and output.'.join(asked)}: asks for what snapshots hold, but output.snapshots is 0, so nothing "
+            "is written; give output.snapshots = 1 or more"
+        )
     if output.snapshots > planned.steps:
         yield f"output.snapshots: is {output.snapshots}, the run has {planned.steps:,} steps and as many snapshots"
     for key in ("history_interval", "side_interval", "energy_interval"):

@@ -1,6 +1,7 @@
 """The case of a record: everything that is needed to run it again."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,9 +9,9 @@ import tomli_w
 
 from dembound.casefile import Case
 from dembound.casefile.toml import parsed
-from dembound.errors import CaseError, RecordError
-from dembound.kinds import loads
-from dembound.results.folder import problem_of
+from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.kinds import kind_of, loads
+from dembound.results.folder import Folder, problem_of
 from dembound.results.reader import open_record, text_of
 
 
@@ -20,17 +21,45 @@ def recorded_case(record: Path) -> Case:
     A settled state of another run (``static.from``) is not used, as it is not in the record; the body settles itself,
     with the same result.
 
-    Raises CaseError if there is no record with a case, RecordError, in one line, if that cannot be read.
+    Raises CaseError for a record of no run, RecordError, in one line, if there is none or its case cannot be read.
     """
     with open_record(record) as file:
-        if "case" not in file.attrs or "inputs" not in file:
-            raise CaseError([f"{record}: has no case that could be run again"])
+        if "particles" not in file:
+            raise CaseError([f"{record}: is of no run, it has no case that could be run again"])
+        if missing := [name for name, there in (("case", file.attrs), ("inputs", file)) if name not in there]:
+            raise RecordError([f"{record}: is damaged: it has no {' and no '.join(missing)}"])
         text, name = text_of(file.attrs["case"]), text_of(file.attrs["name"])
+        origin = text_of(file.attrs["origin"]) if "origin" in file.attrs else name  # earlier versions have none
         files = {text_of(given.attrs["path"]): given[()].tobytes().decode() for given in file["inputs"].values()}
     data = tables_of(text, record)
     if isinstance(static := data.get("static"), dict) and static.pop("from", None) is not None:
         text = tomli_w.dumps(data)
-    return case_of(text, record, name, files)
+    return replace(case_of(text, record, name, files), origin=origin)
+
+
+def require_replaceable(folder: Folder, case: Case) -> None:
+    """Raise CaseError if a run would replace the results of another case: of another origin, or another kind of body.
+
+    A case whose numbers have been changed is the same case. Records without an origin, of earlier versions, and those
+    that cannot be read are replaced.
+    """
+    for path in (folder.final, folder.partial):
+        if not (path / "run.h5").is_file():
+            continue
+        try:
+            with open_record(path / "run.h5") as file:
+                there = {name: text_of(file.attrs[name]) for name in ("origin", "kind") if name in file.attrs}
+        except DemboundError:
+            continue
+        own = {"origin": case.origin, "kind": kind_of(case).name}
+        if different := [name for name in there if there[name] != own[name]]:
+            whose = {"origin": "case {}", "kind": "a case of {}"}[different[0]]
+            raise CaseError(
+                [
+                    f"{path}: has results of {whose.format(there[different[0]])}, which this run of "
+                    f"{whose.format(own[different[0]])} would replace; give another --name or --output, or remove them"
+                ]
+            )
 
 
 def tables_of(text: str, record: Path) -> dict[str, Any]:

@@ -130,7 +130,10 @@ def _require_facts(facts: Mapping[str, Any], path: Path) -> None:
 
 
 def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
-    """The folder that has a checkpoint: the one that was given, or the partial one; raises CaseError if none has."""
+    """The folder that has a checkpoint: the one that was given, or the partial one.
+
+    Raises CaseError if none has, RecordError if there is no record either.
+    """
     places = [place for place in (folder, partial) if place.is_dir()]
     if not places:
         raise CaseError([f"{folder}: there is no such folder of results"])
@@ -139,7 +142,7 @@ def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
     records = [place / "run.h5" for place in places if (place / "run.h5").is_file()]
     anew = f"; `dembound rerun {records[0]}` runs its case anew" if records else ""
     reasons = "as of a run with run.checkpoint = 0, or of one that ended before it could write one"
-    raise CaseError([f"{folder}: has no checkpoint ({FILE}), {reasons}{anew}"])
+    raise (CaseError if records else RecordError)([f"{folder}: has no checkpoint ({FILE}), {reasons}{anew}"])
 
 
 def _case_of(facts: dict[str, Any], path: Path) -> Case:

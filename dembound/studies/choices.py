@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from dembound.casefile.toml import value_of
 from dembound.casefile.vary import range_of
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
+from dembound.results.structure import MOST_MEMBERS
 from dembound.studies.words import label
 from dembound.version import __version__
 
@@ -55,7 +57,9 @@ def choices_of(case: Case, named: Mapping[str, Mapping[str, Any]]) -> tuple[list
 
 
 def combinations(case: Case, vary: Mapping[str, Sequence[Any]]) -> dict[str, dict[str, Any]]:
-    """All combinations of the keys' values, by name."""
+    """All combinations of the keys' values, by name; raises CaseError if they are more than a record may have."""
+    if (count := math.prod(map(len, vary.values()))) > MOST_MEMBERS:
+        raise CaseError([f"vary: makes {count:,} choices, must be {MOST_MEMBERS:,} or less"], case.name)
     return {
         label(case, changes): changes
         for values in product(*vary.values())

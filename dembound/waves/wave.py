@@ -75,6 +75,10 @@ class Wave(Table, ABC):
         """Time (s) before which the velocity is zero, counted from t = 0 like `start`."""
         return self.start
 
+    def ends(self) -> tuple[tuple[str, float, float], ...]:
+        """Of a history of samples, where it may jump: "begins" or "ends", time (s), and velocity (m/s); else none."""
+        return ()
+
     def dominant_period(self) -> float:
         """One over the dominant frequency, s; 0 for a step, infinite where nothing oscillates."""
         frequency = self.dominant_frequency()

@@ -105,6 +105,8 @@ def test_results_are_those_of_the_record(results) -> None:
         assert [shot.attributes["time"] for shot in results.snapshots] == [
             group.attrs["time"] for group in file["snapshots"].values()
         ]
+        with pytest.raises(IndexError, match=r"has no snapshot 2, they are 0 to 1"):
+            results.snapshots[2]
         assert np.array_equal(results.snapshots[-1]["velocity"], file["snapshots/0001/velocity"][:])
         assert set(results.boundaries) == set(file["boundaries"])
         assert np.array_equal(results.boundaries["right"]["peak_velocity"], file["boundaries/right/peak_velocity"][:])
@@ -242,3 +244,9 @@ def test_a_case_is_shown_in_ten_lines(name) -> None:
     assert lines[0].startswith(f"{type(case).__name__} {case.name}: {case.title}"[:99])
     for table in tomllib.loads(case.text):
         assert table == "title" or re.search(rf"\b{table}\b", repr(case))
+
+
+def test_the_text_of_a_case_is_no_path() -> None:
+    for ask in (dembound.load, dembound.run):
+        with pytest.raises(dembound.CaseError, match=r"is the text of a case, .*give dembound\.loads\(text\)"):
+            ask('[packing]\npattern = "A"\n')

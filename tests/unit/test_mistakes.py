@@ -96,7 +96,7 @@ DISKS = [
      "is 0.7 while waves run: of a burst 94 % are left after one wavelength at 0.1, 49 % at 0.3, 0.2 % at 0.7"),
     ("packing", {"pattern": "A", "size": [10_000.0, 5000.0], "radius": 250.0},
      "packing.radius: is 250 m, where particles have"),
-    ("wave.push.amplitude", 50.0, "wave.push: its velocity, 50 m/s, is 7.1 % of that of waves"),
+    ("wave.push.amplitude", 50.0, "wave.push: particles move at up to 50 m/s, P waves along x run at"),
     ("wave.push.period", 100.0, "wave.push: reaches 0.0"),
     ("wave.push.start", 200.0, "wave.push: reaches 0 % of its peak, which comes at 200.05 s, within the run of 0.2 s"),
     ("wave.push.period", 1e-4, "wave.push: has a shortest wavelength below the diameter of a particle"),
@@ -127,6 +127,9 @@ OTHERS = [
     (LATTICE | WEIGHT, "load", down(0.0, -1.0), "likely gravity in g: write [0, -9.81]"),
     (LATTICE | WEIGHT, "load", down(9.81, 0.0), "is 9.81 m/s² sideways; likely gravity: write [0, -9.81]"),
     (LATTICE | WEIGHT, "load", down(0.0, -9.81), None),
+    (LATTICE, "load", [{**down(0.0, -9.81)[0], "wave": "push"}],
+     'load.weight.acceleration: is gravity times wave "push"; a weight that stays has no wave'),
+    (LATTICE | BREAKING, "material.pb_coh", 1e4, "times material.pb_ten; bonds of rock and soil have 0.5 to 10"),
     (LATTICE | WEIGHT, "load", down(0.0, -1.62), None),  # on the moon
     (LATTICE, "static.stress", [5e6, 10e6, 0.0],
      "static.stress: is a tension, 5e+06 Pa along x and 1e+07 Pa along y; likely compression, which is"),
@@ -144,7 +147,7 @@ OTHERS = [
     (changed(BAR, {"bar.strength": 1e5, "load.0.pressure": 1e5}), "bar.fracture_energy", 0.1,
      "likely in N/mm or kJ/m²: write 100"),
     (STRIKER, "bar.range.0.velocity", 10_000.0,
-     "bar.range.striker.velocity: its velocity, 1e+04 m/s, is 2e+02 % of that of waves"),
+     "bar.range.striker.velocity: particles move at up to 1e+04 m/s, waves run at"),
     (STRIKER, "bar.range.1.gap", 0.5, "where gaps of bars have 1e-09 to 0.1; likely in mm: write 0.0005"),
     (STRIKER, "bar.range.0.density", 7.8, "bar.range[1, striker].density: is 7.8 kg/m³"),
 ]  # fmt: skip

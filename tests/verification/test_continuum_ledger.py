@@ -60,15 +60,17 @@ def test_books_close(layer: Around, mesh: Callable[[Around], Mesh]) -> None:
 
 
 def test_layers_take_the_energy_of_waves() -> None:
-    """What remains is the work of the load that goes into its static field.
+    """What remains is the work of the load that goes into its static field, and modes that do not travel.
 
-    The energy of motion that enters the balance, ½m v⁻·v⁺, is gone to 1e-4. The kinetic energy of the mean velocity has
-    3e-4, which `stepping` takes off again in the balance.
+    The load begins at once on one node, which goes on swinging beside its neighbours with an amplitude A of velocity at
+    about ωΔt = √2. With E = ½mA² and s = sin(ωΔt/2), its kinetic energy of the mean velocity is E(1 − s²)cos²ωt and
+    `stepping` −E s² sin²ωt: for s² = ½ each of them, and their sum, change with the phase at the end between 0 and E/2,
+    while kinetic − stepping is E/2 at any phase. The load F brings at most ½F²/(mω²) = F²Δt²/4m to a node of mass m,
+    here 4 % of the largest kinetic energy, which its neighbours carry away slowly: 6e-4 is left after 2000 steps.
     """
     books = entries(equal(Around(3, 3, 3, 0)))
     most = max(entry.kinetic for entry in books)
 
     last = books[-1]
-    assert abs(last.kinetic + last.stepping) < 1e-4 * most
-    assert last.kinetic < 1e-3 * most
+    assert last.kinetic - last.stepping < 1e-3 * most
     assert books[-1].damping > most

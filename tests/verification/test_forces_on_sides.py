@@ -87,10 +87,7 @@ def test_ground_that_settled_rests_with_its_weight_on_its_bottom(lab, law):
 
 @pytest.mark.parametrize("law", ["elastic", "linearpbond"])
 def test_a_sample_that_settled_under_a_stress_shows_it_from_the_start(lab, law):
-    """Each side has the stress times its length, but for what contacts across a corner carry.
-
-    These belong to one of its sides, and a contact carries the stress on a diameter.
-    """
+    """Each side has the stress times its length, contacts across corners included."""
     stress = np.array([[-1e6, 2e5], [2e5, -2e6]])
     case = lab.case(
         "B",
@@ -108,9 +105,8 @@ def test_a_sample_that_settled_under_a_stress_shows_it_from_the_start(lab, law):
         edge = scene.sides[side]
         outward = np.zeros(2)
         outward[edge.axis] = 1.0 if side in ("right", "top") else -1.0
-        np.testing.assert_allclose(
-            force / edge.length, stress @ outward, rtol=0.0, atol=2e6 * lab.diameter / edge.length
-        )
+        # at rest to 1e-4 of the mean contact force; forces follow the length, with strains of 2 MPa / 2.5 GPa
+        np.testing.assert_allclose(force / edge.length, stress @ outward, rtol=0.0, atol=1e-3 * 2e6)
 
 
 def test_a_free_field_side_carries_what_the_ground_beyond_it_does(lab):

@@ -45,6 +45,9 @@ MOST = 60.0
 STARTING = re.compile("init_import_site|<frozen site>|<frozen runpy>|<frozen importlib")
 """In the traceback of Ctrl-C while Python itself starts, before it comes to any line of a program."""
 
+NOT_STARTED = "Could not import runpy module"
+"""Said by Python, with exit code 1, where Ctrl-C comes while it imports what runs a module."""
+
 
 @dataclass
 class Found:
@@ -139,7 +142,7 @@ class Scene:
             return False
         found.took.append((took, f"{command}{' cold' if cold else ''} {delay:.2f} s"))
         assert took < MOST, said_first
-        if code == -number:  # before its first line, or after its last one
+        if code == -number or NOT_STARTED in said:  # before its first line, or after its last one
             found.outcomes["by Python's start or end"] += 1
             assert "Traceback" not in said or STARTING.search(said), said_first
         else:

@@ -20,6 +20,7 @@ from hopkinson_bar import (
 
 from dembound.errors import CaseError
 from dembound.gauge.hopkinson import EQUILIBRIUM, slope_of, specimen
+from dembound.gauge.pulse_checks import doubts_of_pulses, travel_speed
 from dembound.gauge.pulses import Windows, at_faces, found_windows
 from dembound.gauge.separation import Bar, moved
 from dembound.gauge.slope_error import SlopeError, doubts_of_slope, slope_error
@@ -186,9 +187,36 @@ def test_a_largest_stress_as_equilibrium_begins_gives_no_slope_and_says_so():
     assert slope_error(faces, SETUP, EQUILIBRIUM, at_once) is None
     (said,) = doubts_of_slope(at_once, None)
     assert said.startswith("the specimen has its largest stress 1 samples after equilibrium begins")
-    (wide,) = doubts_of_slope(found, SlopeError(0.0, 0.0, 0.5 * found.slope, 0.0))
+    (wide,) = doubts_of_slope(found, SlopeError(0.0, 0.0, 0.5 * found.slope, 0.0, 0.0))
     assert wide.startswith("the slope is uncertain, ±1e+02 %: in equilibrium, until the largest stress, the strain")
     assert not list(doubts_of_slope(found, slope_error(faces, SETUP, EQUILIBRIUM, found)))
+
+
+def doubts(given, setup=SETUP):
+    """What is said about pulses that do not fit each other."""
+    faces = at_faces(given, setup)
+    return list(doubts_of_pulses(given, faces, setup, Windows(), specimen(faces, setup)))
+
+
+@pytest.mark.parametrize("rise", [150e-6, 20e-6])
+def test_pulses_that_do_not_fit_each_other_are_told(rise):
+    given = signals(lambda at: ramp(at, rise, 320e-6))
+    assert not doubts(given)
+    # a gain that is 5 % off makes as much of an impulse, of which inertia explains one sense up to some per cent
+    assert (
+        "impulses of both faces of the specimen differ by -" in doubts(given._replace(transmitted=1.05 * given[2]))[0]
+    )
+    # the incident gauge misses 2 % of the way, and 8 of 400 µs
+    late = replace(SETUP, incident_gauge=1.02)
+    assert any(" % from --wave-speed: check it and --incident-gauge" in said for said in doubts(given, late))
+    lost = np.append(np.delete(given.incident, slice(1900, 1950)), np.zeros(50))
+    assert any("look for lost samples" in said for said in doubts(given._replace(incident=lost)))
+
+
+def test_travel_time_gives_the_wave_speed():
+    speed = travel_speed(signals(), SETUP, Windows())
+    # toes of 7 % of a rise of 150 µs are 4 µs apart, of 400 µs on the way
+    assert abs(speed.value - SPEED) < speed.error < 0.02 * SPEED
 
 
 def test_dispersion_of_the_bars_is_taken_back():

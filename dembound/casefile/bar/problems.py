@@ -13,6 +13,7 @@ from dembound.casefile.cross_checks import (
     never_silent,
     repeated_names,
     steps_too_long,
+    too_many,
     unknown_waves,
 )
 from dembound.casefile.messages import numbered
@@ -36,6 +37,7 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
     yield from _loaded_but_held(tables["boundary"], tables["load"])
     for key in ("load", "monitor"):
         yield from repeated_names(key, tables[key])
+    yield from too_many(tables["monitor"])
     bar = tables["bar"]
     written = given.get("bar", {})
     if isinstance(written, Mapping) and written.keys().isdisjoint({"length", "range"}):

@@ -11,6 +11,7 @@ from dembound.casefile.cross_checks import (
     never_silent,
     repeated_names,
     steps_too_long,
+    too_many,
     unknown_waves,
 )
 from dembound.casefile.disks.floors import lowered_in, lowered_problems
@@ -51,6 +52,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         yield from _nothing_to_pack_with(tables["material"], tables["packing"])
     for key in ("hole", "load", "monitor"):
         yield from repeated_names(key, tables[key])
+    yield from too_many(tables["monitor"])
     ground, packing = tables["ground"], tables["packing"]
     if ground and packing:
         yield from ground_problems(ground, packing, tables["boundary"])

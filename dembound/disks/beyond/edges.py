@@ -32,7 +32,12 @@ def edge_without(edge: Edge, kept: np.ndarray) -> Edge:
     """A side without the particles that are not kept (m,); the others keep their share of its length."""
     still = np.isin(edge.nodes, kept)
     if not still.any():
-        raise CaseError([f"hole: removes all of the {edge.side} side"])
+        raise CaseError(
+            [
+                f"hole: holes remove all {len(edge.nodes)} particles that make up the {edge.side} side, so boundary."
+                f"{edge.side} acts on nothing; make them smaller, or let packing.size end where they begin"
+            ]
+        )
     diameters = edge.diameters[still]
     length = edge.length * float(diameters.sum() / edge.diameters.sum())
     return Edge(edge.side, np.searchsorted(kept, edge.nodes[still]), edge.positions[still], diameters, length)

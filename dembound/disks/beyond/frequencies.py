@@ -9,6 +9,7 @@ from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.outside import choice
 from dembound.outside.choice import Signal
+from dembound.waves.wave import Wave
 
 LENGTHS = (200.0, 20.0)
 """Longest and shortest wave, in mean diameters, where a case has no waves with a spectrum of finite energy."""
@@ -28,9 +29,20 @@ def frequencies_of(case: DiskCase, ground: PackedMaterial, count: int) -> np.nda
 
 def mean_frequency(case: DiskCase) -> float:
     """Mean frequency (Hz) of the energy of the case's waves and forces; nan without a spectrum of finite energy."""
-    spectra = [choice.energies(signal) for signal in signals_of(case) if not choice.jumps(signal)]
-    means = [float(frequencies @ energy / energy.sum()) for frequencies, energy in spectra if energy.sum() > 0.0]
+    means = [_mean_of(signal) for signal in signals_of(case) if not choice.jumps(signal)]
+    means = [mean for mean in means if not math.isnan(mean)]
     return sum(means) / len(means) if means else math.nan
+
+
+def mean_frequency_of(wave: Wave) -> float:
+    """Mean frequency (Hz) of the energy of one wave's velocity, which must not jump."""
+    return _mean_of(Signal(wave, is_force=False))
+
+
+def _mean_of(signal: Signal) -> float:
+    """The same of a signal; nan without energy."""
+    frequencies, energy = choice.energies(signal)
+    return float(frequencies @ energy / energy.sum()) if energy.sum() > 0.0 else math.nan
 
 
 def _quantiles(signal: Signal, count: int) -> np.ndarray:

@@ -157,8 +157,18 @@ def _load_facts(scene: DiskScene) -> dict[str, str]:
         what = "particle" if nodes[0] < scene.disk_count else "node"
         on = counted(len(nodes), what) + (" of the continuum" if what == "node" else "")
         factor = "steady" if load.wave is None else f"times wave {load.wave}"
-        facts[f"load {load.name}"] = f"{_whole_of(load, scene, forces)} on {on}, {factor}"
+        whole = f"{_whole_of(load, scene, forces)} on {on}, {factor}"
+        facts[f"load {load.name}"] = f"{whole}{_images(scene, nodes, forces)}"
     return facts
+
+
+def _images(scene: DiskScene, nodes: np.ndarray, forces: np.ndarray) -> str:
+    """What forces (k, 3) on nodes (k,) that are all beside a plane of symmetry are together with their images."""
+    for side, edge in scene.edges.items():
+        if scene.case.side(side).is_mirror and np.isin(nodes, edge.nodes).all():
+            both = 2.0 * forces[:, :2].sum(axis=0) * (np.arange(2) != edge.axis)
+            return "; with the images beyond {} ({:.4g}, {:.4g}) N/m".format(side, *both)
+    return ""
 
 
 def _whole_of(load: Load, scene: DiskScene, forces: np.ndarray) -> str:

@@ -17,8 +17,10 @@ from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.packing_errors import in_percent
 from dembound.disks.reports.continuum_facts import continuum_warnings
+from dembound.disks.reports.load_warnings import load_warnings
 from dembound.disks.reports.outcome import SHOWN, block_in_words
 from dembound.disks.reports.side_warnings import side_warnings
+from dembound.disks.reports.spring_warnings import spring_warnings
 from dembound.disks.reports.wave_warnings import wave_warnings
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.load_factor import load_factor_in_words
@@ -33,6 +35,9 @@ LARGEST_PULL = 3.5
 The mean is the bonds' share of the stiffness times the locked-in pressure; the largest of 1,900 bonds was 2.8 to 3.5
 times that (three bricks, radius ratio 1.5).
 """
+
+UNLIKE_STRENGTHS = 100.0
+"""Factor between the strengths of bonds in tension and shear above which one is taken for a mistake."""
 
 SPEED_ERROR = 0.1
 """Share by which the P-wave speed of the packing may differ from the given one without a warning."""
@@ -52,11 +57,14 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
     return [
         *_empty_holes(scene),
         *_holes_at_periodic_sides(scene),
+        *_unlike_strengths(scene),
         *_steady_without_static(scene),
         *_locked_in(scene),
         *_settles_in_tension(scene),
         *wave_warnings(scene, time_step),
         *side_warnings(scene),
+        *spring_warnings(scene),
+        *load_warnings(scene),
         *_speed_of_the_packing(scene),
         *_unlikely_speed(scene),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
@@ -64,18 +72,33 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
 
 
 def _empty_holes(scene: DiskScene) -> Iterator[str]:
-    """Holes that remove no disk, as none of the packing is centred in them."""
+    """Holes that remove no disk, as none of the packing is centred in them, or others have removed all of them."""
     brick, (left, bottom, right, top) = scene.ground.brick, scene.case.packing.box
     origin = np.array([left, bottom])
-    for place, hole in numbered("hole", scene.case.hole):
+    for number, (place, hole) in enumerate(numbered("hole", scene.case.hole)):
         x0, y0, x1, y1 = hole.box
         low, high = np.array([max(x0, left), max(y0, bottom)]), np.array([min(x1, right), min(y1, top)])
         first, last = np.floor((low - origin) / brick.size), np.floor((high - origin) / brick.size)
         last = np.minimum(last, np.array(scene.case.packing.copies) - (not brick.edge_rows.any()))
         across, up = (np.arange(begin, end + 1.0) for begin, end in zip(first, last, strict=True))
         tiles = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 1, 2)
-        if not hole.contains((origin + tiles * brick.size + brick.positions).reshape(-1, 2)).any():
+        places = (origin + tiles * brick.size + brick.positions).reshape(-1, 2)
+        inside = places[hole.contains(places)]
+        if len(inside) == 0:
             yield f"{place}: no particle is centred in it, so it removes none"
+        for other in scene.case.hole[:number]:
+            if len(inside) and other.contains(inside).all() and (other.stage == "before" or hole.stage == "after"):
+                yield f"{place}: lies within hole.{other.name}, so it removes no more particles"
+
+
+def _unlike_strengths(scene: DiskScene) -> Iterator[str]:
+    """Strengths of bonds in tension and in shear that differ more than those of any rock."""
+    tension, shear = scene.case.material.pb_ten, scene.case.material.pb_coh
+    if tension is not None and shear is not None and not 1.0 / UNLIKE_STRENGTHS <= shear / tension <= UNLIKE_STRENGTHS:
+        yield (
+            f"material.pb_coh: is {shear / tension:.3g} times material.pb_ten; bonds of rock and soil have 0.5 to 10, "
+            "are both in Pa?"
+        )
 
 
 def _holes_at_periodic_sides(scene: DiskScene) -> Iterator[str]:
@@ -160,7 +183,7 @@ def _unlikely_speed(scene: DiskScene) -> Iterator[str]:
     if material.p_wave_speed is not None or any(unlikely_in("", material, scene.case)):
         return
     speed = scene.ground.wave_speeds(0)[0]
-    if found := MEANINGS["wave speed"].doubt(speed, "m/s"):  # nan is not
+    if found := MEANINGS["wave speed"].doubt(speed, "m/s", given=False):  # nan is not
         yield f"material.emod: makes P waves of a speed that {found}; are emod and pb_emod in Pa, density in kg/m³?"
 
 

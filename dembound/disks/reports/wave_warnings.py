@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.boundaries import axis_of_motion
+from dembound.boundaries import axis_of_motion, normal_axis
 from dembound.casefile.disks.load import Load
 from dembound.casefile.magnitudes import (
     grip_stress,
@@ -16,11 +16,13 @@ from dembound.casefile.magnitudes import (
     time_warnings,
     waves_used,
 )
+from dembound.disks.beyond.frequencies import mean_frequency_of
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.reports.incident_facts import arrival
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.waves.constant import Constant
 from dembound.waves.spectrum import HANN_FADE
+from dembound.waves.wave import Wave
 
 FEWEST_PER_WAVELENGTH = 20.0
 """Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
@@ -83,8 +85,10 @@ def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
     for name, count in particles_per_wavelength(scene).items():
         if count < FEWEST_PER_WAVELENGTH and not is_quasi_static(scene.case, name, travel):
             wave = scene.case.wave[name]
-            words = _too_sudden(scene, wave) if isinstance(wave, Constant) else _too_short(count)
-            yield f"wave.{name}: {words}; the packing will disperse it"
+            if isinstance(wave, Constant):
+                yield f"wave.{name}: {_too_sudden(scene, wave)}; the packing will disperse it"
+            else:
+                yield f"wave.{name}: {_too_short(scene, wave, count)}"
 
 
 def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
@@ -98,11 +102,15 @@ def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
     }
 
 
-def _too_short(count: float) -> str:
-    """What is wrong with a wave with this number of particles in its shortest wavelength."""
+def _too_short(scene: DiskScene, wave: Wave, count: float) -> str:
+    """What is wrong with a wave with this number of particles in its shortest wavelength, and how much of it."""
     if count < 1.0:
-        return "has a shortest wavelength below the diameter of a particle"
-    return f"has {count:.1f} particles in its shortest wavelength, fewer than {FEWEST_PER_WAVELENGTH:g}"
+        return "has a shortest wavelength below the diameter of a particle; the packing will disperse it"
+    mean = slowest_speed(scene.ground) / mean_frequency_of(wave) / scene.ground.brick.mean_diameter
+    few = f"has {count:.1f} particles in its shortest wavelength, fewer than {FEWEST_PER_WAVELENGTH:g}"
+    if mean < FEWEST_PER_WAVELENGTH:
+        return f"{few}, and {mean:.1f} in that of its mean frequency; the packing will disperse it"
+    return f"{few}, but {mean:.0f} in that of its mean frequency; the packing will disperse its shortest parts only"
 
 
 def _too_sudden(scene: DiskScene, wave: Constant) -> str:
@@ -178,12 +186,27 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
     return "its force over the width it acts on", float((extent / widths).max())
 
 
+def _entering_speeds(scene: DiskScene) -> dict[str, tuple[str, float]]:
+    """Of every wave that enters its slowest way: "P waves along x" or so, and their speed (m/s)."""
+    found: dict[str, tuple[str, float]] = {}
+    ways: list[tuple[int, str, str]] = [
+        (normal_axis(side), motion, name) for side, each in scene.case.driving.items() for motion, name in each.items()
+    ]
+    if (incident := scene.case.incident) is not None:
+        ways.append((1, incident.type, incident.wave))
+    for axis, motion, name in ways:
+        speed = scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
+        if not speed >= found.get(name, ("", math.inf))[1] and not math.isnan(speed):
+            found[name] = f"{motion.upper()} waves along {'xy'[axis]}", speed
+    return found
+
+
 def _large_strains(scene: DiskScene) -> Iterator[str]:
     """Waves, loads and strengths whose strains are far beyond those of solids."""
     modulus, reason = float(np.diag(scene.ground.material_tensor)[:2].min()), _TOO_LARGE[scene.has_history]
-    slowest, material = slowest_speed(scene.ground), scene.case.material
-    for name in sorted(scene.case.entering):
-        yield from large_velocity(f"wave.{name}", scene.case.wave[name].peak(), slowest, reason)
+    material = scene.case.material
+    for name, (words, speed) in sorted(_entering_speeds(scene).items()):
+        yield from large_velocity(f"wave.{name}", scene.case.wave[name].peak(), speed, reason, words)
     compared = scene.has_history and material.pb_ten is not None  # with the strength
     for load in () if compared else scene.case.load:
         yield from large_stress(f"load.{load.name}", *_load_stress(scene, load), modulus, reason)

@@ -25,6 +25,9 @@ NOISE = 0.5
 LEAST_TIME = 1e-3
 """Difference (s) of two CPU times up to which work decides: starting a run takes as long."""
 
+SHORTEST = 1e-9
+"""Smallest CPU time (s): clocks of coarse ticks have 0 for a short run."""
+
 EQUAL = 0.01
 """Relative difference of two errors up to which they count as equal."""
 
@@ -58,7 +61,7 @@ def front(points: Sequence[Point]) -> list[int]:
 def cost_ratio(first: Point, second: Point) -> float:
     """Cost of the first point over that of the second; 1 where they are equal within the noise."""
     rounds = min(len(first.cpu), len(second.cpu))
-    ratios = np.array(first.cpu[:rounds]) / np.array(second.cpu[:rounds])
+    ratios = np.divide(*(np.maximum(each.cpu[:rounds], SHORTEST) for each in (first, second)))
     ratio, spread = float(np.median(ratios)), 0.5 * float(np.ptp(ratios))
     apart = abs(np.median(first.cpu[:rounds]) - np.median(second.cpu[:rounds]))
     if apart > LEAST_TIME and abs(np.log(ratio)) > np.log1p(max(NOISE, spread / ratio)):

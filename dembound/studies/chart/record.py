@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RecordError
 from dembound.motion.kind import Finding
 from dembound.results.committed import changed_file
-from dembound.results.reader import open_record, text_of, understood
+from dembound.results.reader import finite, increasing, open_record, text_of, understood
+from dembound.results.structure import Members
 from dembound.studies.chart.measure import Gauge, Gauges, Outcome
 
 if TYPE_CHECKING:
@@ -27,6 +28,12 @@ OWN = (FILE, f"{FILE}.new", f"{FILE}.log", f"{FILE}.log.part", "chart.csv", "cha
 NUMBERS = ("failure", "time_step", "step_limit", "steps", "count", "work", "threads")
 """Attributes of an outcome that are single values."""
 
+MOST = 1e15
+"""Beyond all costs and counts of a run."""
+
+MOTION = ("displacement", "velocity", "stress")
+"""What a gauge records; the last of them only bars have."""
+
 UNITS = {"time": "s", "displacement": "m, m, rad", "velocity": "m/s, m/s, rad/s", "stress": "Pa"}
 
 
@@ -41,20 +48,22 @@ class Record:
         if not self.path.is_file():
             return None
         with open_record(self.path) as file:
-            group = file.get(f"runs/{key}")
+            group = Members(file, "runs").get(key)
             if group is None:
                 return None
             values = {name: _plain(group.attrs[name]) for name in NUMBERS}
             for name, value in values.items():
-                if not isinstance(value, str if name == "failure" else int | float):
-                    raise TypeError(f"runs/{key}, attribute {name}: is {value!r}")  # which open_record tells of
+                if name != "failure" and not (isinstance(value, int | float) and 0 <= value < MOST):
+                    raise _damaged(group, f"attribute {name}")
+            if not isinstance(values["failure"], str) or (not values["failure"] and values["work"] < 1):
+                raise _damaged(group, "attribute failure or work")
             found = Outcome(**values)
-            found.gauges = _read_gauges(group["gauges"])
+            found.gauges = {name: _read_gauge(inner, found) for name, inner in group["gauges"].items()}
             found.findings = {
                 name: Finding(float(value[()]), text_of(value.attrs["unit"]))
                 for name, value in _scalars(group["findings"]).items()
             }
-            found.cpu, found.wall = group["cpu"][:].tolist(), group["wall"][:].tolist()
+            found.cpu, found.wall = (_read_costs(group, name) for name in ("cpu", "wall"))
             return found
 
     def add(self, key: str, outcome: Outcome) -> None:
@@ -105,15 +114,32 @@ def write_gauges(group: h5py.Group, gauges: Gauges) -> None:
                 dataset.attrs["unit"] = unit
 
 
-def _read_gauges(group: h5py.Group) -> dict[str, Gauge]:
-    """The histories that `write_gauges` has written."""
-    return {
-        name: Gauge(
-            position=inner.attrs["position"],
-            **{quantity: inner[quantity][:] for quantity in UNITS if quantity in inner},
-        )
-        for name, inner in group.items()
-    }
+def _read_gauge(group: h5py.Group, run: Outcome) -> Gauge:
+    """The history of a monitor that `write_gauges` has written; raises RecordError for any other."""
+    position = np.asarray(group.attrs["position"], dtype=float)
+    if position.shape != (2,) or not np.isfinite(position).all():
+        raise _damaged(group, "attribute position")
+    time = increasing(group["time"])
+    if len(time) == 0 or time[0] < 0.0 or time[-1] > (run.steps + 1) * run.time_step:
+        raise _damaged(group, "time")
+    values = {name: finite(group[name]).astype(float) for name in MOTION if name in group or name != "stress"}
+    for name, column in values.items():
+        if column.shape != (len(time), 3)[: 1 if name == "stress" else 2]:
+            raise _damaged(group, name)
+    return Gauge(position, time.astype(float), **values)
+
+
+def _read_costs(group: h5py.Group, name: str) -> list[float]:
+    """The costs (s) of the timed runs of a case; raises RecordError for what is none."""
+    costs = finite(group[name])
+    if costs.ndim != 1 or not np.all((costs >= 0.0) & (costs < MOST)):
+        raise _damaged(group, name)
+    return [float(cost) for cost in costs]
+
+
+def _damaged(group: h5py.Group, what: str) -> RecordError:
+    """The error for a part of a run that is not as a chart writes it."""
+    return RecordError([f"{group.file.filename}: is damaged: {group.name[1:]}, {what}: is not as a chart writes it"])
 
 
 def _scalars(group: h5py.Group) -> dict[str, Any]:

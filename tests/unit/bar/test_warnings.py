@@ -61,7 +61,7 @@ def test_only_waves_in_use_can_be_too_short(spalling) -> None:
     short = {"type": "triangle", "amplitude": 1.0, "rise": 1e-6, "fall": 1e-6}
     entrance = {"type": "viscous_input", "wave_p": "in"}
     ends = {"boundary.left": entrance, "method.corrected_ends": True}
-    case = spalling({**LONG, **ends, "wave.in": short, "wave.spare": short})
+    case = spalling({**LONG, **ends, "wave.in": short, "wave.spare": short, "load": []})
 
     warnings = bar_warnings(build_bar(case), 2e-5)
     assert len([warning for warning in warnings if "shortest wavelength" in warning]) == 1
@@ -104,7 +104,7 @@ def test_only_a_horizon_can_be_made_smaller(spalling) -> None:
 )
 def test_dashpots_at_soft_ends_are_warned_of(spalling, method: dict, warned: bool) -> None:
     ends = {"left": {"type": "viscous_input", "wave_p": "hit"}, "right": {"type": "viscous"}}
-    case = spalling({**UNBROKEN, "method": method, "boundary": ends, **LONG})
+    case = spalling({**UNBROKEN, "method": method, "boundary": ends, "load": [], **LONG})
 
     warnings = bar_warnings(build_bar(case), 2e-5)
     assert [warning.split(":")[0] for warning in warnings] == warned * ["boundary.left", "boundary.right"]
@@ -347,3 +347,27 @@ def test_a_stiffness_and_a_density_that_do_not_fit_are_warned_of(modulus: float,
     scene = build_bar(small(SPALLING | {"bar": bar | {"youngs_modulus": modulus}}))
     found = of_key("bar", bar_warnings(scene, choose_step(scene)[0]))
     assert any("wave speed" in line for line in found) == warned
+
+
+@pytest.mark.parametrize(
+    ("end", "said"),
+    [
+        ({"type": "free"}, None),
+        ({"type": "viscous"}, "takes 50 % of it, and up to 6 MPa enters the bar; on a free end all of it does"),
+        ({"type": "viscous", "beta_p": 3.0}, "takes 75 % of it, and up to 3 MPa enters"),
+    ],
+)
+def test_a_load_on_an_end_that_takes_of_it_is_warned_of(spalling, end: dict, said: str | None) -> None:
+    """Of 12 MPa the dashpot Cv takes β/(1 + β)."""
+    found = of_key("load.hit", bar_warnings(build_bar(spalling({**EXACT, "boundary.left": end})), 2.5e-5))
+    assert len(found) == (said is not None)
+    assert said is None or said in found[0]
+
+
+@pytest.mark.parametrize(("energy", "tough"), [(7.6e3, False), (7.8e3, True)])
+def test_a_fracture_energy_above_that_of_the_waves_is_warned_of(spalling, energy: float, tough: bool) -> None:
+    """∫p²/(ρc) dt of a triangle of 12 MPa and 4e-4 s is 144e12/3 · 4e-4/2.5e6 = 7,680 J/m²."""
+    case = spalling({**EXACT, "bar.fracture_energy": energy})
+    found = of_key("bar.fracture_energy", bar_warnings(build_bar(case), 2.5e-5))
+    assert len(found) == tough
+    assert not tough or "is 7800 J/m², more than all waves bring in, 7.68e+03 J/m², so no crack" in found[0]

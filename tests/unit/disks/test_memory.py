@@ -3,7 +3,7 @@
 import pytest
 from small_cases import SURROUNDED, small
 
-from dembound.disks.contacts import layout
+from dembound.disks.contacts.contact_list import layout
 from dembound.disks.memory import SceneSizes, expected_bytes, pairs_bytes, run_bytes, scene_bytes
 from dembound.disks.scene import build
 from dembound.errors import CaseError

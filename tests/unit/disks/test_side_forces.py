@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from dembound.disks.rest.tractions import Tractions
 from dembound.disks.scene import build
 from dembound.disks.side_forces import side_forces
+from dembound.motion.sides import _bearers
 
 BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
 RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
@@ -38,6 +40,28 @@ def test_an_elastic_body_rests_where_its_packing_does(bar, pattern: str, stress:
     force[held] = 0.0
     # the solve for correctors, of some hundred unknowns, and k·u of displacements of strain × 8 m
     assert np.abs(force).max() < 1e-9 * 3e6
+
+
+@pytest.mark.parametrize("stress", STRESSES)
+@pytest.mark.parametrize("pattern", ["A", "half cells", "B", "C"])
+def test_a_side_is_recorded_with_the_stress_times_its_length(bar, pattern: str, stress: tuple) -> None:
+    """To rounding, also where contacts cross a corner, and all sides together with what acts on the body: nothing."""
+    scene = build(bar({**BODY, **PATTERNS[pattern], "static": {"stress": stress}}))
+    force, sides = Tractions(scene, stress).forces(np.zeros((3, scene.count))), list(scene.sides.values())
+    xx, yy, xy = stress
+    for edge, (node, share) in zip(sides, _bearers(sides, scene.forces_by_side), strict=True):
+        outward = 1.0 if edge.side in ("right", "top") else -1.0
+        expected = outward * edge.length * np.array([[xx, xy], [xy, yy]])[edge.axis]
+        # the solve for correctors, and sums of a hundred forces
+        np.testing.assert_allclose((share * force[:2, node]).sum(axis=1), expected, rtol=0.0, atol=1e-9 * 3e6 * 8.0)
+
+
+def test_without_a_corner_sides_are_recorded_with_what_acts_by_them(bar) -> None:
+    """The corner's contacts would be missing in the sum of all sides."""
+    hole = {"name": "notch", "type": "rectangle", "corners": [-1.0, -1.0, 1.0, 1.0]}
+    scene = build(bar({**BODY, **PATTERNS["B"], "hole": [hole], "static": {"stress": STRESSES[0]}}))
+    for _, acting, shown in scene.forces_by_side.values():
+        np.testing.assert_array_equal(acting, shown)
 
 
 def test_a_locked_in_stress_is_a_part_of_the_one_given(bar) -> None:

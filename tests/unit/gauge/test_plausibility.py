@@ -74,7 +74,7 @@ def test_first_passages_give_the_speed():
     values = -TRIANGLE + np.roll(0.6 * TRIANGLE, 300)
     first = first_return(TIME, values, 0.4, 1.0)
     assert first.value == pytest.approx(2.0 * 0.6 / 300.0, rel=1e-12)
-    assert first.error == pytest.approx(first.value * np.sqrt(0.5) / 300.0, rel=1e-12)
+    assert first.error == pytest.approx(first.value * np.sqrt(0.125) / 300.0, rel=1e-12)
     assert first_return(TIME, -values, 0.4, 1.0) is None
 
 

@@ -37,16 +37,27 @@ def test_the_rest_at_a_corner_is_of_the_side_along_whose_normal_it_is() -> None:
 
 
 def test_known_forces_of_sides_are_taken_apart_as_they_were_put_together() -> None:
-    known = {
+    given = {
         "left": (np.array([0, 2]), np.array([[1.0, 4.0], [0.0, -2.0]])),
         "bottom": (np.array([2, 4]), np.array([[6.0, 0.0], [2.0, 7.0]])),
     }
+    known = {side: (nodes, each, each) for side, (nodes, each) in given.items()}
     force = np.zeros((2, 5))
-    for nodes, each in known.values():
+    for nodes, each in given.values():
         force[:, nodes] += each
     force[:, 3] = [0.5, 0.25]  # of a node of one side alone
     # where two forces cancel, here along y, what there is belongs to the side along whose normal it is
     np.testing.assert_allclose(borne([LEFT, BOTTOM], force, known), [[5.0, 0.0], [6.5, 7.25]], rtol=1e-14)
+
+
+def test_sides_are_recorded_with_other_forces_than_act_by_them() -> None:
+    """Node 2 has a force of 4 N by the left side, with which the bottom is recorded, too."""
+    known = {
+        "left": (np.array([0, 2]), np.array([[1.0, 4.0], [0.0, 0.0]]), np.array([[1.0, 4.0], [0.0, 0.0]])),
+        "bottom": (np.array([2, 4]), np.array([[6.0, 0.0], [2.0, 7.0]]), np.array([[10.0, 0.0], [2.0, 7.0]])),
+    }
+    force = np.array([[1.0, 0.0, 10.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0, 7.0]])
+    np.testing.assert_allclose(borne([LEFT, BOTTOM], force, known), [[5.0, 0.0], [10.0, 9.0]], rtol=1e-14)
 
 
 def test_two_opposite_sides_with_the_same_nodes_share_equally() -> None:

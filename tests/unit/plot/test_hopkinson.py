@@ -13,7 +13,7 @@ def test_all_histories_are_drawn():
     found = specimen(faces, SETUP)
     figure = plot_hopkinson(faces, found)
     waves, forces, rates, curve = figure.axes
-    for line, values in zip(waves.lines, faces[1:], strict=True):
+    for line, values in zip(waves.lines, faces[1:4], strict=True):
         np.testing.assert_allclose(line.get_ydata(), 1e6 * values)
     for line, values in zip(forces.lines, (found.front, found.back), strict=True):
         np.testing.assert_allclose(line.get_ydata(), 1e-6 * values)

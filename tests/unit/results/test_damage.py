@@ -1,9 +1,12 @@
 """Damage of records is reported in words, with the dataset where it is, and with exit code 5."""
 
+import errno
+
 import h5py
 import pytest
 
 from dembound.errors import RecordError
+from dembound.results.damage import damage_in_words
 from dembound.results.reader import open_record
 
 VELOCITY = "snapshots/0001/velocity"
@@ -46,3 +49,11 @@ def test_damaged_groups_are_told_from_damaged_numbers(small_run, tmp_path):
 @pytest.mark.parametrize(("content", "what"), [(b"", "empty"), (b"not a record", "no HDF5 file")])
 def test_other_files_are_called_what_they_are(tmp_path, content, what):
     assert refused(tmp_path, content) == f"cannot be read as a record of results: it is {what}"
+
+
+@pytest.mark.parametrize(
+    ("number", "what"), [(errno.EAGAIN, "another process is writing it"), (errno.EACCES, "permission denied")]
+)
+def test_a_file_that_cannot_be_opened_now_says_why(number, what):
+    error = OSError(number, "Unable to synchronously open file (unable to lock file, errno = 11)")
+    assert damage_in_words(error, 1000) == f"cannot be read as a record of results: {what}"

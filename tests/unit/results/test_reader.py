@@ -251,3 +251,15 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
         write_half()
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_parts_that_results_lack_are_named(tmp_path) -> None:
+    with h5py.File(tmp_path / "run.h5", "w") as file:
+        file["snapshots/0000/velocity"] = np.zeros((2, 3))
+    results = Results(tmp_path)
+    assert results.snapshots[-1]["velocity"].shape == results.snapshots[:1][0]["velocity"].shape == (2, 3)
+    assert len(list(results.snapshots)) == 1
+    with pytest.raises(IndexError, match=r"run\.h5: has no snapshot 99, they are 0 to 0$"):
+        results.snapshots[99]
+    with pytest.raises(TypeError, match=r"results have no \['x'\]; their parts are attributes: histories, "):
+        results["x"]

@@ -6,14 +6,17 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from dembound.disks.system import DiskSystem, Start
 
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
+from dembound.disks.stepping.system import DiskSystem, Start
+from dembound.motion.cracks import NO_CRACKS
 from dembound.motion.energy import Entry, Ledger
+from dembound.motion.kind import Stage
 from dembound.motion.simulation import Simulation
 from dembound.results import recorder as module
+from dembound.results.new_record import write_stages
 from dembound.results.reader import text_of
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
@@ -492,3 +495,18 @@ def test_cracks_of_a_bar_stand_between_the_nodes_they_part(spalled_run) -> None:
         assert not cracks["shear"][:].any()
         np.testing.assert_allclose(cracks["position"][:, 0], place[pairs].mean(axis=1), rtol=1e-15)
         assert len(np.unique(pairs, axis=0)) == len(pairs)
+
+
+def test_stages_that_a_record_lacks_are_written_back() -> None:
+    displacement = np.arange(12.0).reshape(3, 4)
+    stages = [Stage(name, {"steps": 7}, displacement, NO_CRACKS) for name in ("static", "static/before")]
+    with h5py.File("stages", "w", driver="core", backing_store=False) as file:
+        file["static/displacement"] = np.ones((4, 3))  # is kept
+        write_stages(file, stages)
+        assert np.array_equal(file["static/displacement"], np.ones((4, 3)))
+        del file["static"]
+        write_stages(file, stages)
+        for stage in stages:
+            assert np.array_equal(file[stage.name]["displacement"], displacement.T)
+            assert file[stage.name].attrs["steps"] == 7
+            assert text_of(file[stage.name]["displacement"].attrs["unit"]) == "m, m, rad"

@@ -1,14 +1,15 @@
 """Files that are not built like a record are refused by what is wrong with them; nothing that they name is followed."""
 
 import json
+import time
 
 import h5py
 import numpy as np
 import pytest
 
 from dembound.errors import CaseError, RecordError
-from dembound.results.reader import open_record, understood
-from dembound.results.structure import run_of
+from dembound.results.reader import history_of, open_record, snapshots_of, understood
+from dembound.results.structure import MOST_ATTRIBUTES, MOST_MEMBERS, MOST_OBJECTS, run_of
 from dembound.results.summary_file import read_summary
 
 
@@ -144,3 +145,132 @@ def test_what_foreign_contents_raise_is_one_line(tmp_path) -> None:
     with pytest.raises(RecordError, match=r"run\.h5: it or its summary") as refused, understood(tmp_path / "run.h5"):
         raise IndexError("out of\nrange")
     assert len(str(refused.value).splitlines()) == 1
+
+
+def crowded(file, path, count, attributes=0) -> None:
+    """Groups with attributes of their own, quickly made."""
+    group = file.require_group(path)
+    for number in range(count):
+        each = h5py.h5g.create(group.id, f"{number:06d}".encode())
+        if attributes:
+            h5py.Group(each).attrs.update({f"a{k}": 1.0 for k in range(attributes)})
+
+
+def within(seconds, path) -> str:
+    """How a file is refused, by a search that takes no more CPU time than this."""
+    began = time.process_time()
+    why = refusal(path)
+    assert time.process_time() - began < seconds
+    return why
+
+
+@pytest.mark.parametrize(
+    ("path", "count", "why"),
+    [
+        pytest.param(
+            *("histories", MOST_OBJECTS + 1, f"has more than {MOST_OBJECTS:,} groups, datasets and attributes"),
+            marks=pytest.mark.slow,
+        ),
+        ("snapshots", MOST_MEMBERS + 1, f"snapshots: has more than {MOST_MEMBERS:,} members"),
+        ("choices", MOST_MEMBERS + 1, f"choices: has more than {MOST_MEMBERS:,} members"),
+    ],
+)
+def test_files_of_too_many_groups_are_refused_at_once(record, path, count, why) -> None:
+    assert within(5.0, record(lambda file: crowded(file, path, count))) == why
+
+
+def test_too_many_attributes_are_refused_at_once(record) -> None:
+    path = record(lambda file: file["histories"].attrs.update({f"a{k}": 1.0 for k in range(MOST_ATTRIBUTES + 1)}))
+    assert within(1.0, path) == f"histories: has more than {MOST_ATTRIBUTES} attributes"
+
+
+@pytest.mark.slow  # each takes seconds to make
+@pytest.mark.parametrize(
+    ("place", "count", "attributes"),
+    [("histories", MOST_OBJECTS - 10, 0), ("histories", MOST_OBJECTS // 100 - 10, 99), ("snapshots", MOST_MEMBERS, 8)],
+)
+def test_files_at_the_limit_are_searched_in_seconds(record, place, count, attributes) -> None:
+    path = record(lambda file: crowded(file, place, count, attributes))
+    began = time.process_time()
+    with open_record(path):
+        pass
+    assert time.process_time() - began < 5.0
+
+
+def odd_snapshot(change):
+    """Writes three snapshots, of which the second is changed."""
+
+    def write(file) -> None:
+        for number in range(3):
+            group = file.create_group(f"snapshots/{number:04d}")
+            group["velocity"] = np.zeros((4, 3))
+        change(file, file["snapshots/0001"])
+
+    return write
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (lambda _, group: group.__setitem__("a", h5py.SoftLink("/")), "snapshots/0001/a: is a link, of which"),
+        (lambda _, group: group.__setitem__("a", h5py.ExternalLink("/etc/passwd", "/")), "snapshots/0001/a: is a link"),
+        (lambda file, group: group.__setitem__("a", file["/"]), "snapshots/0001/a: is linked to more than once"),
+        (lambda _, group: group.__setitem__("a", group["velocity"]), "is linked to more than once"),
+        (lambda _, group: large(group), "snapshots/0001/a: declares 8,796,093,022,208 bytes, and has 0"),
+        (lambda _, group: crowded(group, "more", 200), "snapshots/0001: has more than 100 groups, datasets and"),
+        (lambda _, group: group.create_dataset("damage", data=["a"] * 4), "damage: must have rows of one number"),
+    ],
+)
+def test_a_snapshot_is_searched_when_it_is_used(record, change, why) -> None:
+    path = record(odd_snapshot(change))
+    with open_record(path) as file:
+        snapshots = snapshots_of(file)
+        assert len(snapshots) == 3
+        assert snapshots[0]["velocity"].shape == (4, 3)
+        for use in (lambda: snapshots[1], lambda: snapshots[-2], lambda: snapshots[:2], lambda: list(snapshots)):
+            with pytest.raises(RecordError) as refused:
+                use()
+            assert why in str(refused.value)
+
+
+@pytest.mark.parametrize("target", ["/snapshots/0002", "/histories", "/"])
+def test_members_of_a_collection_are_groups_of_their_own(record, target) -> None:
+    path = record(odd_snapshot(lambda file, _: file["snapshots"].__setitem__("0003", file[target])))
+    assert "is linked to more than once" in refusal(path)
+
+
+def test_members_of_a_collection_are_no_links(record) -> None:
+    link = h5py.SoftLink("/runs/12ab")
+    path = record(odd_snapshot(lambda file, _: file["snapshots"].__setitem__("0003", link)))
+    assert refusal(path) == "snapshots/0003: is a link, of which a record has none"
+
+
+def test_what_snapshots_declare_together_is_bounded(record) -> None:
+    def packed_each(file) -> None:
+        for number in range(12):  # of 10 MB, in some 10 kB each
+            made = file.create_dataset(
+                f"snapshots/{number:04d}/a", (1, 1_250_000), "f8", chunks=True, compression="gzip"
+            )
+            made[:] = 0.0
+
+    with open_record(record(packed_each)) as file, pytest.raises(RecordError, match=r"bytes of numbers in"):
+        list(snapshots_of(file))
+
+
+def test_columns_of_a_snapshot_have_a_row_for_each_particle(record) -> None:
+    def complete(file, group) -> None:
+        file.attrs["complete"] = True
+        file["particles/position"] = np.zeros((4, 2))
+        group["displacement"] = np.zeros((5, 3))
+
+    with open_record(record(odd_snapshot(complete))) as file:
+        assert snapshots_of(file)[0]["velocity"].shape == (4, 3)
+        with pytest.raises(RecordError, match=r"snapshots/0001 has columns of different lengths"):
+            snapshots_of(file)[1]
+
+
+@pytest.mark.parametrize("times", [[0.0, 1.0, 1.0, 2.0], [0.0, 2.0, 1.0, 3.0], [0.0, np.nan, 1.0, 2.0]])
+def test_times_that_do_not_increase_are_refused(record, times) -> None:
+    path = record(lambda file: file["histories/top/time"].__setitem__(..., times))
+    with open_record(path) as file, pytest.raises(RecordError, match=r"histories/top/time"):
+        history_of(file["histories/top"], "velocity")

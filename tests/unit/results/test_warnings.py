@@ -6,8 +6,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from dembound.disks.warnings import warnings_after_disks
 
+from dembound.disks.reports.warnings import warnings_after_disks
 from dembound.disks.scene import build
 
 TIME = np.linspace(0.0, 1.0, 1001)
@@ -156,3 +156,24 @@ def test_one_monitor_or_none(bar, moved) -> None:
 )
 def test_energy_that_steps_take_or_that_is_missing_is_warned_of(bar, moved, energy: dict, said: list[str]) -> None:
     assert moved(two(bar), energy=KEPT | energy, near=PULSE, far=0.5 * PULSE) == said
+
+
+@pytest.mark.parametrize(
+    ("boundary", "said"),
+    [
+        ({"left": "viscous", "bottom": "viscous"}, "the motion is not over, take a longer"),
+        (
+            {"left": "viscous"},
+            "the motion is not over: waves between bottom (free) and top (free) are not",
+        ),
+        (
+            {"bottom": "viscous", "left": "fixed", "right": "roller"},
+            "waves between left (fixed) and right (roller) are",
+        ),
+    ],
+)
+def test_sides_that_keep_waves_are_named(bar, moved, boundary: dict, said: str) -> None:
+    sides = {side: {"type": kind} for side, kind in boundary.items()}
+    coda = np.sin(200.0 * np.pi * TIME)
+    (found,) = moved(two(bar, {"motion.held": [], "wave": {}, "boundary": sides}), near=coda, far=coda)
+    assert said in found

@@ -385,3 +385,12 @@ def test_checksums_find_a_changed_byte(case, tmp_path) -> None:
     record.write_bytes(data)
     with h5py.File(record) as file, pytest.raises(OSError, match=r"checksum|filter"):
         file["histories/gauge/velocity"][()]
+
+
+@pytest.mark.parametrize("part", ["inputs", "case"])
+def test_a_record_without_its_case_is_damaged(case, tmp_path, part) -> None:
+    record = run_case(case, tmp_path) / "run.h5"
+    with h5py.File(record, "a") as file:
+        del (file if part == "inputs" else file.attrs)[part]
+    with pytest.raises(RecordError, match=rf"run\.h5: is damaged: it has no {part}$"):
+        recorded_case(record)

@@ -14,7 +14,7 @@ from dembound.motion.trackers import Run
 from dembound.plot.scene import plot_scene
 from dembound.results.folder import OWN
 from dembound.results.summary import end_in_words
-from dembound.running import SECTIONS, Progress, plan, preflight, run_case
+from dembound.running import SECTIONS, Progress, plan, preflight, run_case, warnings_before
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
 BLOW_UP = {"boundary.left": GRIP, "run.duration": 0.05}
@@ -280,6 +280,20 @@ def test_what_would_stop_a_case_is_foreseen(bar, spalling) -> None:
         assert caught.value.source == stopped.name
     preflight(bar())
     preflight(spalling())
+
+
+@pytest.mark.parametrize(("x", "said"), [(5.2, True), (5.8, False)])
+def test_monitors_of_one_particle_are_warned_of(bar, x: float, said: bool) -> None:
+    """Disks are 0.5 m wide; one is centred at (5.25, 0.25) m."""
+    case = bar({"monitor": [{"name": "a", "position": [5.25, 0.25]}, {"name": "b", "position": [x, 0.3]}]})
+    assert [line[:10] for line in warnings_before(plan(case)) if "records the same" in line] == said * ["monitor.b:"]
+
+
+@pytest.mark.parametrize(("snapshots", "said"), [(0, True), (1, False)])
+def test_what_only_snapshots_hold_is_missed_without_them(bar, snapshots: int, said: bool) -> None:
+    case = bar({"output": {"stress": True, "contacts": True, "snapshots": snapshots}})
+    found = [line for line in warnings_before(plan(case)) if line.startswith("output.stress and output.contacts: asks")]
+    assert len(found) == said
 
 
 def test_energies_are_entered_a_hundred_times_or_as_often_as_asked(bar, tmp_path) -> None:

@@ -39,5 +39,5 @@ def test_a_side_with_a_frame_is_as_long_as_its_disks_together(bar, bottom: str) 
 
 
 def test_a_side_of_which_nothing_is_left_is_refused() -> None:
-    with pytest.raises(CaseError, match="hole: removes all of the right side"):
+    with pytest.raises(CaseError, match=r"remove all . particles that make up the right side, so boundary.right"):
         edge_without(EDGE, np.array([0, 1, 4]))

@@ -133,6 +133,17 @@ def test_a_wave_that_nothing_uses_is_warned_of_alone(bar) -> None:
     assert [line for line in lines if "other" in line] == ["wave.other: no side and no load uses it"]
 
 
+@pytest.mark.parametrize(("stages", "is_said"), [(("before", "after"), True), (("after", "before"), False)])
+def test_a_hole_within_an_earlier_one_is_warned_of(bar, stages, is_said) -> None:
+    wide, narrow = (
+        {"name": name, "type": "rectangle", "corners": [x, 0.0, 6.0 - x, 0.4], "stage": stage}
+        for name, x, stage in zip(("wide", "narrow"), (1.8, 2.3), stages, strict=True)
+    )
+    lines = warned(bar({"packing.size": [10.0, 1.0], "hole": [wide, narrow], "static": {"stress": [-1e5, -1e5, 0.0]}}))
+    said = ["hole[2, narrow]: lies within hole.wide, so it removes no more particles"]
+    assert [line for line in lines if "lies within" in line] == (said if is_said else [])
+
+
 def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
     """Between four disks of 0.5 m, above the rows, or with the centre of a single one at their upper right."""
     between, above, one = (

@@ -1,0 +1,57 @@
+"""Warnings about waves that are used for two quantities, and about histories that begin or end away from zero."""
+
+from collections.abc import Iterator
+
+from dembound.casefile.model import Case
+
+CUT = 0.02
+"""Share of its peak by which a history may jump at its ends; of 0.02 the waves that the jump sends have 1/2500."""
+
+
+def wave_use_warnings(case: Case) -> Iterator[str]:
+    """All of them, one line each."""
+    yield from _two_quantities(case)
+    yield from _jumps(case)
+
+
+def users_of(case: Case, name: str) -> tuple[list[str], list[str]]:
+    """The keys that take a wave as a velocity, and those that take it as the factor of a load."""
+    velocities = [
+        f"boundary.{side}.wave_{motion}"
+        for side, waves in case.driving.items()
+        for motion, each in waves.items()
+        if each == name
+    ]
+    incident = getattr(case, "incident", None)
+    velocities += ["incident.wave"] if incident is not None and incident.wave == name else []
+    return velocities, [f"load.{load.name}" for load in case.load if load.wave == name]
+
+
+def _two_quantities(case: Case) -> Iterator[str]:
+    """Waves that are the velocity of a side and the factor of a load."""
+    for name, wave in case.wave.items():
+        velocities, factors = users_of(case, name)
+        if velocities and factors:
+            both = f"the velocity at {' and '.join(velocities)} and the factor of {' and '.join(factors)}"
+            peak = f"{wave.peak():.4g}"
+            yield f"wave.{name}: is {both}: its peak is {peak} m/s at the one and {peak} without unit at the other"
+
+
+def _jumps(case: Case) -> Iterator[str]:
+    """Histories with a first or last value that is not zero: outside it is, so that they jump there within the run."""
+    for name, wave in case.wave.items():
+        velocities, factors = users_of(case, name)
+        if not velocities and not factors:
+            continue
+        unit = " m/s" if velocities else ""
+        ends = [
+            (end, time, value)
+            for end, time, value in wave.ends()
+            if 0.0 <= time < case.run.duration and abs(value) > CUT * wave.peak()
+        ]
+        if ends:
+            listed = " and ".join(
+                f"{end} at {value:.4g}{unit}, {100.0 * abs(value) / wave.peak():.2g} % of its peak, at {time:.4g} s"
+                for end, time, value in ends
+            )
+            yield f"wave.{name}: {listed}, a jump from or to 0 beyond it; lead its file to 0 there, or shift its values"

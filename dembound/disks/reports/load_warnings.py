@@ -1,0 +1,52 @@
+"""Warnings about loads of which less than the given force acts, as a side takes or holds it."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from dembound.boundaries.support import Edge
+from dembound.casefile.disks.load import Load
+from dembound.disks.loads import forces_of
+from dembound.disks.scene import DiskScene
+
+HELD = 0.1
+"""Share of a load that disks of held sides may have without a warning: a region often reaches such a side."""
+
+
+def load_warnings(scene: DiskScene) -> Iterator[str]:
+    """All of them, one line each."""
+    yield from _twice(scene.case.load)
+    for load in scene.case.load:
+        if load.force is None:
+            continue
+        nodes, forces = forces_of(load, scene)
+        for edge in scene.edges.values():
+            on_side = np.isin(nodes, edge.nodes)
+            if on_side.any():
+                yield from (f"load.{load.name}: {words}" for words in _at_side(scene, load, edge, forces, on_side))
+
+
+def _at_side(scene: DiskScene, load: Load, edge: Edge, forces: np.ndarray, on_side: np.ndarray) -> Iterator[str]:
+    """What a side makes of a load with forces (k, 3), of which some (k,) are on its disks, in words."""
+    table, side = scene.case.side(edge.side), edge.side
+    prescribed = [axis for axis in load.axes if axis in table.prescribed(edge.axis)]
+    if table.factors and on_side.all():
+        yield (
+            f"acts on disks of boundary.{side} alone, whose dashpots take a part of it: of a plane wave about half "
+            "enters; put it on disks away from that side"
+        )
+    elif prescribed and (share := abs(forces[on_side, prescribed[0]].sum() / forces[:, prescribed[0]].sum())) > HELD:
+        yield (
+            f"has {100.0 * share:.3g} % of its force along {'xy'[prescribed[0]]} on disks of boundary.{side}, which "
+            "prescribes their motion, so that this part moves nothing"
+        )
+
+
+def _twice(loads: Sequence[Load]) -> Iterator[str]:
+    """Loads that are the same as an earlier one but for their name."""
+    seen: dict[str, str] = {}
+    for load in loads:
+        same = repr(load.model_copy(update={"name": ""}))
+        if same in seen:
+            yield f"load.{load.name}: is the same as load.{seen[same]}, so that it acts twice"
+        seen.setdefault(same, load.name)

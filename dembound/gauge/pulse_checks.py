@@ -1,0 +1,95 @@
+"""Whether the pulses of a split Hopkinson test fit each other: in their impulses, and in their travel time.
+
+The impulse of both faces, ∫(F_1 − F_2) dt, is what a specimen takes up that moves: m v. A gauge whose baseline jumps,
+whose gain is wrong or whose record lacks samples makes it larger, or negative. The reflected pulse begins 2d_i/c after
+the incident one at their gauge.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dembound.gauge.estimates import Estimate
+from dembound.gauge.hopkinson import Specimen
+from dembound.gauge.peaks import denoised, white_noise
+from dembound.gauge.pulses import Faces, Setup, Signals, Windows, found_windows
+from dembound.gauge.slope_error import unbalanced
+
+BALANCED = 0.015
+"""Difference of the impulses of both faces over their mean, beyond what inertia makes, from which a warning is due."""
+
+LOWEST, LEVELS = 0.02, 3
+"""Share of its largest value at which the onset of a pulse is first sought, and number of such levels, each twice the
+one before."""
+
+NOISES = 8.0
+"""Least of these levels in standard deviations of noise."""
+
+TOLD = 0.01
+"""Relative difference of wave speeds from which a warning is due, if it is beyond the error of that measured, too."""
+
+
+def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate | None:
+    """Wave speed by the onsets of the incident and the reflected pulse at their gauge, 2d_i/c apart.
+
+    As both have other shapes, the time between them is that at some low levels, extrapolated to none with the root of
+    the level, as a pulse that begins with a bend has it. The error is the difference of this from the lowest level, and
+    half a sample. None where the pulses overlap, or noise hides the onsets.
+    """
+    (first, last), (_, end), _ = found_windows(signals, setup, windows)
+    time, values = signals.time, denoised(signals.incident)
+    out = (time >= first) & (time <= last)
+    back = (time > last - 0.1 * (last - first)) & (time <= end)
+    levels = np.array(
+        max(LOWEST, NOISES * white_noise(signals.incident) / float(np.abs(values[back]).max(initial=1e-300)))
+        * 2.0 ** np.arange(LEVELS)
+    )
+    if levels[-1] > 0.5:
+        return None
+    leaves, returns = (_onsets(time[part], np.abs(values[part]), levels) for part in (out, back))
+    if leaves is None or returns is None:
+        return None
+    delays = returns - leaves
+    delay = float(np.polyfit(np.sqrt(levels), delays, 1)[1])
+    error = abs(delay - float(delays[0])) + 0.5 * float(time[1] - time[0])
+    if not delay > 0.0:
+        return None
+    speed = 2.0 * setup.incident_gauge / delay
+    return Estimate(speed, speed * error / delay, 2)
+
+
+def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Windows, found: Specimen) -> Iterator[str]:
+    """What is doubtful about pulses that do not fit each other."""
+    off = max((unbalanced(faces, setup, found, end) for end in (found.largest + 1, len(faces.time))), key=abs)
+    if abs(off) > BALANCED:
+        yield (
+            f"the impulses of both faces of the specimen differ by {100.0 * off:+.2g} %, beyond its inertia: look for "
+            "a baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut"
+        )
+    travelled = None if signals.second is not None else travel_speed(signals, setup, windows)
+    if travelled is not None:
+        apart = travelled.value / setup.bar.speed - 1.0
+        if abs(apart) > max(TOLD, travelled.error / setup.bar.speed):
+            yield (
+                f"the reflected pulse begins at its gauge as with a wave speed of {travelled.value:.5g} ± "
+                f"{travelled.error:.2g} m/s, {100.0 * apart:+.2g} % from --wave-speed: check it and --incident-gauge, "
+                "or look for lost samples"
+            )
+
+
+def _onsets(time: np.ndarray, sizes: np.ndarray, levels: np.ndarray) -> np.ndarray | None:
+    """Times (n,) at which a pulse (k,) begins to exceed shares (n,) of its largest value for good; None if not.
+
+    It is risen at half of that, for the first time: a reflected pulse may have its largest value as the load ends.
+    """
+    largest = float(sizes.max(initial=0.0))
+    risen = int(np.argmax(sizes >= 0.5 * largest))
+    found = []
+    for level in levels * largest:
+        below = np.flatnonzero(sizes[: risen + 1] < level)
+        if not len(below):
+            return None
+        last = int(below[-1])
+        share = (level - sizes[last]) / (sizes[last + 1] - sizes[last])
+        found.append(float(time[last] + share * (time[last + 1] - time[last])))
+    return np.array(found)
