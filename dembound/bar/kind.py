@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.bar.facts import bar_facts
-from dembound.bar.memory import run_bytes
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
+from dembound.bar.ram import run_bytes
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step

@@ -10,7 +10,7 @@ from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts.breaks import first_break
 from dembound.disks.material.wave_front import front_of
-from dembound.disks.memory import expected_bytes
+from dembound.disks.ram import expected_bytes
 from dembound.disks.reduced.reduction import reduced
 from dembound.disks.reports.contact_mesh import contact_mesh
 from dembound.disks.reports.continuum_mesh import continuum_mesh

@@ -23,15 +23,15 @@ from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.loads import drive, steady
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
-from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
+from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
 from dembound.disks.stepping.stress import particle_stress
 from dembound.disks.stepping.system import DiskSystem
 from dembound.holes.floor import Floor
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.layout import Layout
-from dembound.outside.memory import GridSizes
+from dembound.outside.ram import GridSizes
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile

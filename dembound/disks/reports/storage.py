@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dembound.disks.memory import SceneSizes, checkpoint_bytes
+from dembound.disks.ram import SceneSizes, checkpoint_bytes
 from dembound.disks.scene import DiskScene
 from dembound.motion.storage import POINT, Storage, mesh_bytes
-from dembound.outside.memory import memories_bytes
+from dembound.outside.ram import memories_bytes
 
 CHANGING, CONSTANT = 44.0, 21.0
 """Bytes of the motion of a disk for ParaView, and of those fields that remain; the numbers of broken bonds are among
