@@ -26,6 +26,7 @@ from dembound.disks.material.packed_material import PackedMaterial, make_packed_
 from dembound.disks.monitors import monitors_of
 from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
+from dembound.disks.stepping.continuum_ties import disks_on_foot
 from dembound.disks.stepping.stress import particle_stress
 from dembound.disks.stepping.system import DiskSystem
 from dembound.holes.floor import Floor
@@ -304,8 +305,9 @@ def _let_in_below(scene: DiskScene, names: tuple[str | None, str | None], builde
     assert beneath is not None
     x, y = (None if name is None else scene.case.wave[name] for name in names)
     waves = rising_waves(beneath.body.medium, beneath.box[1], (x, y), scene.ground.brick.mean_diameter)
-    twins = scene.on_foot if scene.twin is None else scene.twin[scene.on_foot]
+    disks = disks_on_foot(scene)
+    twins = disks if scene.twin is None else scene.twin[disks]
     builder.side = "bottom"
-    let_in_below(beneath, waves, scene.positions, builder, (twins, scene.on_foot))
+    let_in_below(beneath, waves, scene.positions, builder, (twins, disks))
     side = "bottom" if scene.foot is None else f"bottom{FREE_FIELD}"
     builder.add_power(side, power_through("bottom", beneath.body.mesh.sides, waves, beneath.body.thickness))

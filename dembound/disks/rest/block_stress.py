@@ -103,7 +103,7 @@ class Blocks:
 
 def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:
     """Stress (nx, ny, 3) in the blocks of a body at displacements (3, n), see `Blocks.stress`; without its column."""
-    part = system.disk_parts[-1]
+    part = system.disks.parts[-1]
     found = pieces(scene.layout, part.pairs, displacement, part.geometry)
     if part.geometry != UPDATED:
         return Blocks.of(scene).stress(found, scene.positions)

@@ -7,7 +7,8 @@ import numpy as np
 
 from dembound.disks.rest.block_stress import Uniformity
 from dembound.disks.scene import DiskScene
-from dembound.disks.stepping.system import Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
 from dembound.motion.cracks import Cracks
 from dembound.motion.state import Arrays, within
 from dembound.table import every_key
@@ -60,7 +61,7 @@ class Settled:
     @classmethod
     def recalled(cls, scene: DiskScene, memory: Arrays) -> Self:
         """The same from what `memory` has returned for an equal scene."""
-        contacts = scene.contact_lists() if any(name.startswith("contacts/") for name in memory) else {}
+        contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in memory) else {}
         for part, pairs in contacts.items():
             pairs.recall(within(memory, f"contacts/{part}"))
         cracks, uniformity = within(memory, "cracks"), within(memory, "uniformity")

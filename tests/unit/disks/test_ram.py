@@ -6,6 +6,7 @@ from small_cases import SURROUNDED, small
 from dembound.disks.contacts import layout
 from dembound.disks.ram import SceneSizes, expected_bytes, pairs_bytes, run_bytes, scene_bytes
 from dembound.disks.scene import build
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.errors import CaseError
 from dembound.machine import Memory
 from dembound.motion import ram
@@ -63,7 +64,7 @@ def test_a_scene_is_the_sum_of_its_arrays(bar, monkeypatch, in_rows) -> None:
 def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows) -> None:
     monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
     scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}, "material.law": "linearpbond"}))
-    (pairs,) = scene.contact_lists().values()
+    (pairs,) = contact_lists(scene).values()
     kept, stored = (
         pairs.arrays,
         ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "force"),

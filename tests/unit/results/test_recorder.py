@@ -11,6 +11,7 @@ from dembound.disks.system import DiskSystem, Start
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.simulation import Simulation
 from dembound.results import recorder as module
@@ -42,7 +43,7 @@ def breaking(bar, shift: float | None = None) -> Simulation:
         return Simulation(scene, step, monitors)
     displacement = np.zeros((3, scene.count))
     displacement[0] = shift
-    system = DiskSystem(scene, step, Start(displacement, scene.contact_lists()))
+    system = DiskSystem(scene, step, Start(displacement, contact_lists(scene)))
     return Simulation(scene, step, monitors, system=system, datum=displacement)
 
 

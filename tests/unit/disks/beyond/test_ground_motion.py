@@ -57,11 +57,11 @@ def waved(tmp_path_factory):
 def test_beside_a_column_the_total_motion_is_recorded_too(waved, name) -> None:
     scene, state, folder = waved
     values = getattr(state, name)
-    own = values[:, scene.nodes_beside].T
+    own = values[:, scene.beside.nodes].T
     row = scene.positions[: scene.seam.count, 1]
     heights = np.unique(row)
     means = [[values[axis, : scene.seam.count][row == height].mean() for height in heights] for axis in (0, 1)]
-    up = scene.positions[scene.nodes_beside, 1]
+    up = scene.positions[scene.beside.nodes, 1]
     known = (up >= -1e-9)[:, None]  # the column reaches down to y = 0
     ground = np.column_stack([np.interp(up, heights, means[axis]) for axis in (0, 1)])
     with h5py.File(folder / "run.h5") as file:

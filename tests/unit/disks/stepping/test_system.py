@@ -5,7 +5,9 @@ import pytest
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stepping.system import DiskSystem, Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import BROKE, DONE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contacts import TENSION
 from dembound.motion.state import State
@@ -59,17 +61,17 @@ def forces_of(system: DiskSystem, lists: dict[str, ContactList], displacement: n
     """Forces and moments (3, n) of the history-dependent law at displacements (3, n) reached at rest, seam included."""
     for contacts in lists.values():
         contacts.push(displacement)
-    return system.last_forces(lists)
+    return system.forces.last(lists)
 
 
 def locked_in_forces(body: DiskScene) -> np.ndarray:
     """Forces and moments (3, n) of a body as built."""
-    return forces_of(DiskSystem(body, STEP), body.contact_lists(), np.zeros((3, body.count)))
+    return forces_of(DiskSystem(body, STEP), contact_lists(body), np.zeros((3, body.count)))
 
 
 def settled(body: DiskScene, *, has_history: bool, size: float = 1e-6) -> Start:
     """A start somewhere, with contacts as built."""
-    return Start(shaken(body, size), body.contact_lists() if body.has_history else {}, has_history)
+    return Start(shaken(body, size), contact_lists(body) if body.has_history else {}, has_history)
 
 
 @pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
@@ -79,15 +81,15 @@ def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(scene,
     lists = system.contacts
     for contacts in lists.values():
         contacts.push(np.zeros_like(u), reference=True)
-    locked_in = system.last_forces(lists)
+    locked_in = system.forces.last(lists)
     for contacts in lists.values():
         contacts.start_from_displacements(u)
         contacts.push(u, reference=True)
-    total = system.last_forces(lists)
+    total = system.forces.last(lists)
 
     # sums of some five locked-in forces, of which the difference is taken
     scale = max(np.abs(contacts.force[:, :2]).max() for contacts in lists.values())
-    found = system.elastic_forces(u)
+    found = system.forces.elastic(u)
     np.testing.assert_allclose(found, total - locked_in, rtol=0.0, atol=20.0 * EPS * scale)
     assert np.abs(found).max() > 1e6 * 20.0 * EPS * scale
     assert [part.name for part in system.parts] == (["column", "body"] if boundary else ["body"])
@@ -134,7 +136,7 @@ def test_a_settled_body_without_history_is_balanced_under_the_elastic_law(scene,
     start = settled(body, has_history=False)
     system = DiskSystem(body, STEP, start)
     state = begun(system, start.displacement)
-    pushes = system.elastic_forces(start.displacement)
+    pushes = system.forces.elastic(start.displacement)
 
     assert state.laws == [(ELASTIC, 0)]
     assert np.array_equal(system.steady, -pushes)
@@ -153,7 +155,7 @@ def test_what_springs_of_supports_bear_is_balanced_too(scene) -> None:
     springs = body.supports.springs_at(start.displacement)
 
     assert springs.any()
-    assert np.array_equal(system.steady, springs - system.elastic_forces(start.displacement))
+    assert np.array_equal(system.steady, springs - system.forces.elastic(start.displacement))
 
 
 HISTORIES = {"elastic at first": ({}, False), "at once": (AT_ONCE, False), "gone on from": ({}, True)}
@@ -165,7 +167,7 @@ def test_a_settled_body_with_a_history_is_balanced_under_the_law_it_begins_with(
 ) -> None:
     body = scene(**{**WITH_HISTORY, **changes, **WEIGHT})
     start = settled(body, has_history=has_history)
-    lists = body.contact_lists()
+    lists = contact_lists(body)
     if not has_history:
         for contacts in lists.values():
             contacts.start_from_displacements(start.displacement)
@@ -173,7 +175,7 @@ def test_a_settled_body_with_a_history_is_balanced_under_the_law_it_begins_with(
     resting = forces_of(system, lists, start.displacement)
     state = begun(system, start.displacement)
     law = BONDED if changes or has_history else ELASTIC
-    pushes = resting if law == BONDED else system.elastic_forces(start.displacement)
+    pushes = resting if law == BONDED else system.forces.elastic(start.displacement)
 
     assert state.laws == [(law, 0)]
     assert system.contacts == start.contacts
@@ -228,7 +230,7 @@ def test_where_one_part_leaves_the_elastic_law_all_change_to_the_other(scene, bo
     system = DiskSystem(body, STEP)
     state = begun(system)
     state.displacement, state.velocity, state.step = shaken(body, 1e-4), shaken(body, 1.0, 4), 7
-    expected = body.contact_lists()
+    expected = contact_lists(body)
     for contacts in expected.values():
         contacts.start_from_displacements(state.displacement - STEP * state.velocity)  # the first push adds this step
     moved, speed = state.displacement.copy(), state.velocity.copy()
@@ -257,7 +259,7 @@ def test_a_law_that_changes_in_good_time_changes_no_force(scene) -> None:
     system = DiskSystem(body, STEP)
     state = begun(system)
     state.displacement = shaken(body, 1e-6)
-    before = system.steady + system.elastic_forces(state.displacement)
+    before = system.steady + system.forces.elastic(state.displacement)
     system.react(LAW_ENDS, 1, state)
     after = system.steady + forces_of(system, system.contacts, state.displacement)
 
