@@ -76,7 +76,7 @@ class DiskScene(DiskBody):
 
     @property
     def forces_by_side(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """Those of the target stress of the static stage, if there is one."""
+        """Disks (k,) and forces (2, k) N by which sides hold the target stress of a static stage; empty without one."""
         static = self.case.static
         if static is None or static.stress is None:
             return {}

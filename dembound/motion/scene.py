@@ -138,7 +138,7 @@ class Scene(ABC):
 
     @property
     def beside(self) -> Beside | None:
-        """Its nodes that are recorded apart, those of a continuum; by default none."""
+        """The nodes that are recorded apart from particles, those of a continuum; None, the default, without any."""
         return None
 
     @property

@@ -47,7 +47,7 @@ class Settled:
     column: "Settled | None" = None
 
     def memory(self) -> Arrays:
-        """All arrays, from which `recalled` makes the same in another run; without the stages before."""
+        """All arrays from which `recalled` restores the settled body in another run; without the stages before."""
         start = self.start
         kept = {name: np.array(getattr(self, name)) for name in NUMBERS}
         kept |= {"displacement": start.displacement, "has_history": np.array(start.has_history)}
@@ -60,7 +60,7 @@ class Settled:
 
     @classmethod
     def recalled(cls, scene: DiskScene, memory: Arrays) -> Self:
-        """The same from what `memory` has returned for an equal scene."""
+        """The settled body restored from what `memory` has returned for an equal scene."""
         contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in memory) else {}
         for part, pairs in contacts.items():
             pairs.recall(within(memory, f"contacts/{part}"))
