@@ -6,12 +6,13 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from dembound.disks.system import DiskSystem, Start
 
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.simulation import Simulation
 from dembound.results import recorder as module

@@ -6,8 +6,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from dembound.disks.warnings import warnings_after_disks
 
+from dembound.disks.reports.warnings import warnings_after_disks
 from dembound.disks.scene import build
 
 TIME = np.linspace(0.0, 1.0, 1001)
