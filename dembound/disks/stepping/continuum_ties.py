@@ -89,10 +89,6 @@ def walls(scene: DiskBody) -> list[Tie]:
     walls: list[Tie] = [] if scene.outside is None else [WallTie(scene.outside, scene.layout)]
     if scene.foot is not None:
         assert scene.twin is not None
-        foot = WallTie(scene.foot, scene.layout)
-        walls = [
-            foot,
-            TwinTie(disks_on_foot(scene), scene.twin),
-            *walls,
-        ]  # these forces are there before they are repeated
+        foot, repeats = WallTie(scene.foot, scene.layout), TwinTie(disks_on_foot(scene), scene.twin)
+        walls = [foot, repeats, *walls]  # these forces are there before they are repeated
     return walls
