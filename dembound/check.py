@@ -7,8 +7,8 @@ from dembound.casefile import Case
 from dembound.casefile.messages import counted
 from dembound.machine import memory_here
 from dembound.motion.kind import Plan
-from dembound.motion.memory import has_in_words, in_words
 from dembound.motion.proposals import proposals
+from dembound.motion.ram import has_in_words, in_words
 from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
 from dembound.running import disk_facts, disk_warnings, plan, require_stages, warnings_before

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.bar.facts import bar_facts
-from dembound.bar.memory import run_bytes
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
+from dembound.bar.ram import run_bytes
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
@@ -50,11 +50,11 @@ class Bars(Kind[BarCase, BarScene]):
     work_unit = "bond updates"
 
     def build(self, case: BarCase) -> BarScene:
-        """Its nodes and what supports them."""
+        """The scene of a bar: its nodes and what supports them."""
         return build_bar(case)
 
     def expected_memory(self, case: BarCase) -> float:
-        """From the number of nodes and the method."""
+        """Largest memory (bytes) of a run, from the number of nodes and the method."""
         return run_bytes(case)
 
     def choose_step(self, scene: BarScene) -> tuple[float, float]:
@@ -78,11 +78,11 @@ class Bars(Kind[BarCase, BarScene]):
         return front_of_bar(scene, time_step)
 
     def has_coda(self, scene: BarScene) -> bool:
-        """Whether it may break."""
+        """Whether waves leave a coda: the bar may break."""
         return bool(np.isfinite(scene.case.bar.least_strength))
 
     def storage(self, scene: BarScene) -> Storage:
-        """From its nodes and the lengths of its bonds."""
+        """Bytes on disk of the results of a bar, from its nodes and the lengths of its bonds."""
         return storage_of(scene)
 
     def unit(self, scene: BarScene) -> tuple[float, float]:

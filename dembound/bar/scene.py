@@ -7,8 +7,8 @@ import numpy as np
 
 from dembound.bar.body import BarBody
 from dembound.bar.layers import ENDS, EndLayer, LayerTie, layers_of
-from dembound.bar.memory import must_fit_here
 from dembound.bar.part import BarPart
+from dembound.bar.ram import must_fit_here
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import Bar

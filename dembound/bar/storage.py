@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dembound.bar.memory import bonds_bytes
+from dembound.bar.ram import bonds_bytes
 from dembound.motion.storage import POINT, Storage, mesh_bytes
 
 if TYPE_CHECKING:

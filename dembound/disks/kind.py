@@ -10,7 +10,7 @@ from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts.breaks import first_break
 from dembound.disks.material.wave_front import front_of
-from dembound.disks.memory import expected_bytes
+from dembound.disks.ram import expected_bytes
 from dembound.disks.reduced.reduction import reduced
 from dembound.disks.reports.contact_mesh import contact_mesh
 from dembound.disks.reports.continuum_mesh import continuum_mesh
@@ -53,13 +53,13 @@ class Disks(Kind[DiskCase, DiskScene]):
     work_unit = "particle-steps"
 
     def build(self, case: DiskCase) -> DiskScene:
-        """Its scene; raises the errors for loads without particles and for a singular material."""
+        """The scene of a case; raises the errors for loads without particles and for a singular material."""
         scene = build(case)
         _ = scene.steady_load, scene.ground.material_tensor
         return scene
 
     def expected_memory(self, case: DiskCase) -> float:
-        """From the numbers of disks and contacts to expect."""
+        """Largest memory (bytes) of a run, from the numbers of disks and contacts to expect."""
         return expected_bytes(case)
 
     def choose_step(self, scene: DiskScene) -> tuple[float, float]:
@@ -67,7 +67,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return choose_step(scene)
 
     def reduced(self, scene: DiskScene) -> Reduction[DiskScene]:
-        """One of its rows or one half, from whose motion that of all disks follows."""
+        """One row or one half of a scene, from whose motion that of all disks follows, or the scene itself."""
         return reduced(scene)
 
     def begin(self, scene: DiskScene, time_step: float, on_look: OnLook, stages: Stages | None = None) -> Beginning:
@@ -92,31 +92,31 @@ class Disks(Kind[DiskCase, DiskScene]):
         return [LoadFactor(case, system)]
 
     def sources(self, scene: DiskScene) -> list[Source]:
-        """Driven sides, loads, and holes."""
+        """Where waves start and are scattered: driven sides, loads, and holes."""
         return sources_of(scene.case, scene.ground)
 
     def front(self, scene: DiskScene, time_step: float) -> Front:
-        """The fastest waves of its packing."""
+        """The front of the fastest waves of the packing."""
         return front_of(scene.ground, scene.case.run.safety)
 
     def has_coda(self, scene: DiskScene) -> bool:
-        """Whether its bricks are random, or contacts may open."""
+        """Whether waves leave a coda: bricks are random, or contacts may open."""
         return scene.has_history or len(scene.ground.brick.radii) > 1
 
     def has_static_stage(self, scene: DiskScene) -> bool:
-        """Whether the case has one."""
+        """Whether the case has a static stage."""
         return scene.case.static is not None
 
     def storage(self, scene: DiskScene) -> Storage:
-        """From its disks and contacts."""
+        """Bytes on disk of the results of a scene, from the numbers of its disks and contacts."""
         return storage_of(scene)
 
     def stage_keys(self, scene: DiskScene) -> dict[str, Any]:
-        """What the result of its static stage depends on."""
+        """What the result of the static stage depends on, by key."""
         return settling_keys(scene)
 
     def stage_names(self, scene: DiskScene) -> list[str]:
-        """Those of its static stage."""
+        """Names of the parts of the static stage, none without one."""
         return [] if scene.case.static is None else stage_names(scene)
 
     def stages_from(self, case: DiskCase) -> Path | None:
@@ -124,7 +124,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return None if case.static is None or case.static.from_ is None else Path(case.static.from_)
 
     def unit(self, scene: DiskScene) -> tuple[float, float]:
-        """A brick."""
+        """Width and height (m) of a brick, of which a scene is tiled."""
         return scene.case.packing.brick_size
 
     def facts(self, scene: DiskScene, time_step: float) -> dict[str, str]:
@@ -132,7 +132,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return disk_facts(scene)
 
     def not_estimated(self, case: DiskCase) -> list[str]:
-        """The static stage, and a law that replaces the elastic one later."""
+        """What the estimate of the time leaves out: the static stage, and a law that replaces the elastic one later."""
         later = ["the static stage"] * (case.static is not None)
         if LAWS[case.material.law].has_history and case.material.elastic_start:
             later.append(f"the additional time of {case.material.law} once it begins")

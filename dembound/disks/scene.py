@@ -23,15 +23,16 @@ from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.loads import drive, steady
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
-from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
+from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
+from dembound.disks.stepping.continuum_ties import disks_on_foot
 from dembound.disks.stepping.stress import particle_stress
 from dembound.disks.stepping.system import DiskSystem
 from dembound.holes.floor import Floor
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.layout import Layout
-from dembound.outside.memory import GridSizes
+from dembound.outside.ram import GridSizes
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
@@ -79,7 +80,7 @@ class DiskScene(DiskBody):
 
     @property
     def forces_by_side(self) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Those of the target stress of the static stage, if there is one.
+        """Disks (k,) and forces by which sides hold the target stress of a static stage; empty without one.
 
         A contact across a corner, and the disks that are left out there as they touch none of the body, act by one side
         or by none, so that a side has not quite the stress times its length. It is recorded with that: its disk with
@@ -325,8 +326,9 @@ def _let_in_below(scene: DiskScene, names: tuple[str | None, str | None], builde
     assert beneath is not None
     x, y = (None if name is None else scene.case.wave[name] for name in names)
     waves = rising_waves(beneath.body.medium, beneath.box[1], (x, y), scene.ground.brick.mean_diameter)
-    twins = scene.on_foot if scene.twin is None else scene.twin[scene.on_foot]
+    disks = disks_on_foot(scene)
+    twins = disks if scene.twin is None else scene.twin[disks]
     builder.side = "bottom"
-    let_in_below(beneath, waves, scene.positions, builder, (twins, scene.on_foot))
+    let_in_below(beneath, waves, scene.positions, builder, (twins, disks))
     side = "bottom" if scene.foot is None else f"bottom{FREE_FIELD}"
     builder.add_power(side, power_through("bottom", beneath.body.mesh.sides, waves, beneath.body.thickness))

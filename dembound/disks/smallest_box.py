@@ -18,7 +18,7 @@ from dembound.disks.packing_errors import in_percent
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.outside import choice
-from dembound.outside.memory import GridSizes
+from dembound.outside.ram import GridSizes
 from dembound.table import Box
 
 WORTH = 0.8

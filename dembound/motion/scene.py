@@ -10,6 +10,7 @@ import numpy as np
 
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile import Case
+from dembound.motion.beside import Beside
 from dembound.motion.between import Between
 from dembound.motion.layout import Layout
 from dembound.motion.part import System
@@ -140,21 +141,9 @@ class Scene(ABC):
         """Data of every node for the record, by name: values (n, …) and unit."""
 
     @property
-    def nodes_beside(self) -> slice:
-        """The range of its nodes that are recorded apart, those of a continuum; by default none."""
-        return slice(self.count, self.count)
-
-    def motion_beside(self, values: np.ndarray, of: str, time: float) -> dict[str, np.ndarray]:
-        """Motion (m, 3) of the nodes that are recorded apart, from that of all nodes (n, 3), by the kind of motion.
-
-        "" is what they move by. of : "displacement" or "velocity"; time : s, of the values. By default none.
-        """
-        return {}
-
-    @property
-    def beside(self) -> dict[str, tuple[np.ndarray, str]]:
-        """Data of the nodes that are recorded apart, by name: values (m, …) and unit; by default none."""
-        return {}
+    def beside(self) -> Beside | None:
+        """The nodes that are recorded apart from particles, those of a continuum; None, the default, without any."""
+        return None
 
     @property
     @abstractmethod

@@ -9,8 +9,8 @@ from dembound.interrupts import Stopped, look, put_off
 from dembound.kernels import loop, tables
 from dembound.motion.clock import Clock
 from dembound.motion.layout import aligned_zeros
-from dembound.motion.memory import DRIVEN_BYTES
 from dembound.motion.part import System
+from dembound.motion.ram import DRIVEN_BYTES
 from dembound.motion.scene import Scene
 from dembound.motion.sides import NodeSides, Samples
 from dembound.motion.state import State

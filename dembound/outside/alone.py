@@ -10,8 +10,8 @@ from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.casefile import Case
 from dembound.casefile.run import Run
 from dembound.motion.layout import Layout
-from dembound.motion.memory import motion_bytes
 from dembound.motion.part import System
+from dembound.motion.ram import motion_bytes
 from dembound.motion.scene import Scene
 from dembound.motion.threads import thread_count_for
 from dembound.outside.body import GridBody

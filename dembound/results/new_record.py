@@ -177,7 +177,7 @@ def _lay_out(file: h5py.File, scene: Scene, sides: Collection[str], entered: Seq
     group = file.create_group("particles")
     for name, (values, unit) in scene.columns.items():
         write(group, name, values, unit)
-    for name, (values, unit) in scene.beside.items():
+    for name, (values, unit) in ({} if scene.beside is None else scene.beside.columns).items():
         write(file.require_group("continuum"), name, values, unit)
     _write_inputs(file, scene)
     _make_histories(file, scene)

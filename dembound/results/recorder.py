@@ -189,12 +189,12 @@ class Recorder:
         state, snapshots = self.run.state, self.file["snapshots"]
         group = snapshots.create_group(f"{len(snapshots):04d}")
         group.attrs["time"] = self.run.time
-        widened, count = self.run.scene.widened, self.scene.recorded
+        widened, count, beside = self.run.scene.widened, self.scene.recorded, self.scene.beside
         moved = widened("displacement", (state.displacement - state.datum).T), widened("velocity", state.velocity.T)
         for name, values, unit in zip(MOTION, moved, (DISPLACEMENT_UNIT, VELOCITY_UNIT), strict=True):
             write(group, name, values[:count], unit)
             at = self.run.time - 0.5 * self.run.time_step * (name == "velocity")  # velocities are half a step behind
-            for kind, motion in self.scene.motion_beside(values, name, at).items():
+            for kind, motion in ({} if beside is None else beside.motion(values, name, at)).items():
                 write(group.require_group("continuum"), f"{kind}{name}", motion, unit)
         for name, (values, unit) in self.run.system.snapshot_beside(state.displacement).items():
             write(group["continuum"], name, values, unit)
@@ -280,9 +280,8 @@ class Recorder:
             self.file[f"boundaries/{side}/peak_velocity"][...] = self.run.edge_peaks(side)
         if self.scene.case.output.peaks:
             speed, count = self.run.scene.widened("peak_velocity", self.run.state.top_speed), self.scene.recorded
-            for name, values in (("particles", speed[:count]), ("continuum", speed[self.scene.nodes_beside])):
-                if len(values) == 0:
-                    continue
+            apart = [] if self.scene.beside is None else [("continuum", speed[self.scene.beside.nodes])]
+            for name, values in [("particles", speed[:count]), *apart]:
                 if "peak_velocity" not in self.file[name]:
                     write(self.file[name], "peak_velocity", values, "m/s")
                 self.file[name]["peak_velocity"][...] = values

@@ -10,7 +10,7 @@ from pathlib import Path
 from dembound.machine import disk_free
 from dembound.motion.energy import Entry, SideEntry
 from dembound.motion.kind import Plan
-from dembound.motion.memory import in_words
+from dembound.motion.ram import in_words
 from dembound.running.planning import steps_between_entries, steps_between_samples
 
 ALWAYS = 1e6

@@ -18,7 +18,9 @@ from dembound.casefile.model import as_kind
 from dembound.casefile.types import LAWS
 from dembound.disks import stability as of_disks
 from dembound.disks.scene import DiskScene, build, ground_of
-from dembound.disks.stepping.system import DiskSystem, Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 
@@ -143,7 +145,7 @@ def _under(scene: DiskScene, name: str) -> Trial:
         nothing = np.zeros((3, scene.count))
         start = None
         if scene.has_history and scene.case.material.locked_in is not None:
-            start = Start(nothing, scene.contact_lists())  # what is locked in is balanced, also at cut faces
+            start = Start(nothing, contact_lists(scene))  # what is locked in is balanced, also at cut faces
         return DiskSystem(scene, time_step, start, load=nothing)
 
     return Trial(name, scene, limit, of_disks.own_step(scene, limit), system, is_linear=not scene.has_history)

@@ -5,7 +5,7 @@ import pytest
 from dembound.bar.facts import bar_facts
 from dembound.check import check, duration_in_words
 from dembound.disks.reports.facts import disk_facts
-from dembound.motion.memory import in_words
+from dembound.motion.ram import in_words
 from dembound.running import plan, warnings_before
 
 

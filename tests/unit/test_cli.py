@@ -466,7 +466,7 @@ def test_bad_settings_are_bad_input(dembound, written, tmp_path, setting: str) -
 def test_a_case_larger_than_the_machine_is_refused_with_both_numbers(
     dembound, written, tmp_path, name, monkeypatch
 ) -> None:
-    monkeypatch.setattr("dembound.motion.memory.memory_here", lambda: Memory(8e9, 6e9))
+    monkeypatch.setattr("dembound.motion.ram.memory_here", lambda: Memory(8e9, 6e9))
     large = written("large", {"packing.size": [1e4, 1e4]})
     answer = dembound(name, large)
 

@@ -19,7 +19,8 @@ from dembound.disks.contacts.rows import contact_rows
 from dembound.disks.material.packed_material import make_packed_material
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem, Start
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.elastic import contact_forces
 from dembound.kinds import loads, with_changes
 from dembound.motion.simulation import Simulation

@@ -109,7 +109,7 @@ def test_a_broken_bond_never_heals(lab):
     contacts = simulation.system.contacts
 
     def force() -> np.ndarray:
-        return simulation.system.last_forces(contacts)[:, 1]
+        return simulation.system.forces.last(contacts)[:, 1]
 
     simulation.advance(turns_at)
     assert len(contacts["body"].take_cracks()) == 1

@@ -10,6 +10,7 @@ import pytest
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene
+from dembound.disks.stepping.contact_lists import contact_lists
 
 WIDTH, HEIGHT = 5.0, 10.0
 LARGEST = 0.3  # m, radius
@@ -44,7 +45,7 @@ def standing(request, lab) -> tuple[DiskScene, ContactList]:
     start = settle(scene).start
     if start.contacts:
         return scene, start.contacts["body"]
-    contacts = scene.contact_lists()["body"]
+    contacts = contact_lists(scene)["body"]
     contacts.push(start.displacement)
     return scene, contacts
 

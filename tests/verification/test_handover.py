@@ -6,7 +6,8 @@ A weak pulse runs along a bar of random disks under a low locked-in stress and m
 import numpy as np
 
 from dembound.disks.scene import build
-from dembound.disks.stepping.system import Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
 
 EPS = np.finfo(float).eps
 CONTACT_MODULUS = 1.25e9
@@ -33,7 +34,7 @@ def runs(lab, geometry: str):
             )
         )
         # taken as settled: with the cut sides balanced, and all contacts as closed as at the start
-        start = Start(np.zeros((3, scene.count)), scene.contact_lists())
+        start = Start(np.zeros((3, scene.count)), contact_lists(scene))
         simulation = lab.settled(scene, start, probes=np.arange(scene.count))
         motions.append(simulation.advance(320))
         laws.append(simulation.state.laws)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.stress import particle_stress
 from dembound.kernels.contacts import REFERENCE, UPDATED
 
@@ -30,7 +31,7 @@ def test_stress_is_force_over_width(lab, law: str, turn: float) -> None:
     if law == "elastic":
         pairs = plain_contacts(scene.ground, scene.assembly, scene.layout.slot)
     else:
-        contacts = scene.contact_lists()["body"]
+        contacts = contact_lists(scene)["body"]
         contacts.push(displacement)
         pairs = contacts.arrays
     stress = particle_stress(scene, pairs, displacement, REFERENCE if law == "elastic" else UPDATED)[1:-1]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dembound.disks.memory import SceneSizes, checkpoint_bytes
+from dembound.disks.ram import SceneSizes, checkpoint_bytes
 from dembound.disks.scene import DiskScene
 from dembound.motion.storage import POINT, Storage, mesh_bytes
-from dembound.outside.memory import memories_bytes
+from dembound.outside.ram import memories_bytes
 
 CHANGING, CONSTANT = 44.0, 21.0
 """Bytes of the motion of a disk for ParaView, and of those fields that remain; the numbers of broken bonds are among
@@ -35,7 +35,7 @@ def storage_of(scene: DiskScene) -> Storage:
 
 
 def _checkpoint_bytes(scene: DiskScene, sizes: SceneSizes) -> float:
-    """Of a checkpoint: besides motion and pairs, the datum, both loads, and speeds (104 n); memories of a continuum.
+    """Bytes of a checkpoint: beside motion and pairs, datum, both loads and speeds (104 n); memories of a continuum.
 
     Under a history-dependent law also the velocity at its change, the state at the last entry of the ledger and origins
     (88 n); after a static stage the forces that balance the stress, before and after, and their datum (98 n).
@@ -46,5 +46,5 @@ def _checkpoint_bytes(scene: DiskScene, sizes: SceneSizes) -> float:
 
 
 def _contact_bytes() -> float:
-    """Of a contact in a snapshot: in the record 41 bytes; a line between two points of its own with two forces."""
+    """Bytes of a contact in a snapshot: 41 in the record; a line between two points of its own with two forces."""
     return 41.0 + mesh_bytes(2.0, 0.0, 1.0, 2, 17.0) + 2.0 * POINT + 8.0

@@ -41,7 +41,7 @@ class Blocks:
 
     @classmethod
     def of(cls, scene: DiskScene, moved: np.ndarray | None = None) -> Blocks:
-        """Those of a body as built, or of one that moves by (3, n) with its sides."""
+        """The blocks of a body as built, or with its sides moved by displacements (3, n)."""
         diameter, wide = scene.ground.brick.mean_diameter, scene.assembly.size
         wraps = np.array(scene.case.periodic)
         rim = np.where(wraps, 0.0, np.minimum(RIM * diameter, 0.25 * wide))
@@ -103,7 +103,7 @@ class Blocks:
 
 def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:
     """Stress (nx, ny, 3) in the blocks of a body at displacements (3, n), see `Blocks.stress`; without its column."""
-    part = system.disk_parts[-1]
+    part = system.disks.parts[-1]
     found = pieces(scene.layout, part.pairs, displacement, part.geometry)
     if part.geometry != UPDATED:
         return Blocks.of(scene).stress(found, scene.positions)
@@ -130,7 +130,7 @@ class Uniformity:
 
     @classmethod
     def of(cls, scene: DiskScene, system: DiskSystem, displacement: np.ndarray, asked: np.ndarray) -> Uniformity:
-        """Of a body at displacements (3, n), where a stress (3,) Pa has been asked for."""
+        """The uniformity of a body at displacements (3, n), where a stress (3,) Pa has been asked for."""
         blocks, stress = Blocks.of(scene), block_stress(scene, system, displacement)
         xx, yy, xy = asked
         largest = abs(0.5 * (xx + yy)) + np.hypot(0.5 * (xx - yy), xy)
@@ -159,7 +159,7 @@ class Uniformity:
 
     @classmethod
     def recalled(cls, memory: Arrays) -> Self:
-        """The same from what `memory` has returned."""
+        """The uniformity restored from what `memory` has returned."""
         block, place = (memory[name].copy() for name in ("block", "place"))
         numbers = {name: float(memory[name]) for name in ("deviation", "packing", "beyond", "near_holes")}
         return cls(block=block, place=place, **numbers)

@@ -121,10 +121,10 @@ class Loading:
         if system.uses_history:
             for pairs in system.contacts.values():
                 pairs.push(start)
-            inner, load = system.last_forces(system.contacts), self._load(start)
+            inner, load = system.forces.last(system.contacts), self._load(start)
         else:
-            inner, load = system.elastic_forces(start), system.steady if system.steady.size else system.load
-        return load + inner + system.tie_forces(start)
+            inner, load = system.forces.elastic(start), system.steady if system.steady.size else system.load
+        return load + inner + system.forces.of_ties(start)
 
     def _load(self, displacement: np.ndarray) -> np.ndarray:
         """All loads (3, n) at displacements (3, n); with sides that rotate only under a law whose forces do."""

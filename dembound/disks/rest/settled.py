@@ -7,7 +7,8 @@ import numpy as np
 
 from dembound.disks.rest.block_stress import Uniformity
 from dembound.disks.scene import DiskScene
-from dembound.disks.stepping.system import Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
 from dembound.motion.cracks import Cracks
 from dembound.motion.state import Arrays, within
 from dembound.table import every_key
@@ -46,7 +47,7 @@ class Settled:
     column: "Settled | None" = None
 
     def memory(self) -> Arrays:
-        """All arrays, from which `recalled` makes the same in another run; without the stages before."""
+        """All arrays from which `recalled` restores the settled body in another run; without the stages before."""
         start = self.start
         kept = {name: np.array(getattr(self, name)) for name in NUMBERS}
         kept |= {"displacement": start.displacement, "has_history": np.array(start.has_history)}
@@ -59,8 +60,8 @@ class Settled:
 
     @classmethod
     def recalled(cls, scene: DiskScene, memory: Arrays) -> Self:
-        """The same from what `memory` has returned for an equal scene."""
-        contacts = scene.contact_lists() if any(name.startswith("contacts/") for name in memory) else {}
+        """The settled body restored from what `memory` has returned for an equal scene."""
+        contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in memory) else {}
         for part, pairs in contacts.items():
             pairs.recall(within(memory, f"contacts/{part}"))
         cracks, uniformity = within(memory, "cracks"), within(memory, "uniformity")

@@ -18,7 +18,9 @@ from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.rest.until_at_rest import UntilAtRest
 from dembound.disks.scene import DiskScene, column_alone
 from dembound.disks.stability import step_limit
-from dembound.disks.stepping.system import DiskSystem, Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.kind import OnLook
 from dembound.motion.simulation import Simulation
 from dembound.motion.stages import Stages
@@ -81,7 +83,7 @@ def _settle_built(scene: DiskScene, stage: _Stage) -> Settled:
 def _excavate(scene: DiskScene, before: Start) -> Start:
     """The state in which an excavated scene begins to settle: that before, with the history of its contacts."""
     assert scene.kept is not None
-    contacts = scene.contact_lists() if before.contacts else {}
+    contacts = contact_lists(scene) if before.contacts else {}
     for name, pairs in contacts.items():
         there = before.contacts[name]
         kept = scene.kept[(scene.kept >= there.nodes.start) & (scene.kept < there.nodes.stop)] - there.nodes.start
@@ -93,7 +95,7 @@ def _beside(scene: DiskScene, column: Start) -> Start:
     """The state in which a body with a settled column begins to settle: every particle and pair as its twin."""
     assert scene.seam is not None
     displacement = column.displacement[:, scene.seam.twin]  # of the disks
-    contacts = scene.contact_lists() if column.contacts else {}
+    contacts = contact_lists(scene) if column.contacts else {}
     if column.has_history:
         for pairs in contacts.values():
             pairs.copy_twins(column.contacts["body"], scene.seam.twin[pairs.nodes], displacement)

@@ -5,6 +5,7 @@ import numpy as np
 from dembound.casefile.disks.static import Static
 from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.static_scene import StaticScene
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.kind import OnLook, StalledError
@@ -48,7 +49,7 @@ class UntilAtRest(Tracker):
         self._on_look, self._stage = on_look, stage
         self._best, self._best_at = np.inf, 0
         # a law without history has no list of pairs, but their forces are needed too
-        self._contacts = system.contacts or body.scene.contact_lists()
+        self._contacts = system.contacts or contact_lists(body.scene)
         self._look_after(0)
 
     def _look_after(self, step: int) -> None:
@@ -108,7 +109,7 @@ class UntilAtRest(Tracker):
         if not self._system.uses_history:
             for pairs in self._contacts.values():
                 pairs.push(displacement, reference=True)
-        return self._system.last_forces(self._contacts) + self._system.tie_forces(displacement)
+        return self._system.forces.last(self._contacts) + self._system.forces.of_ties(displacement)
 
 
 def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarray, cracks: Cracks) -> str:

@@ -19,7 +19,7 @@ class WallTie(Tie):
 
     Parameters
     ----------
-    surroundings : of the body. layout : the slots of all nodes of the scene.
+    surroundings : the continuum and its half bonds. layout : the slots of all nodes of the scene.
     """
 
     def __init__(self, surroundings: Surroundings, layout: Layout) -> None:
@@ -32,7 +32,7 @@ class WallTie(Tie):
         return self._surroundings.tied
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
-        """Its arrays for the kernels."""
+        """The arrays of the tie for the kernels; supported (s,) are all nodes of the support table, ascending."""
         if self._last is None or self._last[0] is not supported:  # it is asked for at every return of the loop
             self._last = supported, self._surroundings.ties(self._layout, supported)
         return self._last[1]
@@ -51,17 +51,25 @@ class TwinTie(Tie):
 
     @property
     def nodes(self) -> np.ndarray:
-        """The disks (k,)."""
+        """Disks (k,) that it acts on, ascending."""
         return self._disks
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
-        """Its arrays for the kernels."""
+        """The arrays of the tie for the kernels; supported (s,) are all nodes of the support table, ascending."""
         return Repeats(*(np.searchsorted(supported, nodes) for nodes in (self._twin[self._disks], self._disks)))
+
+
+def disks_on_foot(scene: DiskBody) -> np.ndarray:
+    """Disks (k,) of the body that have the forces of the foot on their twins in the column, ascending."""
+    if scene.foot is None or scene.seam is None:
+        return np.zeros(0, dtype=np.int64)
+    disks = np.arange(scene.seam.count, scene.disk_count)
+    return disks[np.isin(scene.seam.twin[disks], scene.foot.wall.bonds.particle)]
 
 
 def tied_nodes(scene: DiskBody) -> np.ndarray:
     """Nodes (k,) of a scene that ties act on."""
-    tied = [np.zeros(0, dtype=np.int64), *(each.tied for each in scene.continua), scene.on_foot]
+    tied = [np.zeros(0, dtype=np.int64), *(each.tied for each in scene.continua), disks_on_foot(scene)]
     if scene.seam is not None:
         tied.append(scene.seam.node)
     return np.concatenate(tied)
@@ -77,10 +85,10 @@ def grids(scene: DiskBody, time_step: float) -> list[GridPart]:
 
 
 def walls(scene: DiskBody) -> list[Tie]:
-    """The ties of its continua, and those that repeat the forces of the column's foot on the body."""
+    """The ties of a scene to its continua, and the tie that repeats the forces of the column's foot on the body."""
     walls: list[Tie] = [] if scene.outside is None else [WallTie(scene.outside, scene.layout)]
     if scene.foot is not None:
         assert scene.twin is not None
-        foot = WallTie(scene.foot, scene.layout)
-        walls = [foot, TwinTie(scene.on_foot, scene.twin), *walls]  # these forces are there before they are repeated
+        foot, repeats = WallTie(scene.foot, scene.layout), TwinTie(disks_on_foot(scene), scene.twin)
+        walls = [foot, repeats, *walls]  # these forces are there before they are repeated
     return walls

@@ -83,7 +83,7 @@ class LoadFactor(Every):
         ground = system.scene.ground
         constants = brick_constants(ground, gaps_close=True, locked_in=0.0)
         self._lines = limit_lines(constants, strength_of(case.material))
-        self._pairs = [part.pairs._replace(constants=constants) for part in system.disk_parts]
+        self._pairs = [part.pairs._replace(constants=constants) for part in system.disks.parts]
         self._least, self._where = np.empty(CHUNKS), np.empty((CHUNKS, 2), dtype=np.int64)
         self._rest = np.zeros((3, 0))
         self.factor = np.inf

@@ -103,11 +103,11 @@ class DiskPart(Part):
         return strain_energy(u, self.pairs, self.geometry)
 
     def take_cracks(self, steps: int) -> Cracks:
-        """The bonds that broke since this was last called."""
+        """The bonds that broke since this was last called; none under a law without a history."""
         return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """Of a material whose law has a history: number of intact bonds and closed contacts of every disk."""
+        """Number of intact bonds and closed contacts of every disk, if the material's law has a history."""
         return {} if self.contacts is None else {"coordination": (self.contacts.coordination(self.geometry), "1")}
 
     def memory(self) -> Arrays:
@@ -123,7 +123,7 @@ class DiskPart(Part):
 
     @property
     def geometry(self) -> int:
-        """Geometry of its pairs under the law in use, see kernels/contacts.py."""
+        """Geometry of the pairs under the law in use, see kernels/contacts.py."""
         if self.contacts is None:
             return REFERENCE
         if self.uses_history:
@@ -132,7 +132,7 @@ class DiskPart(Part):
 
     @property
     def pairs(self) -> Contacts:
-        """Its pairs for the kernels, by slots, without history if the material's law has none."""
+        """The pairs of its disks for the kernels, by slots, without history if the material's law has none."""
         return self._plain_contacts if self.contacts is None else self.contacts.arrays
 
     @cached_property

@@ -5,6 +5,7 @@ import pytest
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build, column_alone
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
 from dembound.motion.cracks import joined
@@ -129,7 +130,7 @@ def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple
 @pytest.mark.parametrize("size", [0.0, 0.2])
 def test_the_column_meets_itself_sideways_the_body_does_not_and_they_never_meet(scene, size: float) -> None:
     ground = scene()
-    lists, seam = ground.contact_lists(), ground.seam
+    lists, seam = contact_lists(ground), ground.seam
 
     def all_pairs() -> list[tuple[int, ...]]:
         return [key for contacts in lists.values() for key in listed(contacts, ground, seam.width)]
@@ -158,7 +159,7 @@ def test_what_comes_across_the_seam_is_what_the_twins_feel_there(scene) -> None:
     moved, lists = shaken(beside.scene, 1e-3), beside.contacts
     for contacts in lists.values():
         contacts.push(moved)
-    total, seam = beside.last_forces(lists), beside.scene.seam
+    total, seam = beside.forces.last(lists), beside.scene.seam
     expected = np.zeros_like(total)
     columns = (both(lists, name) for name in ("first", "second", "force"))
     for i, j, (fx, fy, moment_i, moment_j) in zip(*columns, strict=True):
@@ -206,7 +207,7 @@ def copy_column(lists: dict[str, ContactList], column: ContactList, ground: Disk
 def test_every_pair_takes_the_history_of_its_twin_in_the_column(scene, in_order, packing: str) -> None:
     ground, rng = scene(packing), np.random.default_rng(2)
     bare = in_order(column_alone(ground))
-    column, lists = bare.contact_lists()["body"], ground.contact_lists()
+    column, lists = contact_lists(bare)["body"], contact_lists(ground)
     alone = shaken(bare, 0.0 if packing.startswith("A") else 0.2)
     column.search(alone)
     pairs = column.arrays
@@ -236,7 +237,7 @@ def test_every_pair_takes_the_history_of_its_twin_in_the_column(scene, in_order,
 
 def test_what_broke_in_the_column_is_noted_as_broken_before_the_first_step(scene) -> None:
     ground = scene("B")
-    column, lists = column_alone(ground).contact_lists()["body"], ground.contact_lists()
+    column, lists = contact_lists(column_alone(ground))["body"], contact_lists(ground)
     pairs = column.arrays
     pairs.state[np.flatnonzero(pairs.state == INTACT)[:6]] = [TENSION, SHEAR, SHEAR] * 2
     column.arrays.cracked[:6] = 5
@@ -264,7 +265,7 @@ def test_what_broke_in_the_column_is_noted_as_broken_before_the_first_step(scene
 def test_what_the_column_does_not_list_keeps_its_own_state(scene) -> None:
     ground = scene("B")
     bare = column_alone(ground)
-    column, lists = bare.contact_lists()["body"], ground.contact_lists()
+    column, lists = contact_lists(bare)["body"], contact_lists(ground)
     column.arrays.state[:] = SHEAR
     column.arrays.shear[:] = 1.0
     # a pair of the column alone is struck off its list, so that neither it nor any twin of it is known there
@@ -288,7 +289,7 @@ def half_cells(bar, **strength: float) -> tuple[ContactList, np.ndarray, np.ndar
     """Four disks by two, those on the right half cells; which pairs are upright, and which of these on the right."""
     material = {"material.law": "linearpbond", "material.geometry": "reference", **strength}
     tables = {"packing": LATTICE, "boundary": HALF, "wave": {}, "monitor": [], "motion.held": []}
-    contacts = build(bar({**tables, **material})).contact_lists()["body"]
+    contacts = contact_lists(build(bar({**tables, **material})))["body"]
     first, second = (contacts.assembly.positions[end, 0] for end in contacts.pairs)
     return contacts, first == second, (first == second) & (first == 1.75)
 

@@ -45,7 +45,7 @@ def test_every_contact_stands_in_two_rows(case: Case) -> None:
 
 
 def forces(scene: DiskScene, u: np.ndarray) -> np.ndarray:
-    return scene.system(1.0).elastic_forces(u)
+    return scene.system(1.0).forces.elastic(u)
 
 
 def test_rows_and_constants_make_the_forces_of_the_assemblys_contacts(case: Case) -> None:

@@ -5,6 +5,7 @@ import pytest
 
 from dembound.casefile import Case
 from dembound.disks.scene import DiskScene, build, column_alone, with_boundaries
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.motion.supports import NodeSupports
@@ -261,7 +262,7 @@ def test_a_column_alone_has_the_contacts_of_that_beside_the_body(beside: tuple[D
     assert alone.begin == beside.begin == 0
     for name in ("start", "neighbour", "contact_type", "constants"):
         assert np.array_equal(getattr(alone, name), getattr(beside, name))
-    assert column.contact_lists()["body"].periods == scene.contact_lists()["column"].periods == (scene.seam.width, None)
+    assert contact_lists(column)["body"].periods == contact_lists(scene)["column"].periods == (scene.seam.width, None)
 
 
 def test_a_column_alone_has_the_supports_and_the_loads_that_it_has_beside_the_body(

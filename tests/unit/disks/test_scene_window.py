@@ -13,7 +13,8 @@ from dembound.disks.reports.facts import disk_facts
 from dembound.disks.rest.settled import among, settling_keys
 from dembound.disks.rest.static_scene import without_own_continua
 from dembound.disks.scene import DiskScene, build, column_alone, ground_of
-from dembound.disks.stepping.continuum_ties import TwinTie
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.continuum_ties import TwinTie, disks_on_foot
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
@@ -80,16 +81,17 @@ def test_the_continuum_reaches_from_the_box_to_the_surface(shaken: DiskScene) ->
 
 
 def test_forces_of_the_foot_are_repeated_where_the_box_stands_on_it(shaken: DiskScene) -> None:
-    assert len(shaken.on_foot) == 0
+    assert len(disks_on_foot(shaken)) == 0
     low = scene(WAVE, AT_THE_FOOT)
-    assert len(low.on_foot) > 5
-    twins = low.seam.twin[low.on_foot]
+    assert len(disks_on_foot(low)) > 5
+    twins = low.seam.twin[disks_on_foot(low)]
     assert np.isin(twins, low.foot.wall.bonds.particle).all()
-    tie = TwinTie(low.on_foot, low.twin)
-    assert tie.nodes is low.on_foot
-    supported = np.union1d(low.on_foot, low.foot.tied)
+    disks = disks_on_foot(low)
+    tie = TwinTie(disks, low.twin)
+    assert tie.nodes is disks
+    supported = np.union1d(disks, low.foot.tied)
     bundle = tie.bundle(supported)
-    assert np.array_equal(supported[bundle.target], low.on_foot)
+    assert np.array_equal(supported[bundle.target], disks)
     assert np.array_equal(supported[bundle.source], twins)
 
 
@@ -99,7 +101,7 @@ def test_at_rest_its_ties_have_no_forces_where_all_moves_as_the_column(shaken: D
     moved = np.zeros((3, shaken.count))
     moved[:, : shaken.seam.count] = rng.normal(size=(3, shaken.seam.count))
     moved[:, : shaken.disk_count] = moved[:, shaken.seam.twin]
-    force = DiskSystem(shaken, 1e-5).tie_forces(moved)
+    force = DiskSystem(shaken, 1e-5).forces.of_ties(moved)
     assert np.abs(force[:, : shaken.seam.count]).max() > 0.0
     assert not force[:, shaken.seam.count : shaken.disk_count].any()
     assert not force[:, shaken.outside.nodes].any()
@@ -183,7 +185,7 @@ def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
 def test_contacts_of_a_static_stage_are_those_of_the_run() -> None:
     """The run has nodes of the foot, which the static stage has not."""
     whole = scene(WEIGHT, {"material.law": "linearpbond", "material.pb_ten": 1e9, "material.pb_coh": 1e9})
-    contacts = without_own_continua(whole).contact_lists()
+    contacts = contact_lists(without_own_continua(whole))
     displacement = np.zeros((3, whole.count))
     displacement[0, whole.seam.count] = 1e-4
     force = np.zeros((3, whole.count))

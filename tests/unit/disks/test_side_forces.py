@@ -6,6 +6,7 @@ import pytest
 from dembound.disks.rest.tractions import Tractions
 from dembound.disks.scene import build
 from dembound.disks.side_forces import side_forces
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.motion.sides import _bearers
 
 BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
@@ -33,7 +34,7 @@ def test_an_elastic_body_rests_where_its_packing_does(bar, pattern: str, stress:
     x, y = scene.positions.T
     xx, yy, xy, yx = gradient
     u[:2] += np.stack([xx * x + xy * y, yx * x + yy * y])
-    force = scene.system(1e-5).elastic_forces(u)
+    force = scene.system(1e-5).forces.elastic(u)
     for each in side_forces(scene).values():
         force[:, each.node] += each.under(np.array(stress))
     held = list(scene.ground.held)
@@ -68,7 +69,7 @@ def test_a_locked_in_stress_is_a_part_of_the_one_given(bar) -> None:
     """Under the stress as built the forces are those that contacts have without any displacement."""
     law = {"material.law": "linearpbond", "material.locked_in": 3e6, "material.fric": 0.5, "static": {}}
     scene = build(bar({**BODY, "packing": RANDOM, **law}))
-    contacts = scene.contact_lists()["body"]
+    contacts = contact_lists(scene)["body"]
     contacts.push(np.zeros((3, scene.count)))
     force = np.zeros((3, scene.count))
     contacts.add_forces(force)

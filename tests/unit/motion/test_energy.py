@@ -11,7 +11,9 @@ from dembound.bar import stability as bar_stability
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem, Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import REFERENCE, UPDATED
@@ -195,7 +197,7 @@ def test_energies_of_a_bar_are_in_springs_and_in_bonds(spalling) -> None:
 def at_rest(bar, **changes: object) -> Simulation:
     """A body as built, taken as settled."""
     scene = build(bar(changes))
-    contacts = scene.contact_lists() if scene.has_history else {}
+    contacts = contact_lists(scene) if scene.has_history else {}
     start = Start(np.zeros((3, scene.count)), contacts)
     step, _ = choose_step(scene)
     return Simulation(scene, step, system=DiskSystem(scene, step, start), datum=start.displacement)

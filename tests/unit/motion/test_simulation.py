@@ -8,7 +8,9 @@ import pytest
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step, step_limit
-from dembound.disks.stepping.system import DiskSystem, Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
 from dembound.motion.scene import FASTEST
 from dembound.motion.simulation import Simulation
@@ -296,7 +298,7 @@ PACKED = {
 
 def at_rest(scene: DiskScene) -> Simulation:
     """A body as built, taken as settled."""
-    start, step = Start(np.zeros((3, scene.count)), scene.contact_lists()), choose_step(scene)[0]
+    start, step = Start(np.zeros((3, scene.count)), contact_lists(scene)), choose_step(scene)[0]
     return Simulation(scene, step, system=DiskSystem(scene, step, start), datum=start.displacement)
 
 
@@ -319,7 +321,7 @@ def test_a_body_that_settles_anew_is_pushed_by_all_its_contacts(bar, has_history
     scene = build(bar({**PACKED, "material.fric": 0.5}))
     # far less than the overlaps of 10 MPa, so that the elastic law holds
     displacement = 1e-9 * np.random.default_rng(1).uniform(-1.0, 1.0, (3, scene.count))
-    contacts, twin = scene.contact_lists(), scene.contact_lists()
+    contacts, twin = contact_lists(scene), contact_lists(scene)
     for lists in (contacts, twin):
         lists["body"].start_from_displacements(displacement)
         lists["body"].arrays.slip[:] = 1e-9 * has_history  # friction has its part of the force

@@ -10,7 +10,9 @@ import pytest
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem, Start
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.cracks import NO_CRACKS
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.kind import Stage
@@ -45,7 +47,7 @@ def breaking(bar, shift: float | None = None) -> Simulation:
         return Simulation(scene, step, monitors)
     displacement = np.zeros((3, scene.count))
     displacement[0] = shift
-    system = DiskSystem(scene, step, Start(displacement, scene.contact_lists()))
+    system = DiskSystem(scene, step, Start(displacement, contact_lists(scene)))
     return Simulation(scene, step, monitors, system=system, datum=displacement)
 
 

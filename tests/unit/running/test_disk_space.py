@@ -8,7 +8,7 @@ import pytest
 from dembound import check
 from dembound.kinds import with_changes
 from dembound.motion.kind import Plan
-from dembound.motion.memory import in_words
+from dembound.motion.ram import in_words
 from dembound.running import disk_space, plan, resume_case, run_case, warnings_before
 from dembound.running.disk_space import ALWAYS, disk_warnings, results_bytes
 

@@ -8,6 +8,7 @@ import pytest
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED, note_places
 
 WRAP = {"type": "periodic"}
@@ -34,7 +35,7 @@ def scene(bar, in_order):
 
 def list_of(body: DiskScene) -> ContactList:
     """The pairs of a scene without a column."""
-    (pairs,) = body.contact_lists().values()
+    (pairs,) = contact_lists(body).values()
     return pairs
 
 

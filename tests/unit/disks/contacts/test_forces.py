@@ -8,6 +8,7 @@ from dembound.disks.contacts.contact_list import forces as module
 from dembound.disks.contacts.forces import acting, contact_columns, pieces
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, SHEAR, SLID, TENSION, UPDATED
 from dembound.motion.simulation import Simulation
@@ -73,7 +74,7 @@ def test_sums_over_contacts_are_the_forces_of_the_motion(bar, monkeypatch, bound
     scene = build(bar({**FREE, "packing": RANDOM, "boundary": boundary}))
     displacement = shaken(scene, 1e-4)
     columns = columns_of(scene, displacement)
-    expected = DiskSystem(scene, STEP).elastic_forces(displacement)[:2]
+    expected = DiskSystem(scene, STEP).forces.elastic(displacement)[:2]
 
     assert len(columns["particles"]) == len(scene.assembly.pairs) > 100
     # sums of some six forces in another order, normals to ε
@@ -113,7 +114,7 @@ def test_under_the_law_with_a_history_they_are_those_of_the_last_step(bar, geome
     simulation = broken(bar, **{"material.geometry": geometry})
     scene, system, displacement = simulation.scene, simulation.system, simulation.state.displacement
     columns = {name: values for name, (values, _) in system.contact_forces(displacement).items()}
-    expected = system.last_forces(system.contacts)[:2]
+    expected = system.forces.last(system.contacts)[:2]
     rounding = 1e-14 * np.abs(columns["normal_force"]).max()
     np.testing.assert_allclose(summed(columns, scene.count), expected, rtol=0.0, atol=10.0 * rounding)
 
@@ -184,7 +185,7 @@ def test_disks_of_a_column_are_numbered_as_in_the_scene(bar) -> None:
 
 def test_open_and_closed_are_as_at_the_start_under_the_elastic_law(bar) -> None:
     scene = build(bar({**FREE, "packing": RANDOM, **WITH_HISTORY}))
-    (contacts,) = scene.contact_lists().values()
+    (contacts,) = contact_lists(scene).values()
     contacts.arrays.force[:] = 1.0  # not looked at
     for geometry in (REFERENCE, SLID):
         assert np.count_nonzero(acting(contacts.arrays, geometry)) == len(scene.assembly.pairs)

@@ -88,7 +88,7 @@ def test_disks_have_slots_of_their_own_in_rows_of_their_copies(scene: DiskScene)
 def test_forces_are_those_of_the_contacts_one_by_one(scene: DiskScene, in_order) -> None:
     plain = in_order(scene)
     u = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
-    found, expected = (each.system(1.0).elastic_forces(u) for each in (scene, plain))
+    found, expected = (each.system(1.0).forces.elastic(u) for each in (scene, plain))
 
     assert lanes_of(scene)
     assert not lanes_of(plain)

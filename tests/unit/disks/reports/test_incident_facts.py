@@ -64,14 +64,14 @@ def test_monitors_have_the_motion_of_the_ground_where_the_continuum_rests() -> N
 def test_snapshots_of_the_continuum_have_the_total_motion_and_the_scattered_one() -> None:
     scene = build(small(CASE))
     values = np.random.default_rng(1).normal(size=(scene.count, 3))
-    motion = scene.motion_beside(values, "velocity", 0.03)
+    motion = scene.beside.motion(values, "velocity", 0.03)
 
-    assert np.array_equal(motion["scattered_"], values[scene.nodes_beside])
+    assert np.array_equal(motion["scattered_"], values[scene.beside.nodes])
     ground = motion[""] - motion["scattered_"]
-    expected = scene.ground_waves.motion("velocity", np.array([0.03]), scene.positions[scene.nodes_beside])[0]
+    expected = scene.ground_waves.motion("velocity", np.array([0.03]), scene.positions[scene.beside.nodes])[0]
     np.testing.assert_allclose(ground, expected, atol=1e-12)
     assert np.abs(ground).max() > 0.01
-    assert scene.beside["total"][0].all()
+    assert scene.beside.columns["total"][0].all()
 
 
 def test_a_wave_that_does_not_arrive_has_a_warning() -> None:

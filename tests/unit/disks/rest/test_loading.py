@@ -35,7 +35,7 @@ def out_of_balance(found: SimpleNamespace) -> np.ndarray:
     """Forces (3, n) of contacts and loads at the present displacements."""
     for pairs in found.system.contacts.values():
         pairs.push(found.state.displacement)
-    return found.system.last_forces(found.system.contacts) + found.system.load
+    return found.system.forces.last(found.system.contacts) + found.system.load
 
 
 def test_within_all_limits_the_elastic_state_is_the_answer(bar) -> None:

@@ -9,6 +9,7 @@ from dembound.disks.rest.block_stress import block_stress
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.stress import particle_stress
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import REFERENCE, UPDATED
@@ -62,7 +63,7 @@ def test_elastic_stress_is_that_of_the_pairs_forces_at_the_start(bar, monkeypatc
     monkeypatch.setattr(module, "PIECE", piece)
     scene = build(bar({**BODY, "boundary": WRAP, "packing": RANDOM}))
     displacement = np.random.default_rng(5).normal(0.0, 1e-4, (3, scene.count))
-    contacts = scene.contact_lists()["body"]
+    contacts = contact_lists(scene)["body"]
     contacts.push(displacement)
     listed = particle_stress(scene, contacts.arrays, np.zeros_like(displacement), UPDATED)
 

@@ -6,8 +6,8 @@ from meshes import stepped
 
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
-from dembound.outside.memory import GridSizes, body_bytes, memories_bytes
 from dembound.outside.mesh import Around, Mesh
+from dembound.outside.ram import GridSizes, body_bytes, memories_bytes
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
 BOX = (0.0, 0.0, 40.0, 20.0)

@@ -1,4 +1,4 @@
-"""The memory that a continuum needs, from the numbers of its nodes and elements."""
+"""The RAM that a continuum needs, from the numbers of its nodes and elements."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dembound.outside.mesh import Mesh
 
 @dataclass(frozen=True)
 class GridSizes:
-    """Numbers of nodes and elements, of these how many absorb, and their order."""
+    """Numbers of the nodes and elements of a mesh, how many elements absorb, and their order."""
 
     nodes: int
     elements: int
@@ -19,7 +19,7 @@ class GridSizes:
 
     @classmethod
     def of(cls, mesh: Mesh) -> GridSizes:
-        """Those of a mesh, computed without its arrays: of elements that are far too small, too."""
+        """The numbers of a mesh, computed without its arrays, so that elements may be far too small."""
         nodes = elements = elastic = 1
         left_out_nodes = left_out = 0 if mesh.box is None else 1
         for axis, cells in enumerate(mesh.cells):
@@ -42,7 +42,7 @@ class GridSizes:
 
     @classmethod
     def all_of(cls, meshes: Sequence[Mesh]) -> GridSizes:
-        """Those of several meshes of one order."""
+        """The sums of the numbers of several meshes of one order."""
         each = [cls.of(mesh) for mesh in meshes]
         nodes, elements, absorbing = (
             sum(getattr(sizes, name) for sizes in each) for name in ("nodes", "elements", "absorbing")
@@ -56,12 +56,12 @@ class GridSizes:
 
     @property
     def rim(self) -> int:
-        """Number of those on its edges."""
+        """Number of points on the edges of an element."""
         return 4 * self.order
 
 
 def body_bytes(z: GridSizes) -> float:
-    """Of a continuum as part of a scene, with its law and the same without layers.
+    """Bytes of a continuum in a scene, with the arrays of its law and of the same law without layers.
 
     By node: positions twice, crossing lines, depths (64), number, area, slots and their nodes, two masses, mass and
     inertia in the scene (72), where its entries begin (3). By element: its place (16), lines (16 a row of points),
@@ -74,17 +74,17 @@ def body_bytes(z: GridSizes) -> float:
 
 
 def memories_bytes(z: GridSizes) -> float:
-    """Of the memories of layers, eight numbers a point."""
+    """Bytes of the memory variables of absorbing layers, eight numbers a point."""
     return 64.0 * z.points * z.absorbing
 
 
 def header_bytes(z: GridSizes) -> float:
-    """As its mesh is written to a record: positions and flags (17), cells three times (96)."""
+    """Bytes of a mesh while it is written to a record: positions and flags (17), cells three times (96)."""
     return 113.0 * z.nodes
 
 
 def snapshot_bytes(z: GridSizes) -> float:
-    """Of a snapshot: motion, its difference from the start (72), what is not yet in the file (72), and the stress.
+    """Bytes of a snapshot: motion, its change since the start (72), what is not yet in the file (72), and stress.
 
     For the stress displacements, derivatives, strains and stresses at the points of all elements (13 numbers), with
     weights and their product.

@@ -2,12 +2,12 @@
 
 import pytest
 
-from dembound.bar import memory as bar_memory
+from dembound.bar import ram as bar_ram
 from dembound.bar.scene import build_bar
 from dembound.errors import CaseError
 from dembound.machine import Memory
 from dembound.methods.opening import COLUMNS
-from dembound.motion import memory
+from dembound.motion import ram
 
 
 def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
@@ -18,7 +18,7 @@ def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
 
     work = 16 * nodes  # of the kernels
     # there is a spring less than nodes
-    assert bar_memory.bonds_bytes(nodes, lengths) == pytest.approx(work + sum(each.nbytes for each in kept), rel=0.01)
+    assert bar_ram.bonds_bytes(nodes, lengths) == pytest.approx(work + sum(each.nbytes for each in kept), rel=0.01)
 
 
 def test_opening_bonds_are_the_sum_of_their_arrays(spalling) -> None:
@@ -27,12 +27,12 @@ def test_opening_bonds_are_the_sum_of_their_arrays(spalling) -> None:
     lengths, nodes = bonds.bond.shape
     bundle = bonds.opening.bundle
     listed = [getattr(bundle, name) for name in COLUMNS] + [bundle.below]
-    assert bar_memory.opening_bytes(nodes, lengths) == sum(each.nbytes for each in listed)
+    assert bar_ram.opening_bytes(nodes, lengths) == sum(each.nbytes for each in listed)
 
 
 def test_memory_grows_with_nodes_lengths_of_bonds_and_snapshots(spalling) -> None:
     def need(**changes) -> float:
-        return bar_memory.run_bytes(spalling({"bar.spacing": 1e-6, "output.snapshots": 2, **changes}))
+        return bar_ram.run_bytes(spalling({"bar.spacing": 1e-6, "output.snapshots": 2, **changes}))
 
     assert need() > need(**{"bar.spacing": 2e-6})
     assert need(**{"method.horizon": 6}) > need()
@@ -40,7 +40,7 @@ def test_memory_grows_with_nodes_lengths_of_bonds_and_snapshots(spalling) -> Non
 
 
 def test_a_bar_too_large_is_refused_before_its_nodes_are_placed(spalling, monkeypatch) -> None:
-    monkeypatch.setattr(memory, "memory_here", lambda: Memory(300e6, 250e6))
+    monkeypatch.setattr(ram, "memory_here", lambda: Memory(300e6, 250e6))
     case = spalling({"bar.spacing": 1e-6})
 
     with pytest.raises(

@@ -1,4 +1,4 @@
-"""The largest memory of a run of disks, from the numbers of its disks and contacts.
+"""The most RAM that a run of disks needs, from the numbers of its disks and contacts.
 
 Bytes are counted from the shapes of arrays, for n disks in s slots with b contacts; the history-dependent law lists p
 pairs, in q places. Temporary arrays are those of the largest moment of a stage. Zeros that are never written to take
@@ -20,9 +20,9 @@ from dembound.disks.contacts.layout import LEAST_FILL
 from dembound.disks.contacts.row_plan import columns_of
 from dembound.disks.material.packed_material import nominal_moduli
 from dembound.kernels.lanes import LANES
-from dembound.motion.memory import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
+from dembound.motion.ram import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
 from dembound.outside.medium import Medium
-from dembound.outside.memory import GridSizes, body_bytes, header_bytes, snapshot_bytes
+from dembound.outside.ram import GridSizes, body_bytes, header_bytes, snapshot_bytes
 from dembound.packings.base import TYPED
 
 NEAR = 1.08
@@ -33,8 +33,8 @@ NEAR = 1.08
 class SceneSizes:
     """Numbers of disks, of the slots that hold them, of contacts, and of lines of the support table.
 
-    in_rows : whether copies of a disk stand side by side, see layout.py. grid : those of a continuum beyond the sides,
-    None without it. ties : number of half bonds to it. probes : nodes whose motion is recorded at every step.
+    in_rows : whether copies of a disk stand side by side, see layout.py. grid : the numbers of a continuum beyond the
+    sides, None without it. ties : number of half bonds to it. probes : nodes whose motion is recorded at every step.
     """
 
     disks: float
@@ -53,7 +53,7 @@ class SceneSizes:
 
     @classmethod
     def expected(cls, case: DiskCase) -> SceneSizes:
-        """Those of a case that has not been built, without its holes: of random bricks within some 3 %."""
+        """The numbers of a case that has not been built, without its holes: of random bricks within some 3 %."""
         packing = case.packing
         across, up = packing.copies
         disks = packing.expected_disks
@@ -77,7 +77,7 @@ class SceneSizes:
 
 
 def _expected_grid(case: DiskCase) -> GridSizes | None:
-    """Those of a continuum in a medium of the nominal speed of P waves; S waves have half of it, or more."""
+    """The numbers of a continuum in a medium of the nominal speed of P waves; S waves have half of it, or more."""
     sides = [side for side, table in case.boundary.items() if table.is_outside]
     if not sides or (case.outside.element is None and not signals_of(case)):  # which cannot be built
         return None
@@ -139,7 +139,7 @@ def run_bytes(case: DiskCase, scenes: Sequence[SceneSizes], before: SceneSizes |
 
 
 def scene_bytes(case: DiskCase, z: SceneSizes) -> float:
-    """Of a scene: positions, radii, twins and tiles (36 n), its slots, mass, inertia and part of a cell; its contacts.
+    """Bytes of a scene: positions, radii, twins and tiles (36 n), slots, mass, inertia, part of a cell; its contacts.
 
     Pairs and types (12 b), for the kernels one by one 4 n + 16 b; in rows the node of each slot. Steady loads (3, n).
     """
@@ -150,12 +150,12 @@ def scene_bytes(case: DiskCase, z: SceneSizes) -> float:
 
 
 def building_bytes(z: SceneSizes) -> float:
-    """Temporary arrays as contacts are sorted: columns and lanes (24 n), ends of contacts with their keys (66 b)."""
+    """Bytes of temporary arrays as contacts are sorted: columns and lanes (24 n), ends with their keys (66 b)."""
     return 24 * z.disks + 66 * z.contacts
 
 
 def pairs_bytes(z: SceneSizes) -> float:
-    """Of the list of pairs with a history.
+    """Bytes of the list of pairs with a history.
 
     In q places 38 bytes of numbers, types and states, and forces (4, q); by pair its place, image and two ends (18 p);
     by slot the ends, arms and origin (28 s); cells (8 n); in rows also where disks stand (24 n).
@@ -166,10 +166,10 @@ def pairs_bytes(z: SceneSizes) -> float:
 
 
 def listing_bytes(z: SceneSizes) -> float:
-    """As pairs are listed anew: the old list without forces (56 p), the new one with the arrays it is sorted by.
+    """Bytes while pairs are listed anew: the old list without forces (56 p), the new one, arrays to sort by.
 
-    These are the pairs and their history (52 p), sorted (24 p) with places and owners (24 p), the order of the ends
-    with work space (24 p), and the new arrays (38 q).
+    Sorting takes the pairs and their history (52 p), sorted (24 p) with places and owners (24 p), and the order of the
+    ends with work space (24 p); the new arrays have 38 q.
     """
     pairs, places = _pairs(z)
     rows = 24 * z.disks if z.in_rows else 0.0
@@ -177,7 +177,7 @@ def listing_bytes(z: SceneSizes) -> float:
 
 
 def export_bytes(case: DiskCase, z: SceneSizes) -> float:
-    """Of a snapshot as a file for ParaView, when the scene is gone.
+    """Bytes of a snapshot as a file for ParaView, when the scene is gone.
 
     Particles and fields as read (84 n), points and vertices with offsets and types (52 n), fields in single precision
     with their temporaries (72 n), bytes and text of the largest array (80 n); with stress 72 n more, with the number
@@ -188,7 +188,7 @@ def export_bytes(case: DiskCase, z: SceneSizes) -> float:
 
 
 def stress_bytes(z: SceneSizes) -> float:
-    """Of stresses: displacements in slots, moments and their quotient (3, n), and a piece of the pairs.
+    """Bytes of stresses: displacements in slots, moments and their quotient (3, n), and a piece of the pairs.
 
     For each of its pairs, their constants (12) and 15 numbers of places, vectors, forces and products.
     """
@@ -196,7 +196,7 @@ def stress_bytes(z: SceneSizes) -> float:
 
 
 def checkpoint_bytes(z: SceneSizes, *, history: bool) -> float:
-    """Of a checkpoint: displacements and velocities of disks and nodes (48 n), columns of pairs with their forces.
+    """Bytes of a checkpoint: displacements and velocities of disks and nodes (48 n), columns and forces of pairs.
 
     The columns are numbers, types, images, states and whether they closed (13 p), shear, slip and step (24 p), and
     forces (32 p).
@@ -205,7 +205,7 @@ def checkpoint_bytes(z: SceneSizes, *, history: bool) -> float:
 
 
 def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
-    """Motion, ledger and record of the stepped scene, its pairs, and the fields of a snapshot of the whole one."""
+    """Bytes of motion, ledger and record of the stepped scene, its pairs, and a snapshot of the whole scene."""
     moving = motion_bytes(z.moving) + ledger_bytes(z.moving) + record_bytes(z.probes, 256, 6, z.supported)
     moving += 8 * z.moving * case.output.peaks
     snapshot = 48.0 * whole.disks
@@ -229,7 +229,7 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
 
 
 def _settling_bytes(case: DiskCase, z: SceneSizes) -> float:
-    """Of a static stage: masses of its own, pairs under any law, and at its end loads, forces and stresses."""
+    """Bytes of a static stage: masses of its own, pairs under any law, and at its end loads, forces and stresses."""
     loads = 24 * (3 * z.disks + z.slots)  # those of the case and of the stage, also in slots, and those of contacts
     moving = motion_bytes(z.slots) + pairs_bytes(z) + loads + stress_bytes(z)
     return 24 * z.disks + max(listing_bytes(z), moving + record_bytes(0, 256, 6, z.supported))

@@ -3,12 +3,13 @@
 import pytest
 from small_cases import SURROUNDED, small
 
-from dembound.disks.contacts.contact_list import layout
-from dembound.disks.memory import SceneSizes, expected_bytes, pairs_bytes, run_bytes, scene_bytes
+from dembound.disks.contacts import layout
+from dembound.disks.ram import SceneSizes, expected_bytes, pairs_bytes, run_bytes, scene_bytes
 from dembound.disks.scene import build
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.errors import CaseError
 from dembound.machine import Memory
-from dembound.motion import memory
+from dembound.motion import ram
 from dembound.packings import random_brick
 
 RANDOM = {"pattern": "B", "bricks": [20, 4], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
@@ -63,7 +64,7 @@ def test_a_scene_is_the_sum_of_its_arrays(bar, monkeypatch, in_rows) -> None:
 def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows) -> None:
     monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
     scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}, "material.law": "linearpbond"}))
-    (pairs,) = scene.contact_lists().values()
+    (pairs,) = contact_lists(scene).values()
     kept, stored = (
         pairs.arrays,
         ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "force"),
@@ -92,7 +93,7 @@ def test_what_is_recorded_counts(bar) -> None:
 
 
 def test_a_scene_too_large_is_refused_before_its_brick_is_packed(bar, monkeypatch) -> None:
-    monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 6e9))
+    monkeypatch.setattr(ram, "memory_here", lambda: Memory(8e9, 6e9))
     monkeypatch.setattr(random_brick, "load_or_pack", None)  # a call would raise a TypeError
     case = bar({**FREE, "packing": {**RANDOM, "bricks": [1000, 1000]}})
 
@@ -131,7 +132,7 @@ def test_an_automatic_size_is_that_of_a_medium_of_the_nominal_speed(bar) -> None
 
 
 def test_a_continuum_too_large_is_refused_before_it_is_built(bar, monkeypatch) -> None:
-    monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 6e9))
+    monkeypatch.setattr(ram, "memory_here", lambda: Memory(8e9, 6e9))
     with pytest.raises(CaseError, match=r"^outside: 800 disks and 2.69e\+09 nodes of the continuum beyond them need "):
         build(bar(OUTSIDE | {"outside": {"element": 1e-3, "margin": 1000, "layers": 1000}}))
 

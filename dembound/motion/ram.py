@@ -1,6 +1,6 @@
-"""The memory a run needs, and the refusal of one that this machine does not have.
+"""The RAM a run needs, and the refusal of a run that needs more than this machine has.
 
-The largest memory of a run is that of its largest stage: the program, plus the arrays of the stage, counted from their
+A run needs most in its largest stage: the program, plus the arrays of the stage, counted from their
 shapes. What a stage needs beyond the arrays that remain is the temporary arrays of its largest moment.
 """
 
@@ -23,17 +23,17 @@ F = 8.0
 
 
 def motion_bytes(slots: float) -> float:
-    """Of a simulation: u, its successor and v (3, slots), both mobilities."""
+    """Bytes of a simulation: u, its successor and v (3, slots), both mobilities."""
     return (9 + 2) * F * slots
 
 
 def ledger_bytes(slots: float) -> float:
-    """Of an energy ledger: mass and inertia, and u and v (3, slots) at the beginning of an entry."""
+    """Bytes of an energy ledger: mass and inertia, and u and v (3, slots) at the beginning of an entry."""
     return (2 + 6) * F * slots
 
 
 def record_bytes(monitors: int, block: int, width: int, lines: float) -> float:
-    """Of what is kept for a block of steps: twice the record (block, monitors, width), and the drives of supports.
+    """Bytes kept for a block of steps: twice the record (block, monitors, width), and the drives of supports.
 
     lines : of the support table, one for each component of a supported node. The nodes have six columns, and the drives
     (block, lines), twice, of shorter blocks where there are many.

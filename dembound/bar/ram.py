@@ -1,7 +1,7 @@
-"""The largest memory of a run of a bar, from its numbers of nodes n and of bond lengths m."""
+"""The most RAM that a run of a bar needs, from its numbers of nodes n and of bond lengths m."""
 
 from dembound.casefile.bar import BarCase
-from dembound.motion.memory import largest, ledger_bytes, must_fit, record_bytes
+from dembound.motion.ram import largest, ledger_bytes, must_fit, record_bytes
 
 
 def must_fit_here(case: BarCase) -> None:
@@ -28,35 +28,35 @@ def run_bytes(case: BarCase) -> float:
 
 
 def scene_bytes(nodes: float) -> float:
-    """Of a scene: places, volumes, masses, inertia, slots (48 n), springs, sections, limits and drag by node (32 n)."""
+    """Bytes of a scene: places, volumes, masses, inertia, slots (48 n), springs, sections, limits and drag (32 n)."""
     return 80 * nodes
 
 
 def bonds_bytes(nodes: float, lengths: int) -> float:
-    """Of springs with their limits (33 n), bonds, their stiffness and the steps they broke in (24 m n), work space."""
+    """Bytes of springs and limits (33 n), bonds, their stiffness and the steps they broke in (24 m n), work space."""
     return (33 + 24 * lengths + 16) * nodes
 
 
 def layer_bytes(nodes: int, lengths: int) -> float:
-    """Of a layer beyond an end: rows of its bonds' forces, rates, stiffness and two factors (56 b), by node as much."""
+    """Bytes of a layer beyond an end: by bond its force, rate, stiffness and two factors (56), by node as much."""
     return 56.0 * (lengths + 1) * (nodes + lengths)
 
 
 def opening_bytes(nodes: float, lengths: int) -> float:
-    """Of the list of bonds that open (64 for each bond), and of the steps before they did (8), if all of them open."""
+    """Bytes of the list of bonds that open (64 each), and of the steps before they did (8), if all of them open."""
     return 72 * (lengths + 1) * nodes
 
 
 def motion_bytes(nodes: float) -> float:
-    """Of u, its successor and v, of which only the first of three rows is moved, and both mobilities (16 n)."""
+    """Bytes of u, its successor and v, of which only the first of three rows is moved, and mobilities (16 n)."""
     return (24 + 8 + 8 + 16) * nodes
 
 
 def damage_bytes(nodes: float, lengths: int) -> float:
-    """Of the damage of nodes in a snapshot: families (32 m n), volumes, factors and what is whole, by pair (90 m n)."""
+    """Bytes of the damage in a snapshot: families (32 m n), volumes, factors and what is whole, by pair (90 m n)."""
     return (32 + 90) * lengths * nodes
 
 
 def export_bytes(case: BarCase, nodes: float) -> float:
-    """Of a snapshot as a file for ParaView, when the scene is gone, as for disks."""
+    """Bytes of a snapshot as a file for ParaView, when the scene is gone; counted by array as in `disks/ram.py`."""
     return 290 * nodes if case.output.snapshots else 0.0

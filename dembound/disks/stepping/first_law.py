@@ -1,0 +1,75 @@
+"""The law with which a run of disks or a static stage begins, and the steady forces that belong to it.
+
+A scene whose law is history-dependent begins in one of three ways:
+
+- under the elastic law that replaces it until a contact is about to leave the elastic range: a body as built, one that
+  settled under the elastic law, and one of which `reduce.settled` finds that it is elastic about its settled state;
+- under the history-dependent law from the start, with contacts as the elastic law leaves them;
+- under the history-dependent law, with the history that contacts have from a static stage.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.disks.body import DiskBody
+from dembound.disks.contacts.elastic_again import elastic_again, never_elastic_again, settled_refused
+from dembound.disks.stepping.balance import Balance
+from dembound.disks.stepping.disk_parts import DiskParts
+from dembound.disks.stepping.rest_forces import RestForces
+from dembound.disks.stepping.start import Start
+
+
+class FirstLaw(NamedTuple):
+    """The law with which a run or a static stage begins.
+
+    has_history : whether it is history-dependent, otherwise it is elastic. goes_on : whether contacts keep the history
+    that they have from a static stage. is_elastic_again : whether it is elastic although a static stage had left the
+    elastic law; refused : why it is not where the case asks for this, a line.
+    """
+
+    has_history: bool
+    goes_on: bool
+    is_elastic_again: bool = False
+    refused: tuple[str, ...] = ()
+
+
+def first_law(scene: DiskBody, disks: DiskParts, start: Start | None, datum: np.ndarray, *, settling: bool) -> FirstLaw:
+    """The law that the disks of a scene begin with at rest at a datum (3, n).
+
+    start : the settled body they start from, None for a body as built. settling : whether this is a static stage. If
+    the elastic law is used again, contacts keep the slip with which it holds.
+    """
+    case, goes_on = scene.case, start is not None and start.has_history
+    is_elastic_again = False
+    refused: tuple[str, ...] = ()
+    if goes_on and not settling and case.reduce.settled and not never_elastic_again(case):
+        reason = elastic_again(disks.contacts.values(), datum)
+        is_elastic_again, goes_on, refused = reason == "", reason != "", settled_refused(reason)
+    # a locked-in stress also acts through the seam of a free field, but not under the elastic law
+    through = bool(disks.seams) and case.material.locked_in is not None and not settling
+    at_once = through or not (settling or case.material.elastic_start)
+    return FirstLaw(goes_on or (scene.has_history and at_once), goes_on, is_elastic_again, refused)
+
+
+def balanced(
+    law: FirstLaw, scene: DiskBody, disks: DiskParts, forces: RestForces, load: np.ndarray, datum: np.ndarray
+) -> tuple[Balance, np.ndarray]:
+    """The forces that balance a body settled at a datum (3, n), and all steady forces (3, n) under the elastic law.
+
+    load : (3, n) N and N·m, steady forces of loads, which are a part of the latter.
+    """
+    shift = forces.shift(datum)
+    inner = forces.with_history(datum, fresh=not law.goes_on) if scene.has_history else forces.elastic(datum)
+    balance = Balance(scene, shift - inner - load, load, datum, forces.across(disks.contacts))
+    return balance, shift - forces.elastic(datum)
+
+
+def not_balanced(law: FirstLaw, scene: DiskBody, forces: RestForces, load: np.ndarray) -> np.ndarray:
+    """All steady forces (3, n) of a body as built or in a static stage; load : (3, n) those of loads.
+
+    The elastic law does not include the forces of the body as built, such as a locked-in stress, which are added.
+    """
+    if law.goes_on or not scene.has_history:
+        return load
+    return load + forces.with_history(np.zeros_like(load), fresh=True)

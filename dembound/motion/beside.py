@@ -1,0 +1,28 @@
+"""Nodes of a scene that are recorded apart from its particles, such as those of a continuum round a body."""
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+
+class Beside(ABC):
+    """The m nodes of a scene that are recorded apart.
+
+    Attributes
+    ----------
+    nodes : their range among the nodes of the scene.
+    """
+
+    nodes: slice
+
+    @property
+    @abstractmethod
+    def columns(self) -> dict[str, tuple[np.ndarray, str]]:
+        """Data of these nodes for the record, by name: values (m, …) and unit."""
+
+    @abstractmethod
+    def motion(self, values: np.ndarray, of: str, time: float) -> dict[str, np.ndarray]:
+        """Motion (m, 3) of these nodes, from that of all nodes (n, 3) of the scene, by the kind of motion.
+
+        "" is what they move by. of : "displacement" or "velocity"; time : s, of the values.
+        """

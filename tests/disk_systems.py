@@ -1,0 +1,60 @@
+"""Systems of disks that begin to move: random packings that nothing holds or drives, their starts and states."""
+
+import numpy as np
+
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.scene import DiskScene
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
+from dembound.motion.state import State
+
+ELASTIC, BONDED = "elastic", "linearpbond"
+
+STEP = 1e-4
+EPS = np.finfo(float).eps
+FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+SIDES = {"free": {}, "free field": FREE_FIELD}
+DENSE = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+TOUGH = {"material.law": "linearpbond", "material.fric": 0.5}
+WITH_HISTORY = {**TOUGH, "material.locked_in": 10e6, "static": {}}
+"""Contacts that the locked-in stress keeps closed."""
+
+AT_ONCE = {"material.elastic_start": False}
+REFERENCE = {"material.geometry": "reference"}
+WEIGHT = {
+    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+    "static": {"boundary": {"bottom": {"type": "fixed"}}},
+}
+
+
+def shaken(body: DiskScene, size: float, seed: int = 3) -> np.ndarray:
+    """Random motions or forces (3, n)."""
+    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, body.count))
+
+
+def begun(system: DiskSystem, datum: np.ndarray | None = None) -> State:
+    """The state of a system that has begun at rest at a datum (3, n)."""
+    still = np.zeros((3, system.scene.count))
+    datum = still if datum is None else datum
+    layout = system.scene.layout
+    state = State(layout, layout.spread(datum), layout.spread(still), datum, np.zeros((0, 3, 2)), np.zeros(0))
+    system.begin(state)
+    return state
+
+
+def forces_of(system: DiskSystem, lists: dict[str, ContactList], displacement: np.ndarray) -> np.ndarray:
+    """Forces and moments (3, n) of the history-dependent law at displacements (3, n) reached at rest, seam included."""
+    for contacts in lists.values():
+        contacts.push(displacement)
+    return system.forces.last(lists)
+
+
+def locked_in_forces(body: DiskScene) -> np.ndarray:
+    """Forces and moments (3, n) of a body as built."""
+    return forces_of(DiskSystem(body, STEP), contact_lists(body), np.zeros((3, body.count)))
+
+
+def settled(body: DiskScene, *, has_history: bool, size: float = 1e-6) -> Start:
+    """A start somewhere, with contacts as built."""
+    return Start(shaken(body, size), contact_lists(body) if body.has_history else {}, has_history)
