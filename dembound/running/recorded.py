@@ -24,9 +24,10 @@ def recorded_case(record: Path) -> Case:
     Raises CaseError for a record of no run, RecordError, in one line, if there is none or its case cannot be read.
     """
     with open_record(record) as file:
-        if "particles" not in file:
+        missing = [name for name, there in (("case", file.attrs), ("inputs", file)) if name not in there]
+        if len(missing) == 2 and "particles" not in file:
             raise CaseError([f"{record}: is of no run, it has no case that could be run again"])
-        if missing := [name for name, there in (("case", file.attrs), ("inputs", file)) if name not in there]:
+        if missing:
             raise RecordError([f"{record}: is damaged: it has no {' and no '.join(missing)}"])
         text, name = text_of(file.attrs["case"]), text_of(file.attrs["name"])
         origin = text_of(file.attrs["origin"]) if "origin" in file.attrs else name  # earlier versions have none

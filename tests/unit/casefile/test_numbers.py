@@ -34,7 +34,7 @@ def problems(tables: Tables) -> list[str]:
             SURROUNDED | {"outside": {"margin": 2**31}},
             f"outside.margin: is 2147483648, must be at most {MOST_ELEMENTS}",
         ),
-        (PUSHED | {"output": {"snapshots": 2**31}}, "output.snapshots: is 2147483648, must be at most 100000"),
+        (PUSHED | {"output": {"snapshots": 2**31}}, "output.snapshots: is 2147483648, must be at most 10000"),
         (PUSHED | {"sweep": {"processes": 2**31}}, "sweep.processes: is 2147483648, must be "),
         (
             SPALLING | {"load": [SPALLING["load"][0] | {"nodes": 2**31}]},
