@@ -45,7 +45,6 @@ class Bars(Kind[BarCase, BarScene]):
 
     name, plural = "bar", "bars"
     schema = SCHEMA
-    mesh_name = "bar"
     view_script = VIEW_SCRIPT
     work_unit = "bond updates"
 
@@ -124,7 +123,7 @@ class Bars(Kind[BarCase, BarScene]):
 
     def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
         """One line from each node to the next."""
-        return {self.mesh_name: bar_mesh(particles, snapshot, cracks)}
+        return {"bar": bar_mesh(particles, snapshot, cracks)}
 
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
         """The bar over place and time, and the stress at its monitors."""
