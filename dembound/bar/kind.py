@@ -12,14 +12,13 @@ from dembound.bar.facts import bar_facts
 from dembound.bar.memory import run_bytes
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
+from dembound.bar.paths import front_of_bar, sources_of_bar
 from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.storage import storage_of
 from dembound.bar.summary import part_of, spalls_of, summarise_bar
 from dembound.bar.warnings import bar_warnings
 from dembound.bar.warnings_after import warnings_after_bar
-from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook
 from dembound.motion.moving_picture import MovingPicture

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.reach import is_in
+from dembound.casefile.disks.ground import is_in
 from dembound.casefile.types import LAWS
 from dembound.disks.beyond.settings import expected_tops, mesh_of, settings_of, signals_of
 from dembound.disks.contacts.forces import PIECE
