@@ -106,7 +106,9 @@ class NodeSides:
 
     def _mean_of(self, displacement: np.ndarray) -> np.ndarray:
         """Mean displacement (s, 3) of every side at displacements (3, n)."""
-        return np.array([(weight * displacement[:, node]).sum(axis=1) for node, weight in self._members]).reshape(-1, 3)
+        # copies, row after row in memory, have one order of terms in their sums
+        each = [(weight * displacement[:, node].copy()).sum(axis=1) for node, weight in self._members]
+        return np.array(each).reshape(-1, 3)
 
     def stored(self, u: np.ndarray, datum: np.ndarray) -> np.ndarray:
         """Energy (s,) J in the springs of every side at displacements u (3, slots), from rest at datum (3, n)."""
