@@ -23,11 +23,10 @@ from dembound.disks.stability import choose_step
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import wall_forces
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.outside.stability import step_limit
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
 ELEMENT = 30.0, 30.0

@@ -13,11 +13,10 @@ from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.exact.lamb import surface_displacement
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.outside.stability import step_limit
 from dembound.studies.exact import exact_motions
 
 RADIUS, SPEED = 0.25, 300.0

@@ -7,6 +7,7 @@ import numpy as np
 from dembound.bar.end_echo import ROUNDING, returned_of_waves
 from dembound.bar.lattice import carrying_lattices
 from dembound.bar.scene import BarScene
+from dembound.bar.stability import unit_step
 from dembound.bar.summary import describe_bar, describe_end
 from dembound.boundaries.words import side_in_words
 from dembound.casefile.bar import BarCase
@@ -31,7 +32,7 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
     facts = {
         "nodes": f"{scene.count:,}, {apart} m apart",
         "method": method_in_words(case),
-        "Courant number": f"{_courant(scene, time_step):.4g}",
+        "Courant number": f"{time_step / unit_step(scene):.4g}",
         "bar": f"{case.bar.length:g} m long",
     }
     if case.bar.range:
@@ -160,8 +161,3 @@ def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, 
     return {
         name: (row.wave_speed / (f * row.spacing) if f > 0.0 else np.inf, needed[coarse]) for name, f in fading.items()
     }
-
-
-def _courant(scene: BarScene, time_step: float) -> float:
-    """Largest Courant number ν = cΔt/Δx of all ranges."""
-    return max(time_step * part.speed / part.spacing for part in scene.rod.ranges)

@@ -11,15 +11,14 @@ import numpy as np
 from dembound.bar.facts import bar_facts
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
+from dembound.bar.paths import front_of_bar, sources_of_bar
 from dembound.bar.ram import run_bytes
 from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.storage import storage_of
 from dembound.bar.summary import part_of, spalls_of, summarise_bar
 from dembound.bar.warnings import bar_warnings
 from dembound.bar.warnings_after import warnings_after_bar
-from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook
 from dembound.motion.moving_picture import MovingPicture
@@ -45,7 +44,6 @@ class Bars(Kind[BarCase, BarScene]):
 
     name, plural = "bar", "bars"
     schema = SCHEMA
-    mesh_name = "bar"
     view_script = VIEW_SCRIPT
     work_unit = "bond updates"
 
@@ -124,7 +122,7 @@ class Bars(Kind[BarCase, BarScene]):
 
     def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
         """One line from each node to the next."""
-        return {self.mesh_name: bar_mesh(particles, snapshot, cracks)}
+        return {"bar": bar_mesh(particles, snapshot, cracks)}
 
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
         """The bar over place and time, and the stress at its monitors."""

@@ -31,14 +31,15 @@ if TYPE_CHECKING:
     import meshio
 
 VIEW_SCRIPT = '''\
-"""Shows the line of bar.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
+"""Shows the line of a bar in ParaView: paraview --script=view.py, or Run Script once it is open."""
 
 from pathlib import Path
 
 from paraview.simple import *
 
 folder = Path(globals().get("__file__", "view.py")).resolve().parent  # Run Script has no __file__
-bar = GetActiveSource() or PVDReader(FileName=str(folder / "bar.pvd"))
+files = {path.stem: path for ending in ("vtkhdf", "pvd") for path in folder.glob(f"*.{ending}")}
+bar = GetActiveSource() or OpenDataFile(str(files["bar"]))
 view = GetActiveViewOrCreate("RenderView")
 view.InteractionMode = "2D"
 GetAnimationScene().UpdateAnimationUsingDataTimeSteps()

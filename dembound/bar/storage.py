@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dembound.bar.ram import bonds_bytes
-from dembound.motion.storage import POINT, Storage, mesh_bytes
+from dembound.motion.storage import POINT, Storage, mesh_bytes, paraview_bytes
 
 if TYPE_CHECKING:
     from dembound.bar.scene import BarScene
@@ -17,6 +17,8 @@ CHANGING, CONSTANT = 32.0, 8.0
 def storage_of(scene: BarScene) -> Storage:
     """Bytes on disk of a bar: in the record of a snapshot motion, stress and damage; a line between two nodes."""
     nodes, lengths = float(scene.count), max(scene.case.method.largest_horizon, 1)
-    vtu = mesh_bytes(1.0, CHANGING + CONSTANT + 4.0 * scene.case.output.peaks, 1.0, 2, 4.0)
-    snapshot = nodes * (64.0 + vtu + POINT + CHANGING)
-    return Storage(60.0 * nodes, snapshot, 96.0 * nodes + bonds_bytes(nodes, lengths))
+    output = scene.case.output
+    vtu = mesh_bytes(1.0, CHANGING + CONSTANT + 4.0 * output.peaks, 1.0, 2, 4.0)
+    header = 24.0 + paraview_bytes(output.paraview, 0.0, 36.0)  # positions, volumes; in the VTKHDF file what remains
+    snapshot = 64.0 + paraview_bytes(output.paraview, vtu, POINT + CHANGING)
+    return Storage(nodes * header, nodes * snapshot, 96.0 * nodes + bonds_bytes(nodes, lengths))

@@ -1,6 +1,6 @@
 """The case: those tables of a file that all kinds of bodies have."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,10 +12,18 @@ from dembound.casefile.chart import Chart
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
 from dembound.casefile.sweep import Sweep
-from dembound.casefile.words import in_lines
 from dembound.errors import CaseError
 from dembound.table import as_toml, every_key
 from dembound.waves import Wave
+
+MOST_LINES = 10
+"""Most lines in which Python shows a case."""
+
+WIDTH = 100
+"""Most characters of such a line."""
+
+NAMING = ("name", "type")
+"""Keys that stand for a table among several."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -121,3 +129,33 @@ def as_kind(case: Case, kind: type[K], otherwise: str, source: str = "") -> K:
     if not isinstance(case, kind):
         raise CaseError([otherwise], source or case.name)
     return case
+
+
+def in_lines(case: Case) -> list[str]:
+    """Up to `MOST_LINES` lines: name and title, and of each table that is not empty the keys that are given."""
+    given = {name: as_toml(table) for name, table in case.tables.items() if name != "title"}
+    tables = {name: table for name, table in given.items() if table not in (None, {}, [])}
+    shown = MOST_LINES - 1 if len(tables) < MOST_LINES else MOST_LINES - 2
+    lines = [f"{type(case).__name__} {case.name}" + (f": {case.title}" if case.title else "")]
+    lines += [f"  {name}: {', '.join(_parts(table))}" for name, table in list(tables.items())[:shown]]
+    if len(tables) > shown:
+        lines.append(f"  and {', '.join(list(tables)[shown:])}")
+    return [line if len(line) <= WIDTH else f"{line[: WIDTH - 1]}…" for line in lines]
+
+
+def _parts(table: Any) -> Iterator[str]:
+    """The keys of a table with their values; of several tables their names and types."""
+    if isinstance(table, Mapping):
+        for key, value in table.items():
+            named = isinstance(value, Mapping)
+            yield f"{key} {value.get('type', '') if named else _plain(value)}".rstrip()
+    else:
+        for each in table:
+            yield " ".join(str(each[key]) for key in NAMING if key in each) or ", ".join(_parts(each))
+
+
+def _plain(value: Any) -> str:
+    """A value, numbers without needless digits."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_plain, value))}]"
+    return f"{value:g}" if isinstance(value, float) else str(value)

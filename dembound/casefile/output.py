@@ -1,5 +1,7 @@
 """The ``[output]`` table."""
 
+from typing import Literal
+
 from dembound.table import Table, quantity
 
 MOST_SNAPSHOTS = 10_000
@@ -7,6 +9,9 @@ MOST_SNAPSHOTS = 10_000
 
 Most commands go through all snapshots of a record, which takes 1 ms each and more.
 """
+
+ParaView = Literal["vtu", "vtkhdf", "both"]
+"""Snapshots for ParaView: one VTU file each with a PVD file of their times, all in one VTKHDF file, or both."""
 
 
 class Output(Table):
@@ -34,6 +39,11 @@ class Output(Table):
     )
     stress: bool = quantity(False, unit="1", help="whether snapshots hold the stress of every particle")
     contacts: bool = quantity(False, unit="1", help="whether snapshots hold the forces of every contact and bond")
+    paraview: ParaView = quantity(
+        "vtu",
+        unit="1",
+        help='snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"',
+    )
     peaks: bool = quantity(False, unit="1", help="whether the largest speed of every particle in the run is kept")
     load_factor: bool = quantity(
         False, unit="1", help="whether the factor of the waves is found up to which the elastic law of disks holds"

@@ -54,7 +54,8 @@ def _movie(path: Path) -> Path:
 def movie(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Movie to write: .gif, .webp, or with ffmpeg .mp4.", callback=_movie)
+        Path,
+        typer.Option("--output", "-o", help="GIF to write, or a new folder for frames as PNG files.", callback=_movie),
     ] = Path("movie.gif"),
     field: Annotated[
         SceneField | None,
@@ -96,7 +97,8 @@ def movie(
         )
         with _counted(len(shown)) as progress:
             write_movie(shown, output, fps, progress)
-    out.print(f"wrote {output} ({len(shown)} frames, {output.stat().st_size / 1e6:.1f} MB)")
+    size_in_bytes = sum(path.stat().st_size for path in [output, *output.glob("*.png")])
+    out.print(f"wrote {output} ({len(shown)} frames, {size_in_bytes / 1e6:.1f} MB)")
 
 
 @contextmanager

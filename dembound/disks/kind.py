@@ -48,7 +48,6 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     name = plural = "disks"
     schema = SCHEMA
-    mesh_name = "particles"
     view_script = VIEW_SCRIPT
     work_unit = "particle-steps"
 
@@ -164,7 +163,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
         """One vertex per disk, one line per contact if the record has contacts, and the cells of a continuum."""
-        meshes = {self.mesh_name: disk_mesh(particles, snapshot, cracks)}
+        meshes = {"particles": disk_mesh(particles, snapshot, cracks)}
         if "contacts/particles" in snapshot:
             meshes["contacts"] = contact_mesh(particles, snapshot)
         if "continuum/position" in particles:

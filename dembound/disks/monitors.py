@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.ground import is_in, reach
 from dembound.casefile.disks.monitor import FREE_FIELD
-from dembound.casefile.disks.reach import is_in, reach
 from dembound.disks.beyond.ground_waves import GroundWaves
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.material.packed_material import PackedMaterial

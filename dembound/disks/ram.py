@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.reach import is_in
+from dembound.casefile.disks.ground import is_in
 from dembound.casefile.types import LAWS
 from dembound.disks.beyond.settings import expected_tops, mesh_of, settings_of, signals_of
 from dembound.disks.contacts.forces import PIECE
@@ -122,8 +122,8 @@ def expected_bytes(case: DiskCase) -> float:
 def run_bytes(case: DiskCase, scenes: Sequence[SceneSizes], before: SceneSizes | None = None) -> float:
     """Largest memory (bytes) of a run.
 
-    scenes : that of the case, and the smaller ones in its place, the last of which is stepped; before : the scene
-    before an excavation.
+    scenes : that of the case, and, if there is one, the row stepped in its place; before : the scene before an
+    excavation.
     """
     whole, stepped = scenes[0], scenes[-1]
     built = sum(scene_bytes(case, z) for z in ([*scenes] if before is None else [*scenes, before]))

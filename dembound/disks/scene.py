@@ -104,20 +104,14 @@ class DiskScene(DiskBody):
             return found
         return {side: (node, acting, acting) for side, (node, acting, _) in found.items()}
 
-    @property
-    def places_in_whole(self) -> np.ndarray:
-        """(n,) the disk of the scene of the case that each disk is or moves as."""
-        return np.arange(self.count)
-
     def system(self, time_step: float) -> DiskSystem:
         """Its parts and ties at rest as built, to be stepped by time_step (s)."""
         return DiskSystem(self, time_step)
 
     @property
     def largest_memory(self) -> float:
-        """Largest memory (bytes) of a run of it, or of the scene it is stepped in place of."""
-        before = None if self.before is None else self.before.sizes
-        return run_bytes(self.case, [scene.sizes for scene in self.chain], before)
+        """Largest memory (bytes) of a run of it."""
+        return run_bytes(self.case, [self.sizes], None if self.before is None else self.before.sizes)
 
     @property
     def sizes(self) -> SceneSizes:
@@ -132,11 +126,6 @@ class DiskScene(DiskBody):
             ties=sum(len(each.wall.element) for each in self.continua),
             probes=len(self.probes),
         )
-
-    @property
-    def chain(self) -> "tuple[DiskScene, ...]":
-        """The scene of the case, and the smaller ones in its place, down to this one."""
-        return (self,)
 
 
 def build(case: DiskCase) -> DiskScene:

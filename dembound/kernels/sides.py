@@ -69,7 +69,7 @@ def _springs(c, lines, constants, nodes, u):
 
 
 @njit(**FAST, forceinline=True)
-def _exerted(kind, c, lines, constants, moved, across, sign, signals, columns):
+def _exerted(kind, c, lines, constants, moved, across, signals, columns):
     """The same of prescribed motion (the force needed, without ties), of drives (constants·signal), and of seams."""
     force = 0.0
     power = 0.0
@@ -78,7 +78,7 @@ def _exerted(kind, c, lines, constants, moved, across, sign, signals, columns):
     for e in range(lines.size):
         s = U(lines[e])
         if kind == DRIVE:
-            f = constants[e] * sign * signals[U(columns[e])]
+            f = constants[e] * signals[U(columns[e])]
         else:
             f = constants[e] * (push[c, s] - across[s, c] if kind == PRESCRIBED else across[s, c])
         force += f
@@ -123,14 +123,14 @@ def _of_batch(b, c, step, signal, lines, constants, u, supports, across, followe
     if kind == SPRING:
         return _springs(c, lines, constants, supports.nodes, u)
     columns = sides.column[sides.start[b] : sides.start[b + 1]]
-    return _exerted(kind, c, lines, constants, moved, across, sides.sign[b], sides.signals[step], columns)
+    return _exerted(kind, c, lines, constants, moved, across, sides.signals[step], columns)
 
 
 @njit(**FAST, forceinline=True)
 def _of_side(b, step, u, supports, across, followed, moved, sides):
     """`_of_batch` of batch b in this step."""
     first, last = U(sides.start[b]), U(sides.start[b + 1])
-    signal = sides.sign[b] * sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
+    signal = sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
     lines, constants = sides.line[first:last], sides.constant[first:last]
     c = U(sides.component[b])
     return _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides)
@@ -151,13 +151,13 @@ def note_side_motion(step, row, u, supports, across, followed, moved, body, side
         members = sides.member[first:last]
         for c in range(3):
             moves = body.free[c] != 0.0
-            record[row, o, c] = _mean(u[c], members, sides.weight[c, first:last]) if moves else 0.0
+            record[row, o, c] = _mean(u[c], members, sides.weight[first:last]) if moves else 0.0
         for c in range(2):
             record[row, o, 3 + c] = _steady(c, sides, o, body.load)
     for b in range(sides.kind.size):
         if sides.component[b] < 2:
             force = _of_side(b, step, u, supports, across, followed, moved, sides)[0]
-            record[row, sides.side[b], 3 + sides.component[b]] += sides.sign[b] * force
+            record[row, sides.side[b], 3 + sides.component[b]] += force
 
 
 @apart

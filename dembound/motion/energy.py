@@ -149,7 +149,7 @@ class Ledger(Tracker):
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
         outside, damping, friction, crack, law_switch, turning, closing = (float(work) for work in state.work[1])
         shift = system.spring_shift(u)
-        outside += system.counted_outside(u) + shift
+        outside += shift
         balance = turning + balancing - shift
         sides = np.column_stack([state.side_work[1], self._in_springs(run, u)])
         loads = 0.0

@@ -120,14 +120,13 @@ class Kind(ABC, Generic[C, S]):
     ----------
     name : in records; plural : in messages.
     schema : the tables of its case files.
-    mesh_name : name of its files for ParaView; view_script : a script that shows them.
+    view_script : a script that shows its files in ParaView.
     work_unit : unit of the `work` of a run, in the plural.
     """
 
     name: str
     plural: str
     schema: Schema
-    mesh_name: str
     view_script: str
     work_unit: str
 
@@ -240,7 +239,7 @@ class Kind(ABC, Generic[C, S]):
     def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
         """One snapshot of a record for ParaView, and the cracks until then; each with its columns by name.
 
-        Meshes by the names of their files, the first of which is `mesh_name`.
+        Meshes by the names of their files.
         """
 
     @abstractmethod

@@ -143,10 +143,6 @@ class System:
         stored = [part.stored(u) for part in self.parts]
         return sum(first for first, _ in stored), sum(second for _, second in stored)
 
-    def counted_outside(self, u: np.ndarray) -> float:
-        """Strain energy (J) of springs whose work kernels count as that of the outside, at displacements (3, slots)."""
-        return 0.0
-
     def balancing_work(self, u: np.ndarray) -> float:
         """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
         return 0.0

@@ -187,11 +187,6 @@ class Scene(ABC):
         """Values (n, …) of its nodes as those of the nodes of the whole scene; name : of the quantity in records."""
         return values
 
-    @property
-    def still_in_whole(self) -> np.ndarray:
-        """Components (N, 3) of the nodes of the whole scene in which its symmetry allows no motion and no force."""
-        return np.zeros((self.whole.count, 3), dtype=np.bool_)
-
     def observed(self, record: np.ndarray, times: np.ndarray) -> np.ndarray:
         """The record (s, m, 6 or 7) of the m monitors of the whole scene, from that of the probes (s, p, 6 or 7).
 

@@ -1,8 +1,7 @@
 """The sides of a run: their mean displacements, and the forces from outside on their nodes.
 
 Sides are those of the scene of the case. Of a smaller scene that is stepped in place of it, each node represents
-several, and the forces on these are computed from the motion of the one; where they are mirror images, forces and
-displacements have the other sign.
+several, and the forces on these are computed from the motion of the one.
 """
 
 from __future__ import annotations
@@ -26,7 +25,6 @@ class _Batch(NamedTuple):
     kind: int
     side: int
     component: int
-    sign: float
     signal: int
     line: np.ndarray
     constant: np.ndarray
@@ -80,8 +78,6 @@ class NodeSides:
         self.names = list(self._sides)
         self.has_loads = _has_loads(whole)
         self._like = scene.widened("node", np.arange(scene.count))
-        self._signs = scene.widened("displacement", np.ones((scene.count, 3)))
-        self._still = scene.still_in_whole
         self._scene, self._whole, self._nodes = scene, whole, supports.nodes
         self._members: list[tuple[np.ndarray, np.ndarray]] = []
         self._origin: tuple[np.ndarray, np.ndarray] | None = None
@@ -110,7 +106,9 @@ class NodeSides:
 
     def _mean_of(self, displacement: np.ndarray) -> np.ndarray:
         """Mean displacement (s, 3) of every side at displacements (3, n)."""
-        return np.array([(weight * displacement[:, node]).sum(axis=1) for node, weight in self._members]).reshape(-1, 3)
+        # copies, row after row in memory, have one order of terms in their sums
+        each = [(weight * displacement[:, node].copy()).sum(axis=1) for node, weight in self._members]
+        return np.array(each).reshape(-1, 3)
 
     def stored(self, u: np.ndarray, datum: np.ndarray) -> np.ndarray:
         """Energy (s,) J in the springs of every side at displacements u (3, slots), from rest at datum (3, n)."""
@@ -136,10 +134,9 @@ class NodeSides:
         )
 
     def _mean(self, edge: Edge) -> tuple[np.ndarray, np.ndarray]:
-        """Nodes (m,) whose displacements, with weights (3, m), have the mean of a side; by share of its diameters."""
+        """Nodes (m,) whose displacements, with weights (m,), have the mean of a side; by share of its diameters."""
         node, member = np.unique(self._like[edge.nodes], return_inverse=True)
-        share = (edge.diameters / edge.diameters.sum())[:, None] * self._signs[edge.nodes]
-        return node, np.stack([np.bincount(member, column, len(node)) for column in share.T])
+        return node, np.bincount(member, edge.diameters / edge.diameters.sum(), len(node))
 
     def _batches(self) -> Iterator[_Batch]:
         """All batches, side by side."""
@@ -203,16 +200,14 @@ class NodeSides:
         """
         follow = np.zeros(len(node)) if follow is None else follow
         column = np.full(len(node), -1) if column is None else column
-        stepped, sign = self._like[node], self._signs[node, component]
+        stepped = self._like[node]
         line = np.searchsorted(self._nodes, stepped).clip(max=max(0, len(self._nodes) - 1))
         is_there = self._nodes[line] == stepped if len(self._nodes) else np.zeros(len(node), dtype=np.bool_)
-        for of in (1.0, -1.0):
-            chosen = is_there & (sign == of) & ~self._still[node, component]
-            if chosen.any():
-                alike = np.stack([line[chosen], column[chosen]])
-                (lines, columns), element = np.unique(alike, axis=1, return_inverse=True)
-                sums = [np.bincount(element.ravel(), values[chosen], len(lines)) for values in (constant, follow)]
-                yield _Batch(kind, number, component, of, signal, lines, sums[0], sums[1], columns)
+        if is_there.any():
+            alike = np.stack([line[is_there], column[is_there]])
+            (lines, columns), element = np.unique(alike, axis=1, return_inverse=True)
+            sums = [np.bincount(element.ravel(), values[is_there], len(lines)) for values in (constant, follow)]
+            yield _Batch(kind, number, component, signal, lines, sums[0], sums[1], columns)
 
     def _laid_out(self, batches: list[_Batch]) -> tables.Sides:
         """All batches and members in one table."""
@@ -230,7 +225,6 @@ class NodeSides:
             side=column("side", np.int64),
             component=column("component", np.int64),
             signal=column("signal", np.int64),
-            sign=column("sign", np.float64),
             leaves=column("leaves", np.bool_),
             start=np.cumsum([0, *(len(batch.line) for batch in batches)]),
             line=elements("line", np.int64),
@@ -239,7 +233,7 @@ class NodeSides:
             column=elements("column", np.int64),
             member_start=np.cumsum([0, *(len(node) for node in nodes)]),
             member=np.concatenate([np.zeros(0, np.int64), *nodes]),
-            weight=np.concatenate([np.zeros((3, 0)), *(weight for _, weight in self._members)], axis=1),
+            weight=np.concatenate([np.zeros(0), *(weight for _, weight in self._members)]),
             bearer_start=np.zeros(len(nodes) + 1, dtype=np.int64),
         )
 
@@ -247,7 +241,7 @@ class NodeSides:
 def _with_power(number: int, signal: int) -> _Batch:
     """The power of the waves that enter through a side by forces alone, a signal."""
     nothing = np.zeros(0, dtype=np.int64)
-    return _Batch(kinds.POWER, number, 0, 1.0, signal, nothing, np.zeros(0), np.zeros(0), nothing)
+    return _Batch(kinds.POWER, number, 0, signal, nothing, np.zeros(0), np.zeros(0), nothing)
 
 
 def _has_loads(scene: Scene) -> bool:

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from dembound.casefile.output import ParaView
+
 TEXT = 4.0 / 3.0
 """Bytes in a VTU file for each byte of data: it is base64 text."""
 
@@ -19,6 +21,11 @@ class Storage(NamedTuple):
     header: float
     snapshot: float
     checkpoint: float
+
+
+def paraview_bytes(files: ParaView, vtu: float, vtkhdf: float) -> float:
+    """Of the files for ParaView that a case asks for, from what is in those of one form and of the other."""
+    return vtu * (files != "vtkhdf") + vtkhdf * (files != "vtu")
 
 
 def mesh_bytes(points: float, point_data: float, cells: float, corners: int, cell_data: float) -> float:

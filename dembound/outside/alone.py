@@ -1,4 +1,4 @@
-"""A scene of a continuum alone, without particles."""
+"""A scene of a continuum alone, without particles, and its largest stable time step."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -9,6 +9,7 @@ import numpy as np
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.casefile import Case
 from dembound.casefile.run import Run
+from dembound.motion.eigenvalue import largest_eigenvalue
 from dembound.motion.layout import Layout
 from dembound.motion.part import System
 from dembound.motion.ram import motion_bytes
@@ -125,3 +126,17 @@ class GridScene(Scene):
         if self._load.any():
             system.steady = self._load
         return system
+
+
+def step_limit(body: GridBody) -> float:
+    """Largest stable step 2/ω_max (s) of central differences of a continuum alone, with its layers' delay τ.
+
+    The layers' memories are not counted: they make no step unstable that is stable without them.
+    """
+    slot = body.blocks.slot - body.first_slot
+    layout = Layout(slot, body.blocks.end - body.first_slot)
+    moves = np.stack([~body.mesh.held] * 2 + [np.zeros_like(body.mesh.held)])
+    mass = body.mass_for_limit
+    return float(
+        2.0 / np.sqrt(largest_eigenvalue(layout, mass, mass, np.array([1.0, 1.0, 0.0]), moves, body.fill_forces))
+    )

@@ -9,9 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
-from dembound.plot.bands import draw_band
 from dembound.plot.style import line_style, measured_once, new_figure, outside_legend, stacked_height, styled, time_unit
-from dembound.results.estimates import read_bands
+from dembound.results.estimates import Band, read_bands
 from dembound.results.histories import FREE_FIELD, SCALES, UNITS, History, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 
@@ -31,6 +30,12 @@ BESIDE_TWINS: tuple[Any, ...] = ("-", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 
 BEHIND: dict[str, Any] = {"linestyle": "--", "linewidth": 3.0, "alpha": 0.4, "zorder": 1.9}
 """Line style of a twin: visible also below the line of a monitor with the same motion, as without a hole."""
+
+WITHIN: dict[str, Any] = {"alpha": 0.2, "linewidth": 0.0, "zorder": 1.5}
+"""Style of the bands of estimated errors: below all lines."""
+
+CORRECTED: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (2, 2)), "color": "#000000", "zorder": 2.5}
+"""Style of lines without the estimated error of the sides."""
 
 
 @styled
@@ -163,3 +168,19 @@ def largest_values(histories: Sequence[Histories]) -> np.ndarray:
 def direction(column: int) -> str:
     """Column of a motion in words."""
     return "of rotation" if COMPONENTS[column] == "rotation" else f"along {COMPONENTS[column]}"
+
+
+def draw_band(
+    panel: Axes, band: Band, time: np.ndarray, values: np.ndarray, column: int, units: tuple[float, float], label: str
+) -> None:
+    """Draw the band of a history (k,) of a column at times (k,) s, and the corrected line if there is one.
+
+    The band ends where the estimate does. units : seconds in a unit of time, and SI units in one of the values.
+    """
+    count = min(len(band.time), len(time))
+    at, middle, half = time[:count] / units[0], values[:count], band.half_width[:count, column] / units[1]
+    colour = panel.lines[-1].get_color()
+    panel.fill_between(at, middle - half, middle + half, color=colour, label=f"{label}, estimated error", **WITHIN)
+    if band.corrected is not None:
+        corrected = band.corrected[:count, column] / units[1]
+        panel.plot(at, corrected, label=f"{label}, without the error of its sides", **CORRECTED)

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-import shutil
-import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dembound.errors import CaseError, DemboundError
+from dembound.errors import CaseError
 from dembound.kinds import kind_of_record
 from dembound.motion.moving_picture import MovingPicture
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
@@ -41,15 +39,6 @@ WHITE = 245
 
 FASTEST_GIF = 2
 """Hundredths of a second of a GIF's frame: browsers show those of one hundredth ten times as long."""
-
-WEBP_QUALITY = 80
-"""In WebP's scale up to 100."""
-
-MP4_QUALITY = 20
-"""Constant rate factor of x264: 0 is without loss, 51 the worst."""
-
-FORMATS = (".gif", ".webp", ".mp4")
-"""Endings of the names of movies."""
 
 
 @dataclass(frozen=True)
@@ -124,18 +113,19 @@ def _below(record: Path, width: float, monitors: Sequence[str] | None) -> TimeLi
 def write_movie(
     movie: Movie, path: Path, fps: float = 10.0, progress: Callable[[int], None] = lambda frames: None
 ) -> None:
-    """Write a movie, either completely or not at all; the ending of the path decides on its format, see `FORMATS`.
+    """Write a movie, either completely or not at all: a GIF, or a new folder with a PNG file for each frame.
 
     Parameters
     ----------
+    path
+        of the GIF, with this ending, or of the folder, without an ending: ``0000.png`` and so on.
     fps
-        frames per second; a GIF has frames of whole hundredths of a second, at least two.
+        frames per second of a GIF, whose frames take whole hundredths of a second, at least two.
     progress
         called with the number of frames drawn so far.
 
-    Raises CaseError for another ending, or an MP4 without ffmpeg; DemboundError where ffmpeg fails.
+    Raises CaseError for another ending, or a folder that is there.
     """
-    ending = path.suffix.lower()
     require_movie(path)
 
     def frames() -> Iterator[np.ndarray]:
@@ -143,26 +133,25 @@ def write_movie(
             yield movie.frame(number)
             progress(number + 1)
 
-    with replacing(path) as part:
-        if ending == ".mp4":
-            _write_video(frames(), part, fps)
-        elif ending == ".webp":
-            looks = {"quality": WEBP_QUALITY, "method": 4, "minimize_size": True}
-            _write_pictures(map(_picture, frames()), part, "webp", fps, **looks)
-        else:
-            colours = _common_colours(movie)
-            _write_pictures((_reduced(frame, colours) for frame in frames()), part, "gif", fps, optimize=False)
+    if path.suffix:
+        colours = _common_colours(movie)
+        with replacing(path) as part:
+            _write_gif((_reduced(frame, colours) for frame in frames()), part, fps)
+        return
+    with TemporaryDirectory(prefix=f"{path.name}.part", dir=path.parent) as aside:
+        folder = Path(aside) / path.name
+        folder.mkdir()
+        for number, frame in enumerate(frames()):
+            _picture(frame).save(folder / f"{number:04d}.png")
+        folder.rename(path)
 
 
 def require_movie(path: Path) -> None:
     """Raise CaseError if no movie of such a name can be written here, FileNotFoundError if there is no such folder."""
-    ending = path.suffix.lower()
-    if ending not in FORMATS:
-        raise CaseError([f"--output: is {path}, must end in one of {', '.join(FORMATS)}"])
-    if ending == ".mp4" and shutil.which("ffmpeg") is None:
-        raise CaseError(
-            [f"--output: is {path}, .mp4 needs the program ffmpeg, which is not found; .gif and .webp do not"]
-        )
+    if path.suffix.lower() not in (".gif", ""):
+        raise CaseError([f"--output: is {path}, must end in .gif, or have no ending: a folder for frames as PNG files"])
+    if not path.suffix and path.exists():
+        raise CaseError([f"--output: {path} is there already, frames are written to a new folder"])
     require_folder(path)
 
 
@@ -205,30 +194,9 @@ def _reduced(frame: np.ndarray, colours: Image) -> Image:
     return _picture(frame).quantize(palette=colours, dither=Dither.NONE)
 
 
-def _write_pictures(pictures: Iterator[Image], path: Path, form: str, fps: float, **looks: object) -> None:
+def _write_gif(pictures: Iterator[Image], path: Path, fps: float) -> None:
     """Write an animated picture that repeats."""
     first = next(pictures)
-    hundredths = max(FASTEST_GIF, math.floor(100.0 / fps + 0.5))
-    duration = 10 * hundredths if form == "gif" else round(1000.0 / fps)
-    first.save(path, form, save_all=True, append_images=chain(pictures), duration=duration, loop=0, **looks)
-
-
-def _write_video(frames: Iterator[np.ndarray], path: Path, fps: float) -> None:
-    """Write an MP4 with ffmpeg."""
-    first = next(frames)
-    rows, columns, _ = first.shape
-    given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{columns}x{rows}", "-r", f"{fps:g}", "-i", "-"]
-    made = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", str(MP4_QUALITY), "-movflags", "+faststart", "-f", "mp4"]
-    command = ["ffmpeg", "-y", "-loglevel", "error", *given, "-an", *made, str(path)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        assert process.stdin is not None
-        assert process.stderr is not None
-        try:
-            for frame in chain([first], frames):
-                process.stdin.write(frame.tobytes())
-            process.stdin.close()
-        except BrokenPipeError:
-            pass  # its message says why
-        message = process.stderr.read().decode(errors="replace").strip()
-    if process.returncode != 0:
-        raise DemboundError(f"ffmpeg: {(message.splitlines() or ['failed'])[-1]}")
+    duration = 10 * max(FASTEST_GIF, math.floor(100.0 / fps + 0.5))
+    looks = {"save_all": True, "append_images": pictures, "duration": duration, "loop": 0, "optimize": False}
+    first.save(path, "gif", **looks)

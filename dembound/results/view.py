@@ -64,7 +64,7 @@ print(window.GetClassName())
 
 NO_DISPLAY = (
     "view: there is no display to open a window on; set DISPLAY to one (over ssh: ssh -X), draw a picture with "
-    "--output picture.png, or open paraview/particles.pvd of the results in ParaView"
+    "--output picture.png, or open the files in paraview/ of the results in ParaView"
 )
 
 WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # VTK's windows without a display

@@ -1,4 +1,4 @@
-"""Snapshots for ParaView: one VTU file each, a PVD file listing their times, all in one VTKHDF file, and a script.
+"""Snapshots for ParaView: one VTU file each and a PVD file listing their times, or all in one VTKHDF file; a script.
 
 The contents of the files are described in `disks.mesh`, `disks.contact_mesh` and `bar.mesh`, the format of the last one
 in `results.vtkhdf`. Positions are in double precision, fields in single precision (`shown`), as the record has all
@@ -17,13 +17,14 @@ time:
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
 
+from dembound.casefile.output import ParaView
 from dembound.interrupts import look
 from dembound.motion.kind import Kind
 from dembound.motion.state import Arrays
@@ -35,19 +36,21 @@ if TYPE_CHECKING:
     import meshio
 
 
-def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
-    """Write every snapshot of a run for ParaView; returns the PVD file, None for a run without snapshots.
+def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaView = "vtu") -> None:
+    """Write every snapshot of a run for ParaView, nothing for a run without snapshots.
 
     Parameters
     ----------
     run
         the ``run.h5`` of a run.
     folder
-        created if it does not exist; receives ``particles_0000.vtu`` …, all with the digits of the last one,
-        ``particles.pvd``, ``particles.vtkhdf``, ``view.py`` and, where bonds broke, ``cracks.vtu``; the same of
+        created if it does not exist; receives ``particles_0000.vtu`` …, all with the digits of the last one, and
+        ``particles.pvd``, or ``particles.vtkhdf``; ``view.py`` and, where bonds broke, ``cracks.vtu``; the same of
         ``contacts`` if the record has them; of a bar ``bar_0000.vtu`` … in place of ``particles``.
     kind
         the kind of body that the run is of.
+    files
+        which of them are written.
 
     PVD files are written last, so all files they list exist.
 
@@ -56,7 +59,7 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
     with open_record(run) as file:
         snapshots = {_number_of(snapshot): snapshot for snapshot in snapshots_of(file)}
         if not snapshots:
-            return None
+            return
         digits = max(map(len, snapshots))
         folder.mkdir(parents=True, exist_ok=True)
         particles = {name: dataset[:] for name, dataset in file["particles"].items()}
@@ -70,12 +73,11 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
                 fields = {name: dataset[:] for name, dataset in datasets_in(snapshot).items()}
                 for name, mesh in kind.meshes(particles, fields, until(cracks, time)).items():
                     if name not in series:
-                        series[name] = stack.enter_context(_series(folder, name))
+                        series[name] = stack.enter_context(_series(folder, name, files))
                     series[name](number.zfill(digits), time, mesh)
         if len(cracks["time"]) > 0:
             _write(folder / "cracks.vtu", _cracks(cracks))
     (folder / "view.py").write_text(kind.view_script, encoding="utf-8")
-    return folder / f"{kind.mesh_name}.pvd"
 
 
 def _number_of(snapshot: h5py.Group) -> str:
@@ -84,21 +86,24 @@ def _number_of(snapshot: h5py.Group) -> str:
 
 
 @contextmanager
-def _series(folder: Path, name: str) -> Iterator[Callable[[str, float, meshio.Mesh], None]]:
-    """A function that writes one mesh of a series, given its number and time (s), as VTU and to the VTKHDF file.
+def _series(folder: Path, name: str, files: ParaView) -> Iterator[Callable[[str, float, meshio.Mesh], None]]:
+    """A function that writes one mesh of a series, given its number and time (s), as VTU or to the VTKHDF file.
 
     The PVD file is written at the end.
     """
     times: dict[str, float] = {}
-    with temporal_file(folder / f"{name}.vtkhdf") as file:
+    with temporal_file(folder / f"{name}.vtkhdf") if files != "vtu" else nullcontext() as all_in_one:
 
         def append(number: str, time: float, mesh: meshio.Mesh) -> None:
-            _write(folder / f"{name}_{number}.vtu", mesh)
-            file.append(time, mesh)
-            times[f"{name}_{number}.vtu"] = time
+            if files != "vtkhdf":
+                _write(folder / f"{name}_{number}.vtu", mesh)
+                times[f"{name}_{number}.vtu"] = time
+            if all_in_one is not None:
+                all_in_one.append(time, mesh)
 
         yield append
-    _write_index(folder / f"{name}.pvd", times)
+    if files != "vtkhdf":
+        _write_index(folder / f"{name}.pvd", times)
 
 
 def _cracks(cracks: Arrays) -> meshio.Mesh:

@@ -25,7 +25,7 @@ from dembound.results.reader import open_record, trust, understood
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
-from dembound.results.vtk import write_vtu
+from dembound.results.vtk import write_paraview
 from dembound.results.warnings import never_silent
 from dembound.running.disk_space import bytes_left, disk_facts, disk_warnings
 from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
@@ -243,7 +243,7 @@ class _Job:
         """Write the files that are made from the record."""
         kind = kind_of(self.case)
         with self.clock.of("export"):
-            write_vtu(partial / "run.h5", partial / "paraview", kind)
+            write_paraview(partial / "run.h5", partial / "paraview", kind, self.case.output.paraview)
         with self.clock.of("pictures"):
             if self.case.output.pictures:
                 _draw(self.case, kind, partial)

@@ -26,7 +26,7 @@ from dembound.results.compare import compare
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.results import Results
-from dembound.results.vtk import write_vtu
+from dembound.results.vtk import write_paraview
 from dembound.running import plan
 
 GAUGED = {"packing.size": [4.0, 1.0], "monitor": [{"name": "gauge", "position": [2.4, 0.5]}], "run.duration": 0.005}
@@ -67,7 +67,7 @@ def drawn(path: Path, sound: Path) -> None:
     plot_histories([path])
     plot_energy(path)
     compare(sound, [path], "velocity")
-    write_vtu(path, path.parent / "paraview", kind)
+    write_paraview(path, path.parent / "paraview", kind)
     list(kind.pictures(path))
     kind.moving_picture(path, None, 1.0)
     if kind.name == "bar":

@@ -7,11 +7,10 @@ import pytest
 
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import NONE, Around, Mesh
-from dembound.outside.stability import step_limit
 
 STEPS = 2000
 

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.layer import Absorption, Profile
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.outside.stability import step_limit
 
 P_SPEED, S_SPEED = 1000.0, 1000.0 / np.sqrt(3.0)
 ROCK = Medium.isotropic(2500.0, P_SPEED, S_SPEED)

@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.outside.stability import step_limit
 
 STEPS = 2000
 

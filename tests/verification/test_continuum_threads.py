@@ -13,11 +13,10 @@ from dembound.disks.stability import choose_step
 from dembound.motion import threads
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.outside.stability import step_limit
 
 
 def run_with(number: int) -> dict[str, np.ndarray]:

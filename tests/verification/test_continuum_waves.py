@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.gll import Rule
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Mesh
-from dembound.outside.stability import step_limit
 
 MEDIA = {
     "isotropic": Medium.isotropic(2500.0, 1000.0, 1000.0 / np.sqrt(3.0)),

@@ -7,12 +7,11 @@ from decay import step_beside
 
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Every, Run
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.outside.stability import step_limit
 
 
 @pytest.mark.parametrize(("nodes", "part"), [(17.0, 2.2e-4), (8.0, 2.7e-3), (6.0, 1.6e-2), (4.0, 0.47)])

@@ -15,18 +15,17 @@ from dembound.casefile.cross_checks import (
     unknown_waves,
 )
 from dembound.casefile.disks.floors import lowered_in, lowered_problems
-from dembound.casefile.disks.ground import Ground
-from dembound.casefile.disks.ground_problems import ground_problems
+from dembound.casefile.disks.ground import Box, Ground, ground_problems, is_in, reach
 from dembound.casefile.disks.hole_problems import hole_problems
-from dembound.casefile.disks.incident_problems import incident_problems
+from dembound.casefile.disks.incident import incident_problems
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.load_factor_problems import load_factor_problems
-from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.material import STRENGTH_KEYS, Material, with_history
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
-from dembound.casefile.disks.reach import Box, is_in, reach
 from dembound.casefile.disks.static_problems import static_problems
 from dembound.casefile.messages import corners, numbered, show
+from dembound.casefile.output import Output
+from dembound.casefile.types import LAWS
 from dembound.packings import Packing
 
 
@@ -63,7 +62,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     if tables["output"] and tables["material"]:
-        yield from load_factor_problems(tables["output"], tables["material"], tables["load"], "static" in given)
+        yield from _no_load_factor(tables["output"], tables["material"], tables["load"], "static" in given)
     if tables["static"]:
         settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
         yield from static_problems(*settling, has_column=not lowered_in(tables))
@@ -93,6 +92,26 @@ def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
     """A given wave speed for a packing in which no P wave can run."""
     if material.match == "assembly" and {"x", "y"} <= set(motion.held):
         yield 'material.match: is "assembly", but motion.held holds x and y, so the packing has no P-wave speed'
+
+
+def _no_load_factor(
+    output: Output, material: Material, loads: Sequence[Load | None], has_static: bool
+) -> Iterator[str]:
+    """A load factor that cannot be found, and strengths that nothing reads; has_static : whether there is a stage."""
+    elastic = not LAWS[material.law].has_history
+    if elastic and not output.load_factor:
+        for key in (*STRENGTH_KEYS, "pb_fa"):
+            if key in material.model_fields_set:
+                yield f"material.{key}: is only allowed with law = {with_history()} or output.load_factor"
+    if not output.load_factor:
+        return
+    if not elastic:
+        yield f'output.load_factor: is of linear laws, material.law is "{material.law}"; give "elastic"'
+    if material.damp > 0.0:
+        yield f"output.load_factor: needs material.damp = 0, as local damping is not linear; it is {material.damp:g}"
+    for place, load in numbered("load", loads):
+        if load.wave is None and not has_static:
+            yield f"output.load_factor: needs a [static] stage, in which the body comes to rest under {place}"
 
 
 def _places_outside(

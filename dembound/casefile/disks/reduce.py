@@ -7,7 +7,6 @@ class Reduce(Table):
     """The parts of a scene that are not stepped because their motion follows from that of others."""
 
     rows: bool = quantity(True, unit="1", help="whether rows of disks that move identically are stepped as one")
-    symmetry: bool = quantity(False, unit="1", help="whether one half of a symmetric scene is stepped for both")
     settled: bool = quantity(
         False, unit="1", help="whether the elastic law serves again after a static stage if nothing is open or slides"
     )

@@ -1,1 +1,1 @@
-"""Smaller scenes stepped in place of a case: one row of identical ones, halves of a symmetric one."""
+"""A smaller scene stepped in place of a case: one row of identical ones."""

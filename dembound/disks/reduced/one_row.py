@@ -1,43 +1,89 @@
 """One of the rows of a scene, stepped in place of all of them: each row is one brick wide and moves like the others."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from dembound.boundaries.half_mass import mass_factor
+from dembound.boundaries.support import Supports
 from dembound.disks.beyond.edges import find_edges
 from dembound.disks.body import parts_of
 from dembound.disks.contacts.layout import lay_out
-from dembound.disks.reduced.smaller import SmallerScene, supports_at
+from dembound.disks.ram import run_bytes
 from dembound.disks.scene import DiskScene, with_half_contacts
 from dembound.packings.tiling import Assembly, tile
 
 
 @dataclass(frozen=True, kw_only=True)
-class OneRow(SmallerScene):
+class OneRow(DiskScene):
     """A row of m of the n disks of a scene, which is periodic across the row.
 
     Attributes
     ----------
+    of : the scene of the case.
     axis : the axis across the row.
+    like : (n,) the disk that moves like each disk of the scene of the case.
+    load : (3, m) N and N·m, steady forces and moments.
     """
 
+    of: DiskScene
     axis: int
+    like: np.ndarray
+    load: np.ndarray
+
+    @property
+    def probes(self) -> np.ndarray:
+        """(p,) disks whose motion is recorded, in place of those of the scene of the case."""
+        return self.like[self.of.probes]
+
+    def observed(self, record: np.ndarray, times: np.ndarray) -> np.ndarray:
+        """The motion of the monitors."""
+        return self.of.observed(record, times)
+
+    @property
+    def whole(self) -> DiskScene:
+        """The scene of the case."""
+        return self.of
 
     @property
     def uniform_axes(self) -> tuple[int, ...]:
-        """Axes along which all of the scene of the case moves alike."""
-        return (*self.of.uniform_axes, self.axis)
+        """The axis along which all of the scene of the case moves alike."""
+        return (self.axis,)
 
     @property
-    def saved(self) -> str:
+    def reduced(self) -> tuple[str, ...]:
         """Number of rows, and of disks that need not be stepped."""
         rows = self.of.assembly.copies[self.axis]
-        return f"rows: {rows:,} identical rows are stepped as one, {self.count:,} of {self.of.count:,} disks"
+        return (f"rows: {rows:,} identical rows are stepped as one, {self.count:,} of {self.of.count:,} disks",)
 
-    def differs(self, what: str) -> str:
-        """In words, that something of the rows, in the plural, is not the same in all of them."""
-        return f"rows along {'yx'[self.axis]} differ in their {what}"
+    @cached_property
+    def weight(self) -> float:  # type: ignore[override]  # 1 for other scenes
+        """Mass of the scene of the case over its own."""
+        return float(self.of.mass.sum() / self.mass.sum())
+
+    def widened(self, name: str, values: np.ndarray) -> np.ndarray:
+        """Values (m, …) of its disks as those of all disks of the case; name : of the quantity."""
+        return values[self.like]
+
+    def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:
+        """Of a side of the whole scene, see `Scene.side_peaks`."""
+        return self.of.side_peaks(side, peaks[np.searchsorted(self.tracked, self.like[self.of.tracked])])
+
+    @cached_property
+    def steady_load(self) -> np.ndarray:
+        """(3, m) forces and moments (N, N·m) of the loads without a wave."""
+        return self.load
+
+    @cached_property
+    def tracked(self) -> np.ndarray:
+        """(q,) those that move like any disk of a side of the whole scene."""
+        return np.unique(self.like[self.of.tracked])
+
+    @property
+    def largest_memory(self) -> float:
+        """Largest memory (bytes) of a run of it, in which the scene of the case is kept."""
+        return run_bytes(self.case, [self.of.sizes, self.sizes])
 
 
 def one_row(scene: DiskScene, axis: int) -> OneRow | None:
@@ -68,15 +114,13 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
         assembly=row,
         rows=contacts,
         edges=edges,
-        supports=supports_at(place, scene.supports, share),
+        supports=_supports_at(place, scene.supports, share),
         monitors={name: int(like[node]) for name, node in scene.monitors.items()},
         slots=slots,
         of=scene,
         axis=axis,
         like=like,
-        place=place,
         load=share * scene.steady_load[:, place],
-        still=np.zeros((3, len(place)), dtype=np.bool_),
     )
 
 
@@ -87,3 +131,31 @@ def _counterparts(assembly: Assembly, row: Assembly, axis: int) -> np.ndarray | 
     order = np.argsort(there)
     found = order[np.searchsorted(there, wanted, sorter=order).clip(max=len(order) - 1)]
     return found if (there[found] == wanted).all() else None
+
+
+def _supports_at(place: np.ndarray, table: Supports, share: np.ndarray) -> Supports:
+    """The support table of some nodes, place (m,), numbered in this order.
+
+    share : (m,) factors of the forces on them, those of their masses.
+    """
+    order = np.argsort(place)
+    near = order[np.searchsorted(place, table.node, sorter=order).clip(max=len(order) - 1)]
+    kept = np.flatnonzero(place[near] == table.node)
+    kept = kept[np.lexsort((table.component[kept], near[kept]))]
+    node, prescribed = near[kept], table.prescribed[kept]
+    line = np.full(len(table), -1)
+    line[kept] = np.arange(len(kept))
+    drives = np.flatnonzero(line[table.drive_row] >= 0)
+    drive_row = line[table.drive_row[drives]]
+    return Supports(
+        node=node,
+        component=table.component[kept],
+        damping=share[node] * table.damping[kept],
+        follow=share[node] * table.follow[kept],
+        stiffness=share[node] * table.stiffness[kept],
+        prescribed=prescribed,
+        drive_row=drive_row,
+        drive=np.where(prescribed, 1.0, share[node])[drive_row] * table.drive[drives],
+        drive_signal=table.drive_signal[drives],
+        signals=table.signals,
+    )

@@ -10,9 +10,9 @@ side. They have these cell data:
 | ``bonded`` | 1 | (b,) | 1 for an intact bond, else 0 |
 | ``particles`` | 1 | (b, 2) | ids of the two disks |
 
-To see force chains in ParaView, open ``contacts.pvd`` or ``contacts.vtkhdf``, press Apply, and choose the filters *Cell
-Data to Point Data*, *Calculator* with ``abs(normalForce)``, and *Tube* with its result as scalars, *Vary Radius* by
-scalar and a radius factor of 10 or so.
+To see force chains in ParaView, open ``contacts.pvd``, press Apply, and choose the filters *Cell Data to Point Data*,
+*Calculator* with ``abs(normalForce)``, and *Tube* with its result as scalars, *Vary Radius* by scalar and a radius
+factor of 10 or so.
 """
 
 from __future__ import annotations

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     import meshio
 
 VIEW_SCRIPT = '''\
-"""Shows the disks of particles.pvd in ParaView, and in the same colours the continuum of continuum.pvd if there is one.
+"""Shows the disks in ParaView, and in the same colours the continuum beyond them if there is one.
 
 paraview --script=view.py, or Run Script once it is open.
 """
@@ -51,7 +51,8 @@ from pathlib import Path
 from paraview.simple import *
 
 folder = Path(globals().get("__file__", "view.py")).resolve().parent  # Run Script has no __file__
-disks = GetActiveSource() or PVDReader(FileName=str(folder / "particles.pvd"))
+files = {path.stem: path for ending in ("vtkhdf", "pvd") for path in folder.glob(f"*.{ending}")}
+disks = GetActiveSource() or OpenDataFile(str(files["particles"]))
 view = GetActiveViewOrCreate("RenderView")
 view.InteractionMode = "2D"
 GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
@@ -65,8 +66,8 @@ shown.UseScaleFunction = 0
 shown.GaussianRadius = 1.0
 all_shown = [shown]
 
-if (folder / "continuum.pvd").exists():
-    cells = Show(PVDReader(FileName=str(folder / "continuum.pvd")), view)
+if "continuum" in files:
+    cells = Show(OpenDataFile(str(files["continuum"])), view)
     cells.SetRepresentationType("Surface")
     all_shown.append(cells)
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from dembound.casefile.output import ParaView
 from dembound.disks.ram import SceneSizes, checkpoint_bytes
 from dembound.disks.scene import DiskScene
-from dembound.motion.storage import POINT, Storage, mesh_bytes
+from dembound.motion.storage import POINT, Storage, mesh_bytes, paraview_bytes
 from dembound.outside.ram import memories_bytes
 
 CHANGING, CONSTANT = 44.0, 21.0
 """Bytes of the motion of a disk for ParaView, and of those fields that remain; the numbers of broken bonds are among
 the latter, as most remain."""
 
-NODE_HEADER, NODE_CHANGING = 92.0, 52.0
-"""Bytes of a node of a continuum written once, positions and cells, and of its motion and stress for ParaView."""
-
-NODE_SNAPSHOT = 72.0 + mesh_bytes(1.0, NODE_CHANGING + 1.0, 1.0, 4, 0.0) + POINT + NODE_CHANGING
-"""Bytes of a node of a continuum in a snapshot, with a cell for each."""
+NODE_HEADER, NODE_CELL, NODE_CHANGING = 62.0, 42.0, 52.0
+"""Bytes of a node of a continuum in the record, positions and cells, of a cell in the VTKHDF file, and of its motion
+and stress for ParaView; there is a cell for each node."""
 
 
 def storage_of(scene: DiskScene) -> Storage:
@@ -24,13 +23,16 @@ def storage_of(scene: DiskScene) -> Storage:
     own = 4.0 * scene.has_history + 24.0 * output.stress
     record = 48.0 + 8.0 * scene.has_history + 24.0 * output.stress
     vtu = mesh_bytes(1.0, CHANGING + CONSTANT + own + 4.0 * output.peaks, 1.0, 1, 0.0)
-    snapshot = sizes.disks * (record + vtu + POINT + CHANGING + own)
+    files = output.paraview
+    snapshot = sizes.disks * (record + paraview_bytes(files, vtu, POINT + CHANGING + own))
     if output.contacts:
-        snapshot += sizes.contacts * _contact_bytes()
-    header = 90.0 * sizes.disks  # positions, radii, twins, bonds; in the VTKHDF file what remains
+        snapshot += sizes.contacts * _contact_bytes(files)
+    # positions, radii, twins, bonds; in the VTKHDF file what remains
+    header = sizes.disks * (37.0 + paraview_bytes(files, 0.0, 53.0))
     if sizes.grid is not None:
-        snapshot += sizes.grid.nodes * NODE_SNAPSHOT
-        header += sizes.grid.nodes * NODE_HEADER
+        shown = mesh_bytes(1.0, NODE_CHANGING + 1.0, 1.0, 4, 0.0)
+        snapshot += sizes.grid.nodes * (72.0 + paraview_bytes(files, shown, POINT + NODE_CHANGING))
+        header += sizes.grid.nodes * (NODE_HEADER + paraview_bytes(files, 0.0, NODE_CELL))
     return Storage(header, snapshot, _checkpoint_bytes(scene, sizes))
 
 
@@ -45,6 +47,6 @@ def _checkpoint_bytes(scene: DiskScene, sizes: SceneSizes) -> float:
     return checkpoint_bytes(sizes, history=scene.has_history) + own * sizes.disks + beyond
 
 
-def _contact_bytes() -> float:
+def _contact_bytes(files: ParaView) -> float:
     """Bytes of a contact in a snapshot: 41 in the record; a line between two points of its own with two forces."""
-    return 41.0 + mesh_bytes(2.0, 0.0, 1.0, 2, 17.0) + 2.0 * POINT + 8.0
+    return 41.0 + paraview_bytes(files, mesh_bytes(2.0, 0.0, 1.0, 2, 17.0), 2.0 * POINT + 8.0)

@@ -96,9 +96,8 @@ def candidates(
     """
     scene = plain.scene
     assert isinstance(scene, DiskScene)
-    may_reduce = not any(key.split(".")[0] == "reduce" for key in kept)
     for arrangement in arrangements(scene.case, scene, bound):
-        planned = _planned(scene.case, arrangement.changes, may_reduce)
+        planned = _planned(scene.case, arrangement.changes)
         if planned is None:
             continue
         found = Candidate(_case_of(planned), planned, arrangement, factor, 0.0, cost_of(planned))
@@ -137,14 +136,10 @@ def _same_forces(given: DiskScene, scene: DiskScene) -> bool:
     return True
 
 
-def _planned(case: DiskCase, changes: Any, may_reduce: bool) -> Plan | None:
-    """The changed case, planned, by half of it where it is symmetric; None if it cannot run."""
+def _planned(case: DiskCase, changes: Any) -> Plan | None:
+    """The changed case, planned; None if it cannot run."""
     try:
-        found = with_changes(case, changes) if changes else case
-        if not may_reduce or case.reduce.symmetry:
-            return plan(found)
-        halved = plan(with_changes(found, {"reduce.symmetry": True}))
-        return plan(found) if any("reduce.symmetry" in line for line in halved.refused) else halved
+        return plan(with_changes(case, changes) if changes else case)
     except DemboundError:
         return None
 

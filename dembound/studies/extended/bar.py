@@ -5,10 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from dembound.bar.paths import front_of_bar, sources_of_bar
 from dembound.bar.scene import build_bar
-from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
-from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import MOST_CELLS, Bar
 from dembound.motion.paths import plane_needed

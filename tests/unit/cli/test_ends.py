@@ -47,15 +47,15 @@ def test_a_hangup_that_is_to_be_ignored_is_ignored() -> None:
 
 def test_a_full_disk_says_how_to_continue(dembound, written, tmp_path, monkeypatch) -> None:
     def full(*_: object) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device", "results/bar.partial/paraview/particles.vtkhdf")
+        raise OSError(errno.ENOSPC, "No space left on device", "results/bar.partial/paraview/particles_0000.vtu")
 
-    monkeypatch.setattr(job, "write_vtu", full)
+    monkeypatch.setattr(job, "write_paraview", full)
     answer = dembound("run", written())
     lines = [line for line in answer.err.splitlines() if "warning" not in line]
 
     assert answer.code == 5
     assert lines == [
-        "results/bar.partial/paraview/particles.vtkhdf: No space left on device",
+        "results/bar.partial/paraview/particles_0000.vtu: No space left on device",
         "bar: histories so far are in results/bar.partial",
         "bar: to continue: dembound resume results/bar.partial",
     ]

@@ -122,11 +122,3 @@ def test_a_layer_sends_nothing_back(spalling) -> None:
 
     assert "by 0.00094 s; run.duration is 0.01 s" in found["shorter run"]  # as before dashpots
     assert not {"echoes", "smaller scene"} & set(found)
-
-
-def test_one_half_of_a_scene_needs_what_the_whole_needs(bar) -> None:
-    middle = {"load": [{"name": "blow", "force": [0.0, 1e5], "region": [29.0, 29.0, 31.0, 31.0], "wave": "pulse"}]}
-    found = [lines(bar({**SQUARE, **middle, "reduce.symmetry": symmetric})) for symmetric in (True, False)]
-
-    assert found[0] == found[1]
-    assert any("left" in line for line in found[0].values())

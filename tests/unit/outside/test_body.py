@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from dembound.kernels.lanes import LANES
+from dembound.outside.alone import step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.outside.stability import step_limit
 
 ROCK = Medium(2500.0, c11=9e9, c22=7e9, c12=2e9, c66=3e9, c16=0.4e9, c26=-0.3e9)
 

@@ -11,11 +11,9 @@ from dembound.motion.energy import Ledger
 from dembound.motion.layout import Layout
 from dembound.motion.part import System
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene
+from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
-from dembound.outside.fields import stress
-from dembound.outside.part import GridPart
-from dembound.outside.stability import step_limit
+from dembound.outside.part import GridPart, stress
 
 
 def test_it_gives_its_law_and_its_nodes(grid) -> None:

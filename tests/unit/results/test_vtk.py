@@ -9,27 +9,29 @@ import pytest
 import pyvista
 
 from dembound.disks.kind import Disks
-from dembound.results.vtk import write_vtu
+from dembound.results.vtk import write_paraview
 
 
 @pytest.fixture(scope="module")
 def exported(small_run, tmp_path_factory):
-    return write_vtu(small_run, tmp_path_factory.mktemp("vtu") / "paraview", Disks())
+    folder = tmp_path_factory.mktemp("vtu") / "paraview"
+    write_paraview(small_run, folder, Disks())
+    return folder
 
 
 def test_the_index_lists_files_and_times(small_run, exported):
-    entries = ElementTree.parse(exported).getroot().findall("Collection/DataSet")
+    entries = ElementTree.parse(exported / "particles.pvd").getroot().findall("Collection/DataSet")
     with h5py.File(small_run) as file:
         times = [float(snapshot.attrs["time"]) for snapshot in file["snapshots"].values()]
     assert [entry.get("file") for entry in entries] == ["particles_0000.vtu", "particles_0001.vtu"]
     assert [float(entry.get("timestep")) for entry in entries] == times
-    assert pyvista.get_reader(exported).time_values == times
+    assert pyvista.get_reader(exported / "particles.pvd").time_values == times
 
 
 def test_more_than_ten_thousand_files_are_in_the_order_of_time_by_name_too(small_run, long_run, tmp_path):
-    write_vtu(small_run, tmp_path / "few", Disks())
-    index = write_vtu(long_run, tmp_path / "many", Disks())
-    entries = ElementTree.parse(index).getroot().findall("Collection/DataSet")
+    write_paraview(small_run, tmp_path / "few", Disks())
+    write_paraview(long_run, tmp_path / "many", Disks(), "both")
+    entries = ElementTree.parse(tmp_path / "many" / "particles.pvd").getroot().findall("Collection/DataSet")
     assert [entry.get("file") for entry in entries] == ["particles_09999.vtu", "particles_10000.vtu"]
     times = [float(entry.get("timestep")) for entry in entries]
     with h5py.File(tmp_path / "many" / "particles.vtkhdf") as file:
@@ -39,13 +41,13 @@ def test_more_than_ten_thousand_files_are_in_the_order_of_time_by_name_too(small
 
 
 def test_the_folder_holds_the_view_script_and_no_leftovers(exported):
-    names = sorted(path.name for path in exported.parent.iterdir())
-    assert names == ["particles.pvd", "particles.vtkhdf", "particles_0000.vtu", "particles_0001.vtu", "view.py"]
-    ast.parse((exported.parent / "view.py").read_text())
+    names = sorted(path.name for path in exported.iterdir())
+    assert names == ["particles.pvd", "particles_0000.vtu", "particles_0001.vtu", "view.py"]
+    ast.parse((exported / "view.py").read_text())
 
 
 def test_each_crack_is_a_vertex_where_it_was(cracked_run, tmp_path):
-    write_vtu(cracked_run, tmp_path, Disks())
+    write_paraview(cracked_run, tmp_path, Disks())
     mesh = pyvista.read(tmp_path / "cracks.vtu")
     with h5py.File(cracked_run) as file:
         cracks = {name: values[:] for name, values in file["cracks"].items()}
@@ -59,5 +61,5 @@ def test_each_crack_is_a_vertex_where_it_was(cracked_run, tmp_path):
 
 
 def test_a_run_without_snapshots_writes_nothing(other_run, tmp_path):
-    assert write_vtu(other_run, tmp_path / "paraview", Disks()) is None
+    write_paraview(other_run, tmp_path / "paraview", Disks())
     assert list(tmp_path.iterdir()) == []

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from dembound.bar.kind import Bars
 from dembound.disks.kind import Disks
 from dembound.results import committed
-from dembound.results.vtk import write_vtu
+from dembound.results.vtk import write_paraview
 from dembound.results.vtkhdf import temporal_file
 
 
@@ -56,7 +56,7 @@ def assert_same(mesh, expected):
 )
 def test_all_times_and_arrays_are_those_of_the_single_files(request, tmp_path, run, kind, name):
     record = request.getfixturevalue(run)
-    write_vtu(record, tmp_path, kind)
+    write_paraview(record, tmp_path, kind, "both")
     index = pyvista.get_reader(tmp_path / f"{name}.pvd")
     times, meshes = steps_of(tmp_path / f"{name}.vtkhdf")
     with h5py.File(record) as file:
@@ -68,7 +68,8 @@ def test_all_times_and_arrays_are_those_of_the_single_files(request, tmp_path, r
 
 
 def test_what_stays_as_it_is_is_written_once(spalled_run, tmp_path):
-    write_vtu(spalled_run, tmp_path, Bars())
+    write_paraview(spalled_run, tmp_path, Bars(), "vtkhdf")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bar.vtkhdf", "cracks.vtu", "view.py"]
     with h5py.File(tmp_path / "bar.vtkhdf") as file:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
         assert steps.attrs["NSteps"] == 12

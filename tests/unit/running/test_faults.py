@@ -84,7 +84,7 @@ def test_a_folder_that_is_removed_ends_the_run_with_its_name(case, tmp_path, mon
     def removed(*_: object) -> None:
         shutil.rmtree(tmp_path / "bar.partial")
 
-    monkeypatch.setattr(job, "write_vtu", removed)
+    monkeypatch.setattr(job, "write_paraview", removed)
     with pytest.raises(FileNotFoundError) as failure:
         run_case(case, tmp_path)
     assert "bar.partial" in str(failure.value.filename)
@@ -96,7 +96,7 @@ def test_a_run_that_ends_in_its_last_files_is_resumed(case, tmp_path, monkeypatc
     def ended(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(job, "write_vtu", ended)
+    monkeypatch.setattr(job, "write_paraview", ended)
     with pytest.raises(KeyboardInterrupt):
         run_case(case, tmp_path)
     monkeypatch.undo()

@@ -68,7 +68,7 @@ def test_a_run_leaves_one_whole_folder(bar, tmp_path) -> None:
 def test_every_file_of_a_run_is_one_of_those_that_a_rerun_replaces(bar, spalling, tmp_path) -> None:
     pulled = {"boundary.left": GRIP, "wave.pulse.amplitude": -5.0}
     brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, **pulled}
-    output = {"pictures": True, "snapshots": 2, "stress": True, "contacts": True, "peaks": True}
+    output = {"pictures": True, "snapshots": 2, "stress": True, "contacts": True, "peaks": True, "paraview": "both"}
     every = {f"output.{key}": value for key, value in output.items()}
     cases = bar({**brittle, **every}, "brittle"), bar({**HANGING, **every}, "hanging"), spalling({**every})
     found = set()

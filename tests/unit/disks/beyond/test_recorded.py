@@ -11,7 +11,7 @@ from dembound.disks.scene import build
 from dembound.motion.simulation import Simulation
 from dembound.plot.field import read_field
 from dembound.results.recorder import Recorder
-from dembound.results.vtk import write_vtu
+from dembound.results.vtk import write_paraview
 
 WAVES = {
     "boundary.bottom": {"type": "outside", "wave_s": "up"},
@@ -53,7 +53,7 @@ def test_beside_a_column_the_total_motion_is_recorded_too(waved, name) -> None:
 
 def test_paraview_is_given_both(waved) -> None:
     _, _, folder = waved
-    write_vtu(folder / "run.h5", folder / "paraview", Disks())
+    write_paraview(folder / "run.h5", folder / "paraview", Disks())
     data = meshio.read(folder / "paraview" / "continuum_0000.vtu").point_data
     with h5py.File(folder / "run.h5") as file:
         fields = {name: values[:] for name, values in file["snapshots/0000/continuum"].items()}

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from dembound.disks.ram import run_bytes
 from dembound.disks.reduced.one_row import one_row
 from dembound.disks.scene import build
 
@@ -76,7 +77,8 @@ def test_columns_are_rows_of_an_upright_scene(whole) -> None:
 def test_memory_counts_the_whole_scene_too(whole) -> None:
     row = one_row(whole, 1)
 
-    assert row.chain == (whole, row)
+    assert row.largest_memory == run_bytes(whole.case, [whole.sizes, row.sizes])
+    assert row.largest_memory > run_bytes(whole.case, [row.sizes])
 
 
 def test_a_scene_with_a_hole_has_no_equal_rows(bar) -> None:

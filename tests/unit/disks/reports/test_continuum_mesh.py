@@ -2,6 +2,7 @@
 
 import sys
 import types
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -11,12 +12,14 @@ import pyvista
 from dembound.disks.kind import Disks
 from dembound.disks.reports.continuum_mesh import continuum_mesh
 from dembound.outside.mesh import Around, Mesh
-from dembound.results.vtk import write_vtu
+from dembound.results.vtk import write_paraview
 
 
 @pytest.fixture(scope="module")
 def exported(surrounded_run, tmp_path_factory):
-    return write_vtu(surrounded_run, tmp_path_factory.mktemp("vtu") / "paraview", Disks()).parent
+    folder = tmp_path_factory.mktemp("vtu") / "paraview"
+    write_paraview(surrounded_run, folder, Disks())
+    return folder
 
 
 @pytest.mark.parametrize("number", ["0000", "0001"])
@@ -90,7 +93,7 @@ def test_disks_have_all_fields_of_the_continuum_but_one(exported) -> None:
 
 def stand_in(source: str, table: types.SimpleNamespace) -> types.SimpleNamespace:
     """Stands in for what ParaView shows of a source; its colours are those of one table."""
-    largest = {"particles": 2.0, "continuum": 5.0}[source]
+    largest = {"particles": 2.0, "continuum": 5.0}[Path(source).stem]
     made = types.SimpleNamespace(source=source, SetScalarBarVisibility=lambda *_: None)
     made.SetRepresentationType = lambda kind: setattr(made, "kind", kind)
     made.RescaleTransferFunctionToDataRangeOverTime = lambda: setattr(
@@ -111,7 +114,7 @@ def run_script(folder, monkeypatch) -> tuple[list, list, types.SimpleNamespace]:
 
     names = {
         "GetActiveSource": lambda: None,
-        "PVDReader": lambda FileName: FileName.rsplit("/", 1)[-1].removesuffix(".pvd"),
+        "OpenDataFile": lambda path: Path(path).name,
         "GetActiveViewOrCreate": lambda _: types.SimpleNamespace(ResetCamera=lambda: None),
         "GetAnimationScene": lambda: types.SimpleNamespace(UpdateAnimationUsingDataTimeSteps=lambda: None),
         "Show": show,
@@ -131,16 +134,17 @@ def run_script(folder, monkeypatch) -> tuple[list, list, types.SimpleNamespace]:
 def test_the_script_shows_both_in_one_scale(exported, monkeypatch) -> None:
     shown, coloured, table = run_script(exported, monkeypatch)
     assert [(each.source, each.kind) for each in shown] == [
-        ("particles", "Point Gaussian"),
-        ("continuum", "Surface"),
+        ("particles.pvd", "Point Gaussian"),
+        ("continuum.pvd", "Surface"),
     ]
-    assert coloured == [(name, ("POINTS", "linVelVec", "Magnitude")) for name in ("particles", "continuum")]
+    assert coloured == [(name, ("POINTS", "linVelVec", "Magnitude")) for name in ("particles.pvd", "continuum.pvd")]
     assert table.limits == (0.0, 5.0)
 
 
-def test_without_a_continuum_the_script_shows_disks_alone(small_run, tmp_path, monkeypatch) -> None:
-    write_vtu(small_run, tmp_path, Disks())
+@pytest.mark.parametrize(("files", "ending"), [("vtu", "pvd"), ("both", "pvd"), ("vtkhdf", "vtkhdf")])
+def test_without_a_continuum_the_script_shows_disks_alone(small_run, tmp_path, monkeypatch, files, ending) -> None:
+    write_paraview(small_run, tmp_path, Disks(), files)
     shown, coloured, table = run_script(tmp_path, monkeypatch)
-    assert [each.source for each in shown] == ["particles"]
+    assert [each.source for each in shown] == [f"particles.{ending}"]
     assert len(coloured) == 1
     assert table.limits == (0.0, 2.0)

@@ -7,12 +7,14 @@ import pytest
 import pyvista
 
 from dembound.disks.kind import Disks
-from dembound.results.vtk import write_vtu
+from dembound.results.vtk import write_paraview
 
 
 @pytest.fixture(scope="module")
 def exported(small_run, tmp_path_factory):
-    return write_vtu(small_run, tmp_path_factory.mktemp("vtu") / "paraview", Disks())
+    folder = tmp_path_factory.mktemp("vtu") / "paraview"
+    write_paraview(small_run, folder, Disks())
+    return folder
 
 
 def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
@@ -42,7 +44,7 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
 
 
 def test_positions_are_in_double_and_fields_in_single_precision(exported):
-    mesh = meshio.read(exported.parent / "particles_0001.vtu")
+    mesh = meshio.read(exported / "particles_0001.vtu")
     kinds = {name: values.dtype for name, values in mesh.point_data.items()}
     whole = {"id", "brick_particle", "nbCracks"}
     assert mesh.points.dtype == np.float64
@@ -52,7 +54,7 @@ def test_positions_are_in_double_and_fields_in_single_precision(exported):
 
 @pytest.mark.parametrize("number", ["0000", "0001"])
 def test_meshio_reads_back_what_the_record_holds(small_run, exported, number):
-    mesh = meshio.read(exported.parent / f"particles_{number}.vtu")
+    mesh = meshio.read(exported / f"particles_{number}.vtu")
     with h5py.File(small_run) as file:
         points, data = expected(file, number)
     assert all(np.abs(data[name]).max() > 0.0 for name in ("linVelVec", "angVelVec", "displacement", "rotation"))
@@ -63,7 +65,7 @@ def test_meshio_reads_back_what_the_record_holds(small_run, exported, number):
 
 
 def test_vtk_reads_one_vertex_per_disk(small_run, exported):
-    mesh = pyvista.read(exported.parent / "particles_0001.vtu")
+    mesh = pyvista.read(exported / "particles_0001.vtu")
     with h5py.File(small_run) as file:
         points, data = expected(file, "0001")
     assert mesh.n_cells == len(points)
@@ -74,7 +76,7 @@ def test_vtk_reads_one_vertex_per_disk(small_run, exported):
 
 
 def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_path):
-    write_vtu(rich_run, tmp_path, Disks())
+    write_paraview(rich_run, tmp_path, Disks())
     with h5py.File(rich_run) as file:
         for number, snapshot in file["snapshots"].items():
             mesh = pyvista.read(tmp_path / f"particles_{number}.vtu")
@@ -89,7 +91,7 @@ def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_
 
 def test_circle_glyphs_of_factor_two_have_the_radii(exported):
     # as the module tells users to set ParaView's glyph filter, whose 2D circle has the diameter 1
-    mesh = pyvista.read(exported.parent / "particles_0000.vtu")
+    mesh = pyvista.read(exported / "particles_0000.vtu")
     circle = pyvista.Circle(radius=0.5, resolution=4)
     disks = mesh.glyph(geom=circle, scale="radii", factor=2.0, orient=False)
     corners = disks.points.reshape(mesh.n_points, -1, 3) - mesh.points[:, None, :]
@@ -98,7 +100,7 @@ def test_circle_glyphs_of_factor_two_have_the_radii(exported):
 
 
 def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path):
-    write_vtu(cracked_run, tmp_path, Disks())
+    write_paraview(cracked_run, tmp_path, Disks())
     with h5py.File(cracked_run) as file:
         bonds, cracks = file["particles/bonds"][:], {name: values[:] for name, values in file["cracks"].items()}
         for number, snapshot in file["snapshots"].items():
@@ -114,7 +116,7 @@ def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path
 
 
 def test_contacts_are_lines_between_the_centres_of_their_disks(cracked_run, tmp_path):
-    write_vtu(cracked_run, tmp_path, Disks())
+    write_paraview(cracked_run, tmp_path, Disks())
     with h5py.File(cracked_run) as file:
         counts = [len(snapshot["contacts/bonded"]) for snapshot in file["snapshots"].values()]
         for number, snapshot in file["snapshots"].items():
@@ -143,6 +145,6 @@ def test_disks_of_a_column_are_marked(small_run, tmp_path):
     with h5py.File(run, "r+") as file:
         assert not file["particles/column"][:].any()
         file["particles/column"][:] = marked
-    write_vtu(run, tmp_path / "paraview", Disks())
+    write_paraview(run, tmp_path / "paraview", Disks())
     column = pyvista.read(tmp_path / "paraview" / "particles_0001.vtu").point_data["column"]
     np.testing.assert_array_equal(column, marked)

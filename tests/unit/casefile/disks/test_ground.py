@@ -2,7 +2,7 @@
 
 import pytest
 
-from dembound.casefile.disks.reach import is_in, reach
+from dembound.casefile.disks.ground import is_in, reach
 from dembound.errors import CaseError
 from dembound.kinds import loads
 
