@@ -93,8 +93,17 @@ def _chosen(columns: Columns, reading: Reading) -> tuple[int, int]:
     if len(others) > 1:
         known = [name for name in (columns.names[index] for index in others) if name]
         allowed = ", ".join(known) if known else f"a number from 1 to {len(columns.places)}"
-        raise CaseError([f"--column: is missing, {columns.path} has {len(columns.places)} columns; must be {allowed}"])
+        has = f"{columns.path} has {len(columns.places)} columns"
+        raise CaseError([f"--column: is missing, {has}; must be {allowed}{_two_commas(columns)}"])
     return at, others[0]
+
+
+def _two_commas(columns: Columns) -> str:
+    """Advice for a file of whole numbers alone, as commas make of numbers that have decimal commas; else empty."""
+    parts = columns.lines[0]
+    if len(parts) < 4 or not all(part.lstrip("+-").isdigit() for part in parts):
+        return ""
+    return "; if numbers have decimal commas, columns must be separated by semicolons or tabs"
 
 
 def _unit_of_time(columns: Columns, column: int) -> float:
@@ -122,10 +131,9 @@ def _require_sound(columns: Columns, time: np.ndarray, values: np.ndarray) -> No
             said = "an overdriven channel?" if what == "value" else "must be a number"
             raise CaseError([f"{columns.path}: the {what} of line {line} is not finite: {said}"])
     if (np.diff(time) < 0.0).any() or time[0] == time[-1]:
-        line = columns.numbers[int(np.argmax(np.diff(time) < 0.0)) + 1]
-        raise CaseError(
-            [f"{columns.path}: must have increasing times; that of line {line} does not follow the one before"]
-        )
+        line = columns.numbers[int(np.argmax(np.diff(time) <= 0.0)) + 1]
+        where = f"that of line {line} does not follow the one before{_two_commas(columns)}"
+        raise CaseError([f"{columns.path}: must have increasing times; {where}"])
     if np.ptp(values) == 0.0:
         raise CaseError([f"{columns.path}: has no signal, all values are {values[0]:g}"])
 
@@ -146,7 +154,9 @@ def _evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarra
     worst = int(steps.argmax())
     if not steps[worst] <= LARGEST_GAP * step:
         said = f"{steps[worst]:.4g} s at {time[worst]:.6g} s, others are {step:.4g} s"
-        raise CaseError([f"{path}: must have even times, there is a gap of {said}"])
+        raise CaseError(
+            [f"{path}: must have even times, there is a gap of {said}; keep the lines before or behind it alone"]
+        )
     even = time[0] + step * np.arange(int((time[-1] - time[0]) / step) + 1)
     return even, np.interp(even, time, values), [f"times: uneven, resampled every {step:.4g} s by straight lines"]
 
