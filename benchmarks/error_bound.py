@@ -23,20 +23,20 @@ import numpy as np
 import tomli_w
 from error_bound_scenes import scenes
 
+from dembound.accuracy.advise import choose
+from dembound.accuracy.best import Choice
+from dembound.accuracy.cause import QUIET
+from dembound.accuracy.extended import extended
+from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.options import FACTORS, Candidate, candidates, with_diameter
+from dembound.accuracy.of_disks.search import COSTLIEST
+from dembound.accuracy.runner import SHORT, Gauges, measure
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build
 from dembound.errors import DemboundError
 from dembound.kinds import loads, with_changes
 from dembound.running import Progress, plan
-from dembound.studies.accuracy import Choice, choose
-from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, with_diameter
-from dembound.studies.accuracy.companions import Companions
-from dembound.studies.accuracy.of_disks import COSTLIEST
-from dembound.studies.chart.errors import QUIET
-from dembound.studies.chart.measure import Gauges, measure
-from dembound.studies.estimate.of_run import SHORT
-from dembound.studies.extended import extended
 
 BOUNDS = (0.003, 0.01, 0.03, 0.1)
 FINER = 3

@@ -23,14 +23,12 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from estimated_bars import SCENES, exact, recorded_of, scene
 
+from dembound.accuracy.advise import choose
+from dembound.accuracy.cause import QUIET, Recorded, quiet
+from dembound.accuracy.of_bars.floors import MARGIN, Floors
+from dembound.accuracy.of_bars.search import SAFETY, Motion, all_motions, cheapest, given_motion
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
-from dembound.studies.accuracy import choose
-from dembound.studies.accuracy.bar_floors import MARGIN, Floors
-from dembound.studies.accuracy.companions import quiet
-from dembound.studies.accuracy.of_bars import SAFETY, Motion, all_motions, cheapest, given_motion
-from dembound.studies.chart.errors import QUIET
-from dembound.studies.estimate.causes import Recorded
 
 BOUNDS = (0.003, 0.01, 0.03)
 

@@ -61,10 +61,10 @@ def reference_of(scene: Scene, case: Any, recorded: Mapping[str, Any]) -> dict[s
 
 def _gauges(scene: Scene, case: Any) -> Mapping[str, Any]:
     """What the monitors of the reference record."""
+    from dembound.accuracy.extended import extended
+    from dembound.accuracy.runner import measure
     from dembound.kinds import with_changes
     from dembound.running import Progress
-    from dembound.studies.chart.measure import measure
-    from dembound.studies.extended import extended
 
     if scene.reference == "finer":
         case = with_changes(case, {"packing.radius": case.packing.radius / FINER})
@@ -96,10 +96,12 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
     """Rows of the table of one scene, and what its estimate says that it has not estimated."""
     import tomli_w
 
+    from dembound.accuracy.budget import Estimate
+    from dembound.accuracy.cause import Recorded
+    from dembound.accuracy.estimate import causes_of
+    from dembound.accuracy.runner import measure
     from dembound.kinds import loads
     from dembound.running import Progress
-    from dembound.studies.chart.measure import measure
-    from dembound.studies.estimate import Estimate, Recorded, causes_of
 
     case = loads(tomli_w.dumps(scene.tables), name="scene")
     run, stepping, _ = measure(case, Progress())

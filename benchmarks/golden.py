@@ -117,8 +117,8 @@ def choices() -> Iterator[tuple[str, Callable[[], Found]]]:
     """What is chosen for each bound in the scenes of the benchmark of choices."""
     from error_bound_scenes import scenes
 
+    from dembound.accuracy.advise import choose
     from dembound.kinds import loads
-    from dembound.studies.accuracy import choose
 
     for name, tables in scenes():
         case = loads(tomli_w.dumps(tables), name=name.replace(" ", "_"))

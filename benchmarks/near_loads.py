@@ -15,10 +15,10 @@ import tomli_w
 from error_bound import FINER, at_times, far_motion
 from error_bound_scenes import embedded
 
+from dembound.accuracy.cause import Recorded
+from dembound.accuracy.of_disks.near import errors_near_loads
 from dembound.kinds import loads, with_changes
 from dembound.running import plan
-from dembound.studies.accuracy.near_loads import errors_near_loads
-from dembound.studies.estimate.causes import Recorded
 
 WIDE = 40.0
 """Of the body, m; its disks are 1 m wide."""

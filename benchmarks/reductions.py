@@ -100,8 +100,8 @@ class Ran:
 
 def in_memory(case: Any) -> Ran:
     """Run a case without files."""
+    from dembound.accuracy.runner import measure
     from dembound.running import Progress
-    from dembound.studies.chart.measure import measure
 
     began = time.process_time()
     outcome, stepping, _ = measure(case, Progress())

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from small_cases import Tables, small
 
+from dembound.accuracy.budget import Estimate
+from dembound.accuracy.cause import Causes, Recorded
+from dembound.accuracy.of_bars.causes import causes_of_bar
+from dembound.accuracy.runner import Gauges, measure
 from dembound.casefile.bar import BarCase
 from dembound.kinds import with_changes
 from dembound.running import Progress
-from dembound.studies.chart.measure import Gauges, measure
-from dembound.studies.estimate.bars import causes_of_bar
-from dembound.studies.estimate.causes import Causes, Recorded
-from dembound.studies.estimate.estimate import Estimate
 
 BAR: Tables = {
     "bar": {"length": 1.0, "spacing": 0.01, "density": 2620.0, "wave_speed": 2740.0},

@@ -12,8 +12,8 @@ from dembound.cli.console import out
 from dembound.errors import CaseError, NotAccurateError
 
 if TYPE_CHECKING:
+    from dembound.accuracy.best import Choice
     from dembound.casefile import Case
-    from dembound.studies.accuracy import Choice
 
 Error = Annotated[
     str | None,
@@ -69,8 +69,8 @@ def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequen
 
     Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `choose`.
     """
+    from dembound.accuracy.advise import choose
     from dembound.results.estimates import in_words
-    from dembound.studies.accuracy import choose
 
     kept = [*(keep or ()), *(text.partition("=")[0].strip() for text in changes or ())]
     choice = choose(case, bound, kept)

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 from small_cases import Tables, small
 
+from dembound.accuracy.budget import Estimate
+from dembound.accuracy.cause import SIDES, Recorded
+from dembound.accuracy.estimate import causes_of
+from dembound.accuracy.extended import extended
+from dembound.accuracy.runner import measure
 from dembound.running import Progress
-from dembound.studies.chart.measure import measure
-from dembound.studies.estimate import Estimate, Recorded, causes_of
-from dembound.studies.estimate.causes import SIDES
-from dembound.studies.extended import extended
 
 SPRINGS: Tables = {"type": "viscoelastic", "alpha_n": 1.0, "alpha_s": 0.5, "source": [0.0, 20.0]}
 

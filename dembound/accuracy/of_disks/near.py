@@ -1,0 +1,60 @@
+"""The error of the motion near forces on a lattice, where it varies over lengths as short as the way from them.
+
+Plane waves on a lattice of diameter D with the wave number k have errors of the order (kD)². Near a force motion varies
+over its distance r, too, and P and S waves are not apart: along the ray S waves, which a lattice disperses more, carry
+as much of it as P waves.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dembound.accuracy.cause import Recorded
+from dembound.accuracy.of_disks.load_places import middle_of_forces
+from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.scene import DiskScene
+
+NEAR, CURVED = 0.08, 0.6
+"""Error of the motion along the ray over (κD)², κ = k + CURVED/r, with the RMS wave number k of S waves: measured along
+a force in rock within a factor of 1.6 at r of 4 to 14 disks, for k of 0.08 to 0.28 per disk (docs/error_bound.md)."""
+
+
+def errors_near_loads(scene: DiskScene, own: Recorded) -> dict[str, float]:
+    """The error at one monitor by quantity, RMS over RMS of its larger component; 0 without forces in places.
+
+    own : the motion, whose RMS frequency and part along the ray from the nearest force count.
+    """
+    rays = [_nearest(own.position - place, scene) for place in _places(scene)]
+    if not rays:
+        return dict.fromkeys(own.values, 0.0)
+    diameter, ray = scene.ground.brick.mean_diameter, min(rays, key=lambda each: float(np.hypot(*each)))
+    distance = max(float(np.hypot(*ray)), diameter)
+    rates = {"velocity": np.gradient(own.values["velocity"], own.time, axis=0), "displacement": own.values["velocity"]}
+    found = {}
+    for quantity, values in own.values.items():
+        number = _norm(rates[quantity]) / max(_norm(values), np.finfo(float).tiny) / slowest_speed(scene.ground)
+        size = NEAR * (diameter * (number + CURVED / distance)) ** 2
+        found[quantity] = size * _along(values, own.component(quantity), ray / distance)
+    return found
+
+
+def _places(scene: DiskScene) -> list[np.ndarray]:
+    """The middle (2,) m of each force with a wave in a place."""
+    loads = [load for load in scene.case.load if load.wave is not None and load.pressure is None]
+    return [middle_of_forces(load, scene)[0] for load in loads if not load.is_everywhere]
+
+
+def _nearest(ray: np.ndarray, scene: DiskScene) -> np.ndarray:
+    """A ray (2,) m from a force, or from its nearest copy across periodic sides."""
+    size, periodic = np.array(scene.case.size), np.array(scene.case.periodic)
+    return np.asarray(ray - np.where(periodic, size * np.rint(ray / size), 0.0))
+
+
+def _along(values: np.ndarray, column: int, ray: np.ndarray) -> float:
+    """Of motion (k, 2) the part along a unit vector: RMS of its component along x or y (column) over that of all."""
+    size = _norm(values[:, column])
+    return _norm(values @ ray) * abs(float(ray[column])) / size if size > 0.0 else 0.0
+
+
+def _norm(values: np.ndarray) -> float:
+    return float(np.linalg.norm(values))

@@ -1,0 +1,134 @@
+"""One run of a choice: what it costs, and what its monitors record. Nothing is written."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dembound.casefile import Case
+from dembound.motion.clock import Clock
+from dembound.motion.kind import Finding, Plan
+from dembound.motion.simulation import Simulation
+from dembound.motion.trackers import Records
+from dembound.results.histories import Quantity
+from dembound.running import Progress, Reports, plan, simulation_of
+from dembound.table import Box
+
+STEP_AND_END = ("time_step", "safety", "courant", "until", "silent_level", "silent_for")
+"""Keys of ``[run]`` that a companion with a given step and duration does not have."""
+
+BUDGET, SHORT = 0.1, 5e7
+"""Share of the work of a run that its estimate may take by default, and work that it may take in any case.
+
+That is the work of less than a second: short runs have fine companions, too.
+"""
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """The motion recorded at one monitor.
+
+    position (2,) m of its particle; time (k,) s; displacement (k, 3) m, rad; velocity (k, 3) m/s, rad/s; stress (k,)
+    Pa, which only bars have.
+    """
+
+    position: np.ndarray
+    time: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    stress: np.ndarray | None = None
+
+    def of(self, quantity: Quantity) -> np.ndarray:
+        """Values (k, c) of a quantity: velocity, displacement, or of bars stress."""
+        values: np.ndarray = getattr(self, quantity)
+        return values.reshape(len(values), -1)
+
+
+Gauges = Mapping[str, Gauge]
+"""Gauges by the name of their monitor."""
+
+
+@dataclass
+class Outcome:
+    """The results of a choice, of its first run except for the costs.
+
+    Attributes
+    ----------
+    failure : why it has no results; empty otherwise.
+    time_step, step_limit (s), steps : of the run. count : number of nodes that are stepped.
+    work : in the unit of its kind of body. threads : of the steps.
+    gauges, findings : by name.
+    cpu, wall : s, of every timed run: CPU time of all threads while stepping, and time of the whole run.
+    """
+
+    failure: str = ""
+    time_step: float = 0.0
+    step_limit: float = 0.0
+    steps: int = 0
+    count: int = 0
+    work: int = 0
+    threads: int = 1
+    gauges: Gauges = field(default_factory=dict)
+    findings: Mapping[str, Finding] = field(default_factory=dict)
+    cpu: list[float] = field(default_factory=list)
+    wall: list[float] = field(default_factory=list)
+
+
+def measure(
+    case: Case, progress: Progress, watched: bool = True, inside: Box | None = None
+) -> tuple[Outcome, float, float]:
+    """Run a case; returns its results without costs, CPU time while stepping and time of the whole run, s.
+
+    The whole run is building, settling and stepping, without files and pictures. Times do not include compiling.
+    watched : whether the energy ledger detects runs that gain energy; it interrupts the stepping a few hundred times,
+    which takes longer than all steps of a short bar. inside : the part of the scene in which findings are looked for.
+
+    Raises the errors of `running.plan` and of runs.
+    """
+    wall, cpu = Clock(), Clock(time.process_time)
+    with wall.with_compiling(), wall.of("whole"):
+        planned = plan(case)
+        beginning = planned.kind.begin(planned.stepped, planned.time_step, progress.settling)
+        simulation, ledger = simulation_of(planned, beginning, cpu)
+        records = Records()
+        simulation.track(records, *([ledger] if watched else []), Reports(progress, planned.steps))
+        simulation.track(*planned.kind.trackers(simulation))
+        with cpu.with_compiling():
+            simulation.run(planned.steps)
+    return _outcome(planned, simulation, records, inside), cpu.seconds["step"], wall.seconds["whole"]
+
+
+def _outcome(planned: Plan, simulation: Simulation, records: Records, inside: Box | None) -> Outcome:
+    """The results of a run that is over."""
+    scene, kind = planned.scene, planned.kind
+    return Outcome(
+        time_step=planned.time_step,
+        step_limit=planned.step_limit,
+        steps=planned.steps,
+        count=simulation.scene.count,
+        work=kind.work(simulation),
+        threads=simulation.scene.threads,
+        gauges=_gauges(planned, records),
+        findings=kind.findings(scene, simulation, inside),
+    )
+
+
+def _gauges(planned: Plan, records: Records) -> dict[str, Gauge]:
+    """The records of the monitors, at the interval of the case's histories."""
+    scene, step = planned.scene, planned.time_step
+    stride = max(1, round(scene.case.output.history_interval / step))
+    record = np.concatenate(records.records)[::stride]
+    times = stride * step * np.arange(len(record))
+    motion = planned.stepped.observed(record, times)
+    return {
+        name: Gauge(
+            position=place,
+            time=times,
+            displacement=motion[:, index, :3],
+            velocity=motion[:, index, 3:6],
+            stress=motion[:, index, 6] if motion.shape[2] > 6 else None,
+        )
+        for index, (name, place) in enumerate(scene.monitored.items())
+        if name in scene.places  # without the twins in a free-field column
+    }
