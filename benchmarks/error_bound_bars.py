@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 from estimated_bars import SCENES, exact, recorded_of, scene
 
 from dembound.accuracy.advise import choose
-from dembound.accuracy.cause import QUIET, Recorded, quiet
+from dembound.accuracy.history import History, loud
 from dembound.accuracy.of_bars.floors import MARGIN, Floors
 from dembound.accuracy.of_bars.search import SAFETY, Motion, all_motions, cheapest, given_motion
 from dembound.bar.scene import build_bar
@@ -51,10 +51,10 @@ def true_error(given: BarCase, case: BarCase) -> float:
     scene, (found, _) = build_bar(given), recorded_of(case)
     errors = []
     for name, own in found.items():
-        moved = Recorded(scene.positions[scene.monitors[name]], own.time, own.values)
+        moved = History(scene.positions[scene.monitors[name]], own.time, own.values)
         expected = exact(case, moved)
         for quantity, values in own.values.items():
-            if name not in quiet(found, quantity, QUIET):
+            if name in loud(found, quantity):
                 rest = np.linalg.norm(values[:, 0] - expected[quantity])
                 errors.append(float(rest / np.linalg.norm(values[:, 0])))
     return max(errors)

@@ -106,7 +106,7 @@ def in_memory(case: Any) -> Ran:
     began = time.process_time()
     outcome, stepping, _ = measure(case, Progress())
     total = time.process_time() - began
-    velocity = np.stack([gauge.velocity[:, :2] for gauge in outcome.gauges.values()], axis=1)
+    velocity = np.stack([gauge.velocity[:, :2] for gauge in outcome.motions.values()], axis=1)
     return Ran(outcome.count, len(velocity), velocity, total, stepping)
 
 

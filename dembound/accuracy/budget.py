@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.cause import QUANTITIES, QUIET, SIDES, Cause, Causes, Recorded, quiet
+from dembound.accuracy.cause import QUANTITIES, SIDES, Cause, Causes
+from dembound.accuracy.history import Motions, loud
 from dembound.accuracy.repeat import Repeat
 from dembound.results.estimates import in_words, split_in_words
 
@@ -25,7 +26,7 @@ class Estimate:
     cpu_seconds : CPU time that it took, s. repeat : the run once more with a smaller time step, if that was asked for.
     """
 
-    recorded: Mapping[str, Recorded]
+    recorded: Motions
     causes: Causes
     cpu_seconds: float = 0.0
     repeat: Repeat | None = None
@@ -133,14 +134,14 @@ class Expected:
     by: dict[str, float]
 
 
-def expected(causes: Sequence[Cause], recorded: Mapping[str, Recorded]) -> Expected:
+def expected(causes: Sequence[Cause], recorded: Motions) -> Expected:
     """The largest error of all recorded quantities at monitors that are not quiet, and its causes that are not zero."""
     estimate = Estimate(recorded, Causes(list(causes)))
     found = [
         (total, estimate.shares(name, quantity))
         for name in recorded
         for quantity in estimate.quantities(name)
-        if name not in quiet(recorded, quantity, QUIET) and np.isfinite(total := estimate.total(name, quantity))
+        if name in loud(recorded, quantity) and np.isfinite(total := estimate.total(name, quantity))
     ]
     worst, by = max(found, key=lambda each: each[0], default=(0.0, {}))
     return Expected(worst, {name: share for name, share in by.items() if share > 0.0})

@@ -7,42 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dembound.accuracy.history import History
+
 SIDES, GRID, STEP, CONTINUUM = "sides", "grid", "time step", "continuum"
 """Names of causes."""
 
 QUANTITIES = ("velocity", "displacement", "stress")
 """Quantities whose errors are estimated; stress of bars only."""
-
-
-QUIET = 0.01
-"""Monitors whose peak in the reference is below this share of the largest one are left out.
-
-Relative errors there are those of a small residual motion.
-"""
-
-
-@dataclass(frozen=True)
-class Recorded:
-    """What a run has recorded at one monitor.
-
-    position : (2,) m, of its particle. time : (k,) s. values : quantity -> (k, c) in SI units, of motions along x, y.
-    """
-
-    position: np.ndarray
-    time: np.ndarray
-    values: Mapping[str, np.ndarray]
-
-    def component(self, quantity: str) -> int:
-        """The column with the largest value, whose error is estimated."""
-        return int(np.argmax(np.abs(self.values[quantity]).max(axis=0, initial=0.0)))
-
-
-def quiet(recorded: Mapping[str, Recorded], quantity: str, share: float) -> set[str]:
-    """Monitors that record a quantity, but whose largest value is below this share of the loudest one's."""
-    values = {name: each.values[quantity] for name, each in recorded.items() if quantity in each.values}
-    peaks = {name: float(np.abs(each).max(initial=0.0)) for name, each in values.items()}
-    loudest = max(peaks.values(), default=0.0)
-    return {name for name, peak in peaks.items() if peak < share * loudest}
 
 
 @dataclass(frozen=True)
@@ -59,7 +30,7 @@ class Cause:
     errors: Mapping[str, Mapping[str, np.ndarray | float]]
     is_sample: bool = False
 
-    def share(self, monitor: str, quantity: str, recorded: Recorded) -> float:
+    def share(self, monitor: str, quantity: str, recorded: History) -> float:
         """RMS of its error over that of the recorded values, of the component with the largest; nan if not known."""
         error = self.errors.get(monitor, {}).get(quantity, np.nan)
         if isinstance(error, float):

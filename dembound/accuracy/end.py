@@ -9,7 +9,8 @@ import numpy as np
 
 from dembound.accuracy.best import Choice
 from dembound.accuracy.budget import expected
-from dembound.accuracy.cause import Cause, Recorded
+from dembound.accuracy.cause import Cause
+from dembound.accuracy.history import Motions
 from dembound.casefile import Case
 from dembound.errors import DemboundError
 from dembound.kinds import with_changes
@@ -43,8 +44,8 @@ class EarlierEnd:
 
 def ended_earlier(
     choice: Choice,
-    recorded: Mapping[str, Recorded],
-    motion: Mapping[str, Recorded],
+    recorded: Motions,
+    motion: Motions,
     causes: Sequence[Cause],
     kept: Sequence[str],
 ) -> Choice:
@@ -64,7 +65,7 @@ def ended_earlier(
     return choice
 
 
-def earlier_ends(case: Case, motion: Mapping[str, Recorded], bound: float, kept: Sequence[str]) -> list[EarlierEnd]:
+def earlier_ends(case: Case, motion: Motions, bound: float, kept: Sequence[str]) -> list[EarlierEnd]:
     """Ends of a run with `until = "silent"`, the earliest first; none that saves little.
 
     motion : what its monitors are expected to record, at the same times. bound : error asked for. kept : keys that do
@@ -80,7 +81,7 @@ def earlier_ends(case: Case, motion: Mapping[str, Recorded], bound: float, kept:
     return sorted((each for each in found if each is not None), key=lambda each: each.share)
 
 
-def _ended(case: Case, motion: Mapping[str, Recorded], changes: Mapping[str, object]) -> EarlierEnd | None:
+def _ended(case: Case, motion: Motions, changes: Mapping[str, object]) -> EarlierEnd | None:
     """The end by one level of silence; None if it saves little, or the case cannot run."""
     try:
         changed = with_changes(case, changes)
@@ -97,7 +98,7 @@ def _ended(case: Case, motion: Mapping[str, Recorded], changes: Mapping[str, obj
     return EarlierEnd(changed, float(end / case.run.duration), _lost(motion, float(end)))
 
 
-def _lost(motion: Mapping[str, Recorded], end: float) -> Cause:
+def _lost(motion: Motions, end: float) -> Cause:
     """What is not recorded after the end, with the sign of an error: of displacements what is added to the last one."""
     errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in motion.items():

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.budget import Estimate
-from dembound.accuracy.cause import Causes, Recorded
+from dembound.accuracy.cause import Causes
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.repeat import Cracked, repeated
 from dembound.accuracy.runner import BUDGET, SHORT
@@ -80,7 +81,7 @@ def _estimated(folder: Path, budget: float | None, second_seed: bool, repeat: bo
 
 def _causes(
     case: Case,
-    recorded: Mapping[str, Recorded],
+    recorded: Motions,
     until: float,
     summary: Mapping[str, Any],
     work: float,
@@ -97,9 +98,7 @@ def _causes(
     return causes + Causes([], list(_at_rest(Estimate(recorded, causes))))
 
 
-def causes_of(
-    case: Case, recorded: Mapping[str, Recorded], time_step: float, work: float, budget: float | None = None
-) -> Causes:
+def causes_of(case: Case, recorded: Motions, time_step: float, work: float, budget: float | None = None) -> Causes:
     """The causes of the error of a run.
 
     case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step (s),
@@ -158,9 +157,9 @@ def _broken(first: float) -> str:
     return f"motion after {first:.4g} s, when the first bond broke"
 
 
-def _recorded(record: Path, until: float) -> tuple[dict[str, Recorded], str]:
+def _recorded(record: Path, until: float) -> tuple[dict[str, History], str]:
     """What the monitors have recorded up to a time (s); where that is nothing, or too little, why."""
-    found: dict[str, Recorded] = {}
+    found: dict[str, History] = {}
     samples = []
     with open_record(record) as file:
         for name, group in file.get("histories", {}).items():
@@ -175,7 +174,7 @@ def _recorded(record: Path, until: float) -> tuple[dict[str, Recorded], str]:
             samples.append(int(np.count_nonzero(kept)) if values else 0)
             if samples[-1] >= LEAST_SAMPLES:
                 place = np.atleast_1d(group.attrs["position"])
-                found[name] = Recorded(np.array([*place, 0.0][:2]), times[kept], values)
+                found[name] = History(np.array([*place, 0.0][:2]), times[kept], values)
     return found, "" if found else _too_little(samples, until)
 
 

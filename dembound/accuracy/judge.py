@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Generic, TypeVar
 
 from dembound.accuracy.best import Choice as Best
-from dembound.accuracy.cause import Causes, Recorded
+from dembound.accuracy.cause import Causes
 from dembound.accuracy.choice import Choice, Named
+from dembound.accuracy.history import Motions
 from dembound.accuracy.moved_sides import Extended
 from dembound.accuracy.reference import Exact, FinerRun
 from dembound.accuracy.runner import Outcome
@@ -33,20 +34,20 @@ class Judge(ABC, Generic[C, S]):
     first_break: ClassVar[str]
 
     @abstractmethod
-    def causes(self, case: C, recorded: Mapping[str, Recorded], time_step: float, work: float, most: float) -> Causes:
+    def causes(self, case: C, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
         """The causes of the error of a run.
 
         case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step
         (s), work (in the unit of its kind) : of the run. most : work that may be spent.
         """
 
-    def of_another_seed(self, case: C, recorded: Mapping[str, Recorded], work: float) -> Causes:
+    def of_another_seed(self, case: C, recorded: Motions, work: float) -> Causes:
         """What the seed of a random packing adds to the motion of its monitors, from one more run of the same length.
 
         case : to the end of the run. work : of the run. Raises CaseError for a case without a seed, and the errors of
         runs.
         """
-        raise CaseError(["--second-seed: the case has no random packing, so that nothing depends on a seed"], case.name)
+        raise no_seed(case)
 
     def notes(self, case: C, summary: Mapping[str, Any]) -> Iterator[str]:
         """Lines about how far the estimate of a run holds, given the summary of its results; by default none."""
@@ -87,3 +88,9 @@ class Judge(ABC, Generic[C, S]):
     def proposals(self, scene: S) -> dict[str, str]:
         """Lines for `dembound check` about cheaper cases, by name; by default none."""
         return {}
+
+
+def no_seed(case: Case) -> CaseError:
+    """The error of a case without a random packing that is to be run with another seed."""
+    reason = "the case has no random packing, so that nothing depends on a seed"
+    return CaseError([f"--second-seed: {reason}"], case.name)

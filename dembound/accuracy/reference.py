@@ -8,9 +8,9 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from dembound.accuracy.cause import QUIET
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.runner import Gauge, Gauges, Outcome
+from dembound.accuracy.history import History, Motions, loud_of
+from dembound.accuracy.runner import Outcome
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.results.compare import distance, on_common_clock, relative_errors
@@ -40,7 +40,7 @@ class Reference:
 
     name: str
     sentence: str
-    gauges: Callable[[Choice, Outcome], Gauges]
+    motions: Callable[[Choice, Outcome], Motions]
     until: float = math.inf
     findings: Mapping[str, float] = field(default_factory=dict)
     own: Sequence[int] = ()
@@ -61,15 +61,8 @@ class Exact(ABC):
     findings: Mapping[str, float] = {}
 
     @abstractmethod
-    def gauges(self, case: Case, recorded: Gauges) -> dict[str, Gauge]:
+    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
         """The exact motion at the recorded positions; case : that of the choice they were recorded for."""
-
-
-def along(values: np.ndarray, column: int) -> np.ndarray:
-    """Motion (k, 3) with these values (k,) in one column and zero elsewhere."""
-    motion = np.zeros((len(values), 3))
-    motion[:, column] = values
-    return motion
 
 
 class FinerRun(Protocol):
@@ -83,7 +76,7 @@ class FinerRun(Protocol):
     def spacing(self) -> float:
         """Distance of its nodes, m."""
 
-    def gauges(self, run: Outcome, choice: Outcome) -> dict[str, Gauge]:
+    def motions(self, run: Outcome, choice: Outcome) -> dict[str, History]:
         """Its histories at the monitors of a choice; run : its outcome, or that of its case with ends farther away."""
 
 
@@ -107,22 +100,21 @@ def errors(choice: Choice, outcome: Outcome, reference: Reference, wanted: Wante
 
     Raises CaseError for a monitor that does not exist and if the reference does not move until histories end.
     """
-    gauges, expected = (
-        {name: _until(gauge, reference.until) for name, gauge in each.items()}
-        for each in (outcome.gauges, reference.gauges(choice, outcome))
+    recorded, expected = (
+        {name: history.until(reference.until) for name, history in each.items()}
+        for each in (outcome.motions, reference.motions(choice, outcome))
     )
-    names = _monitors(gauges, expected, wanted)
-    series = {name: expected[name].of(wanted.quantity) for name in names}
+    names = _monitors(recorded, expected, wanted)
+    series = {name: expected[name].values[wanted.quantity] for name in names}
     columns = {name: _column(values, wanted) for name, values in series.items()}
     peaks = {name: float(np.abs(values[:, columns[name]]).max(initial=0.0)) for name, values in series.items()}
     if not max(peaks.values()) > 0.0:
         raise CaseError([f"monitor: the {wanted.quantity} is zero in the reference ({reference.sentence})"])
-    loud = [name for name in names if peaks[name] >= QUIET * max(peaks.values())]
-    found = [_error(name, gauges[name], expected[name], columns[name], wanted) for name in loud]
+    found = [_error(name, recorded[name], expected[name], columns[name], wanted) for name in loud_of(peaks)]
     return sorted(found, key=lambda error: -error.rms)
 
 
-def _monitors(found: Gauges, expected: Gauges, wanted: Wanted) -> list[str]:
+def _monitors(found: Motions, expected: Motions, wanted: Wanted) -> list[str]:
     """The names of the monitors to compare."""
     names = [name for name in found if name in expected]
     if wanted.monitor is not None and wanted.monitor not in names:
@@ -139,21 +131,14 @@ def _column(values: np.ndarray, wanted: Wanted) -> int:
     return int(np.argmax(np.abs(values[:, :2]).max(axis=0, initial=0.0)))
 
 
-def _error(name: str, found: Gauge, expected: Gauge, column: int, wanted: Wanted) -> MonitorError:
+def _error(name: str, found: History, expected: History, column: int, wanted: Wanted) -> MonitorError:
     """The error at a monitor, at the times of the history with fewer samples, so that the finer one is interpolated."""
-    mine, theirs = ((gauge.time, gauge.of(wanted.quantity)[:, column]) for gauge in (found, expected))
+    mine, theirs = ((history.time, history.values[wanted.quantity][:, column]) for history in (found, expected))
     if len(theirs[0]) > len(mine[0]):
         right, left = on_common_clock(*theirs, *mine)
     else:
         left, right = on_common_clock(*mine, *theirs)
     rms, peak = relative_errors(left, right)
-    apart = distance(found.position, expected.position)
+    apart = distance(found.place, expected.place)
     component = "stress" if wanted.quantity == "stress" else COMPONENTS[column]
     return MonitorError(name, component, rms, peak, apart)
-
-
-def _until(gauge: Gauge, end: float) -> Gauge:
-    """The history up to a time (s)."""
-    kept = slice(0, int(np.searchsorted(gauge.time, end, side="right")))
-    stress = None if gauge.stress is None else gauge.stress[kept]
-    return Gauge(gauge.position, gauge.time[kept], gauge.displacement[kept], gauge.velocity[kept], stress)

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dembound.accuracy.history import History, Motions
 from dembound.casefile import Case
 from dembound.motion.clock import Clock
 from dembound.motion.kind import Finding, Plan
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Records
-from dembound.results.histories import Quantity
 from dembound.running import Progress, Reports, plan, simulation_of
 from dembound.table import Box
 
@@ -25,30 +25,6 @@ That is the work of less than a second: short runs have fine companions, too.
 """
 
 
-@dataclass(frozen=True)
-class Gauge:
-    """The motion recorded at one monitor.
-
-    position (2,) m of its particle; time (k,) s; displacement (k, 3) m, rad; velocity (k, 3) m/s, rad/s; stress (k,)
-    Pa, which only bars have.
-    """
-
-    position: np.ndarray
-    time: np.ndarray
-    displacement: np.ndarray
-    velocity: np.ndarray
-    stress: np.ndarray | None = None
-
-    def of(self, quantity: Quantity) -> np.ndarray:
-        """Values (k, c) of a quantity: velocity, displacement, or of bars stress."""
-        values: np.ndarray = getattr(self, quantity)
-        return values.reshape(len(values), -1)
-
-
-Gauges = Mapping[str, Gauge]
-"""Gauges by the name of their monitor."""
-
-
 @dataclass
 class Outcome:
     """The results of a choice, of its first run except for the costs.
@@ -58,7 +34,7 @@ class Outcome:
     failure : why it has no results; empty otherwise.
     time_step, step_limit (s), steps : of the run. count : number of nodes that are stepped.
     work : in the unit of its kind of body. threads : of the steps.
-    gauges, findings : by name.
+    motions, findings : by name.
     cpu, wall : s, of every timed run: CPU time of all threads while stepping, and time of the whole run.
     """
 
@@ -69,7 +45,7 @@ class Outcome:
     count: int = 0
     work: int = 0
     threads: int = 1
-    gauges: Gauges = field(default_factory=dict)
+    motions: Motions = field(default_factory=dict)
     findings: Mapping[str, Finding] = field(default_factory=dict)
     cpu: list[float] = field(default_factory=list)
     wall: list[float] = field(default_factory=list)
@@ -109,12 +85,12 @@ def _outcome(planned: Plan, simulation: Simulation, records: Records, inside: Bo
         count=simulation.scene.count,
         work=kind.work(simulation),
         threads=simulation.scene.threads,
-        gauges=_gauges(planned, records),
+        motions=_motions(planned, records),
         findings=kind.findings(scene, simulation, inside),
     )
 
 
-def _gauges(planned: Plan, records: Records) -> dict[str, Gauge]:
+def _motions(planned: Plan, records: Records) -> dict[str, History]:
     """The records of the monitors, at the interval of the case's histories."""
     scene, step = planned.scene, planned.time_step
     stride = max(1, round(scene.case.output.history_interval / step))
@@ -122,12 +98,12 @@ def _gauges(planned: Plan, records: Records) -> dict[str, Gauge]:
     times = stride * step * np.arange(len(record))
     motion = planned.stepped.observed(record, times)
     return {
-        name: Gauge(
-            position=place,
-            time=times,
-            displacement=motion[:, index, :3],
-            velocity=motion[:, index, 3:6],
-            stress=motion[:, index, 6] if motion.shape[2] > 6 else None,
+        name: History.of(
+            place,
+            times,
+            motion[:, index, :3],
+            motion[:, index, 3:6],
+            motion[:, index, 6] if motion.shape[2] > 6 else None,
         )
         for index, (name, place) in enumerate(scene.monitored.items())
         if name in scene.places  # without the twins in a free-field column

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.accuracy.runner import Gauge, Gauges, Outcome
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.runner import Outcome
 from dembound.errors import CaseError
 from dembound.motion.kind import Finding
 from dembound.results.committed import changed_file
@@ -49,7 +50,7 @@ class Record:
                 if not isinstance(value, str if name == "failure" else int | float):
                     raise TypeError(f"runs/{key}, attribute {name}: is {value!r}")  # which open_record tells of
             found = Outcome(**values)
-            found.gauges = _read_gauges(group["gauges"])
+            found.motions = _read_motions(group["gauges"])
             found.findings = {
                 name: Finding(float(value[()]), text_of(value.attrs["unit"]))
                 for name, value in _scalars(group["findings"]).items()
@@ -62,7 +63,7 @@ class Record:
         with understood(self.path), changed_file(self.path) as file:
             group = file.require_group("runs").create_group(key)
             group.attrs.update({name: getattr(outcome, name) for name in NUMBERS})
-            write_gauges(group.create_group("gauges"), outcome.gauges)
+            write_motions(group.create_group("gauges"), outcome.motions)
             findings = group.create_group("findings")
             for name, (value, unit) in outcome.findings.items():
                 findings.create_dataset(name, data=value).attrs["unit"] = unit
@@ -94,23 +95,22 @@ def record_in(folder: Path, resume: bool) -> Record:
     return Record(path)
 
 
-def write_gauges(group: h5py.Group, gauges: Gauges) -> None:
+def write_motions(group: h5py.Group, motions: Motions) -> None:
     """Write the histories of monitors, compressed, each in a group of its name."""
-    for name, gauge in gauges.items():
+    for name, history in motions.items():
         inner = group.create_group(name)
-        inner.attrs["position"] = gauge.position
-        for quantity, unit in UNITS.items():
-            if (values := getattr(gauge, quantity)) is not None:
-                dataset = inner.create_dataset(quantity, data=values, compression="gzip", shuffle=True)
-                dataset.attrs["unit"] = unit
+        inner.attrs["position"] = history.place
+        for quantity, values in {"time": history.time, **history.values}.items():
+            flat = values[:, 0] if quantity == "stress" else values
+            dataset = inner.create_dataset(quantity, data=flat, compression="gzip", shuffle=True)
+            dataset.attrs["unit"] = UNITS[quantity]
 
 
-def _read_gauges(group: h5py.Group) -> dict[str, Gauge]:
-    """The histories that `write_gauges` has written."""
+def _read_motions(group: h5py.Group) -> dict[str, History]:
+    """The histories that `write_motions` has written."""
     return {
-        name: Gauge(
-            position=inner.attrs["position"],
-            **{quantity: inner[quantity][:] for quantity in UNITS if quantity in inner},
+        name: History.of(
+            inner.attrs["position"], **{quantity: inner[quantity][:] for quantity in UNITS if quantity in inner}
         )
         for name, inner in group.items()
     }

@@ -10,10 +10,11 @@ import numpy as np
 
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.extended import MOST, extended
+from dembound.accuracy.history import Motions
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.labels import label
 from dembound.accuracy.reference import Exact, FinerRun, Reference
-from dembound.accuracy.runner import Gauges, Outcome
+from dembound.accuracy.runner import Outcome
 from dembound.casefile import Case
 from dembound.casefile.chart import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
@@ -110,7 +111,7 @@ class _References:
         return Reference(
             name="exact",
             sentence=solution.sentence,
-            gauges=lambda choice, outcome: solution.gauges(choice.case, outcome.gauges),
+            motions=lambda choice, outcome: solution.motions(choice.case, outcome.motions),
             until=solution.until,
             findings=solution.findings,
         )
@@ -162,7 +163,7 @@ class _References:
     def _finest(self) -> Reference:
         """The run of the finest choice."""
         sentence = f"the finest run, {self._choices[self._own].name}"
-        return self._of_run("finest", sentence, self._outcomes[self._own], lambda run, _: run.gauges)
+        return self._of_run("finest", sentence, self._outcomes[self._own], lambda run, _: run.motions)
 
     def _done(self, name: str, case: Case, inside: Box | None = None) -> Outcome:
         """The outcome of a case that is no choice, breaking inside a box; raises RunError if its run fails."""
@@ -171,15 +172,15 @@ class _References:
             raise RunError(f"{name}: {outcome.failure}")
         return outcome
 
-    def _places(self, fine: FinerRun | None) -> Callable[[Outcome, Outcome], Gauges]:
+    def _places(self, fine: FinerRun | None) -> Callable[[Outcome, Outcome], Motions]:
         """The gauges of a run for the outcome of a choice, at their places in the scene before it was extended."""
         if fine is not None:
-            return fine.gauges
-        places = {name: gauge.position for name, gauge in self._outcomes[self._own].gauges.items()}
-        return lambda run, _: {name: replace(run.gauges[name], position=place) for name, place in places.items()}
+            return fine.motions
+        places = {name: gauge.place for name, gauge in self._outcomes[self._own].motions.items()}
+        return lambda run, _: {name: replace(run.motions[name], place=place) for name, place in places.items()}
 
     def _of_run(
-        self, name: str, sentence: str, run: Outcome, gauges: Callable[[Outcome, Outcome], Gauges]
+        self, name: str, sentence: str, run: Outcome, gauges: Callable[[Outcome, Outcome], Motions]
     ) -> Reference:
         """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
         findings = {found: value for found, (value, _) in run.findings.items()}
@@ -188,7 +189,7 @@ class _References:
         return Reference(
             name=name,
             sentence=sentence + "".join(f", up to its first break at {1e3 * time:.4g} ms" for time in breaks),
-            gauges=lambda _, outcome: gauges(run, outcome),
+            motions=lambda _, outcome: gauges(run, outcome),
             until=min(breaks, default=math.inf),
             findings=findings,
             own=tuple(k for k, outcome in enumerate(self._outcomes) if _is_same_run(outcome, run)),
@@ -219,8 +220,8 @@ def _is_same_run(outcome: Outcome, run: Outcome) -> bool:
     """Whether two outcomes are of the same run: the same work in the same steps, and the same bits."""
     if (outcome.time_step, outcome.steps, outcome.work) != (run.time_step, run.steps, run.work):
         return False
-    return outcome.gauges.keys() == run.gauges.keys() and all(
-        np.array_equal(gauge.velocity, run.gauges[name].velocity)
-        and np.array_equal(gauge.displacement, run.gauges[name].displacement)
-        for name, gauge in outcome.gauges.items()
+    return outcome.motions.keys() == run.motions.keys() and all(
+        np.array_equal(gauge.velocity, run.motions[name].velocity)
+        and np.array_equal(gauge.displacement, run.motions[name].displacement)
+        for name, gauge in outcome.motions.items()
     )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.accuracy.chart.record import write_gauges
+from dembound.accuracy.chart.record import write_motions
 from dembound.accuracy.chart.study import Charted, Line
 from dembound.accuracy.choice import digest
 from dembound.results.committed import changed_file
@@ -62,7 +62,7 @@ def _write_reference(group: h5py.Group, charted: Charted) -> None:
     for name, value in reference.findings.items():
         group.attrs[name] = value
     line = next(line for line in charted.lines if not line.outcome.failure)
-    write_gauges(group.create_group("gauges"), reference.gauges(line.choice, line.outcome))
+    write_motions(group.create_group("gauges"), reference.motions(line.choice, line.outcome))
 
 
 def _write_line(group: h5py.Group, charted: Charted, number: int, line: Line) -> None:

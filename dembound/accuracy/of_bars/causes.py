@@ -20,12 +20,12 @@ changed the bonds, nothing is said.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
-from dembound.accuracy.cause import GRID, SIDES, STEP, Cause, Causes, Recorded
-from dembound.accuracy.of_bars.motions import Histories, Motions
+from dembound.accuracy.cause import GRID, SIDES, STEP, Cause, Causes
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_bars.motions import BarMotions
 from dembound.accuracy.of_bars.window import Window
 from dembound.bar.layer_echo import WIDEST
 from dembound.bar.scene import build_bar
@@ -44,7 +44,7 @@ HOW = "from the waves of the linear bar at each frequency"
 """How its errors are found."""
 
 
-def causes_of_bar(case: BarCase, recorded: Mapping[str, Recorded], time_step: float) -> Causes:
+def causes_of_bar(case: BarCase, recorded: Motions, time_step: float) -> Causes:
     """The causes of the errors of a bar, whose cost is 0, as nothing is run.
 
     recorded : of the run, by monitor, up to the first break. time_step : s, of the run.
@@ -55,7 +55,7 @@ def causes_of_bar(case: BarCase, recorded: Mapping[str, Recorded], time_step: fl
         return Causes([], refused)
     times = {name: each.time for name, each in recorded.items()}
     window = Window.up_to(max(float(time[-1]) for time in times.values()), time_step)
-    motions = Motions(case, build_bar(case), window, times)
+    motions = BarMotions(case, build_bar(case), window, times)
     own, exact = motions.own(), motions.exact()
     lines = {name: _unknown(case, each, own[name], exact[name]) for name, each in recorded.items()}
     known = [name for name, line in lines.items() if not line]
@@ -64,7 +64,7 @@ def causes_of_bar(case: BarCase, recorded: Mapping[str, Recorded], time_step: fl
     return Causes(found if known else [], missing, echo_free=bool(motions.absorbing))
 
 
-def split(motions: Motions, own: Histories, exact: Histories, recorded: Mapping[str, Recorded]) -> list[Cause]:
+def split(motions: BarMotions, own: Motions, exact: Motions, recorded: Motions) -> list[Cause]:
     """What the grid, the time step and absorbing ends add, by the motions of the bar as it is stepped and of rods."""
     step = motions.window.step
     endless, exact_time = motions.endless(step), motions.endless(0.0)
@@ -72,7 +72,7 @@ def split(motions: Motions, own: Histories, exact: Histories, recorded: Mapping[
     return [*found, difference(SIDES, own, endless, recorded)] if motions.absorbing else found
 
 
-def difference(cause: str, of: Histories, less: Histories, recorded: Mapping[str, Recorded]) -> Cause:
+def difference(cause: str, of: Motions, less: Motions, recorded: Motions) -> Cause:
     """A cause that adds the difference of two motions to what is recorded."""
     return Cause(cause, HOW, {name: _errors(own, of[name], less[name]) for name, own in recorded.items()})
 
@@ -89,7 +89,7 @@ def not_linear(case: BarCase) -> list[str]:
     return []
 
 
-def _unknown(case: BarCase, recorded: Recorded, own: Mapping[str, np.ndarray], exact: Mapping[str, np.ndarray]) -> str:
+def _unknown(case: BarCase, recorded: History, own: History, exact: History) -> str:
     """Why nothing is known at a monitor: its record is that of no linear bar, or of rest; empty otherwise."""
     worst, largest = 0.0, largest_motion(case, float(recorded.time[-1]))
     for quantity, values in recorded.values.items():
@@ -97,8 +97,8 @@ def _unknown(case: BarCase, recorded: Recorded, own: Mapping[str, np.ndarray], e
         size = float(np.linalg.norm(seen))
         if size <= QUIET * largest[quantity] * math.sqrt(len(seen)):
             return "hardly moves"
-        rest = float(np.linalg.norm(seen - own[quantity]))
-        error = float(np.linalg.norm(own[quantity] - exact[quantity]))
+        rest = float(np.linalg.norm(seen - own.values[quantity][:, 0]))
+        error = float(np.linalg.norm(own.values[quantity] - exact.values[quantity]))
         if rest > max(SMALLEST * size, UNEXPLAINED * error):
             worst = max(worst, rest / size)
     return (
@@ -115,10 +115,10 @@ def largest_motion(case: BarCase, last: float) -> dict[str, float]:
     return {"velocity": velocity, "displacement": velocity * last, "stress": velocity * impedance}
 
 
-def _errors(recorded: Recorded, of: Mapping[str, np.ndarray], less: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _errors(recorded: History, of: History, less: History) -> dict[str, np.ndarray]:
     """Quantity -> error (k, c), along the bar."""
     errors = {}
     for quantity, values in recorded.values.items():
         errors[quantity] = np.zeros_like(values, dtype=float)
-        errors[quantity][:, 0] = of[quantity] - less[quantity]
+        errors[quantity][:, 0] = (of.values[quantity] - less.values[quantity])[:, 0]
     return errors

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dembound.accuracy.cause import QUANTITIES, QUIET
-from dembound.accuracy.of_bars.motions import FINER, Histories, Motions
+from dembound.accuracy.cause import QUANTITIES
+from dembound.accuracy.history import QUIET, History, Motions
+from dembound.accuracy.of_bars.motions import FINER, BarMotions
 from dembound.accuracy.of_bars.options import FACTORS
 from dembound.accuracy.of_bars.window import Window
 from dembound.bar.banded import ROUNDING
@@ -38,13 +39,17 @@ class ExactMotion:
         """Monitor -> m, the place of its node."""
         return {name: float(self._scene.positions[node, 0]) for name, node in self._scene.monitors.items()}
 
-    def at(self, window: Window) -> Histories:
+    def at(self, window: Window) -> Motions:
         """At the times of a window; computed once for all windows whose steps are between two powers of 2 s."""
         octave = math.floor(math.log2(window.step))
         if octave not in self._found:
             self._found[octave] = self._splines(2.0**octave)
         return {
-            name: {quantity: spline(window.time) for quantity, spline in each.items()}
+            name: History(
+                np.array([self.places[name], 0.0]),
+                window.time,
+                {quantity: spline(window.time) for quantity, spline in each.items()},
+            )
             for name, each in self._found[octave].items()
         }
 
@@ -55,7 +60,7 @@ class ExactMotion:
         """
         motion, found = self.at(window), {name: set[str]() for name in self.places}
         for quantity in QUANTITIES:
-            peaks = {name: float(np.abs(each[quantity]).max()) for name, each in motion.items()}
+            peaks = {name: float(np.abs(each.values[quantity]).max()) for name, each in motion.items()}
             for name, peak in peaks.items():
                 if peak > CLEARLY * QUIET * max(peaks.values()) and (quantity != "stress" or self._inside(name)):
                     found[name].add(quantity)
@@ -74,5 +79,7 @@ class ExactMotion:
 
         window = Window.up_to(self._scene.case.run.duration + 2.0 * step, step)
         time = window.finer(FINER).time
-        found = Motions(self._scene.case, self._scene, window, dict.fromkeys(self.places, time)).exact()
-        return {name: {q: CubicSpline(time, values) for q, values in each.items()} for name, each in found.items()}
+        found = BarMotions(self._scene.case, self._scene, window, dict.fromkeys(self.places, time)).exact()
+        return {
+            name: {q: CubicSpline(time, values) for q, values in each.values.items()} for name, each in found.items()
+        }

@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.runner import STEP_AND_END, Gauge, Outcome
+from dembound.accuracy.history import History
+from dembound.accuracy.runner import STEP_AND_END, Outcome
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
@@ -36,11 +37,11 @@ class Finer:
     spacing: float
     cells: int
 
-    def gauges(self, run: Outcome, choice: Outcome) -> dict[str, Gauge]:
+    def motions(self, run: Outcome, choice: Outcome) -> dict[str, History]:
         """Its histories at the monitors of a choice; run : its outcome, or that of the bar extended at its ends."""
-        nodes = {name: _node(gauge, self.spacing, self.cells) for name, gauge in choice.gauges.items()}
+        nodes = {name: _node(gauge, self.spacing, self.cells) for name, gauge in choice.motions.items()}
         return {
-            name: replace(run.gauges[_name(node)], position=np.array([node * self.spacing, 0.0]))
+            name: replace(run.motions[_name(node)], place=np.array([node * self.spacing, 0.0]))
             for name, node in nodes.items()
         }
 
@@ -55,7 +56,7 @@ def finer(case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Outcome])
     bars = [choice.case.bar for choice in choices if isinstance(choice.case, BarCase)]
     cells = _cells({bar.cells for bar in bars if bar.length == case.bar.length})
     spacing = case.bar.length / cells
-    nodes = {_node(gauge, spacing, cells) for outcome in outcomes for gauge in outcome.gauges.values()}
+    nodes = {_node(gauge, spacing, cells) for outcome in outcomes for gauge in outcome.motions.values()}
     run = {key: value for key, value in case.run.given().items() if key not in STEP_AND_END}
     changes: dict[str, Any] = {
         "bar.spacing": spacing,
@@ -75,9 +76,9 @@ def _cells(of_choices: set[int]) -> int:
     return cells if cells <= MOST * most else FINER * most
 
 
-def _node(gauge: Gauge, spacing: float, cells: int) -> int:
+def _node(gauge: History, spacing: float, cells: int) -> int:
     """Number of the node nearest to that of a gauge; the last one for gauges of longer bars."""
-    return min(nearest_number(float(gauge.position[0]) / spacing), cells)
+    return min(nearest_number(float(gauge.place[0]) / spacing), cells)
 
 
 def _name(node: int) -> str:

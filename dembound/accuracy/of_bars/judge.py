@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from dembound.accuracy.best import Choice as Best
-from dembound.accuracy.cause import Causes, Recorded
+from dembound.accuracy.cause import Causes
 from dembound.accuracy.choice import Choice, Named
+from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import Judge
 from dembound.accuracy.moved_sides import Extended
 from dembound.accuracy.of_bars.causes import causes_of_bar
@@ -28,9 +29,7 @@ class BarJudge(Judge[BarCase, BarScene]):
     places: ClassVar[Mapping[str, int]] = {SPALL_PLACE: 0}
     first_break = SPALL_TIME
 
-    def causes(
-        self, case: BarCase, recorded: Mapping[str, Recorded], time_step: float, work: float, most: float
-    ) -> Causes:
+    def causes(self, case: BarCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
         """Ends, nodes and steps, from the waves of the linear bar."""
         return causes_of_bar(case, recorded, time_step)
 

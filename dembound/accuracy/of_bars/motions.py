@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_bars.chain import Chain, Clock, Response, observed_near
 from dembound.accuracy.of_bars.rods import Rods
 from dembound.accuracy.of_bars.window import Window, needed
@@ -31,12 +32,9 @@ NEAR = 20
 ABOVE = 1.1
 """Largest frequency that counts then, over that of the shortest wave; above, motion decays within a few spacings."""
 
-Histories = Mapping[str, Mapping[str, np.ndarray]]
-"""Monitor -> quantity -> values (k,) at the times of its record."""
-
 
 @dataclass(frozen=True)
-class Motions:
+class BarMotions:
     """The motions of a case at its monitors; times : of the records, by monitor."""
 
     case: BarCase
@@ -54,11 +52,11 @@ class Motions:
         """The node of every monitor."""
         return {name: self.scene.monitors[name] for name in self.times}
 
-    def own(self) -> Histories:
+    def own(self) -> Motions:
         """That of the bar as it is."""
         return self._in_nodes(self.scene, self.scene.layers, self.window.step, [])
 
-    def endless(self, step: float) -> Histories:
+    def endless(self, step: float) -> Motions:
         """That of the bar without ends that absorb; step : Δt, s, 0 for exact time."""
         if not self.absorbing:
             return self._in_nodes(self.scene, self.scene.layers, step, [])
@@ -71,7 +69,7 @@ class Motions:
 
     def _in_nodes(
         self, scene: BarScene, layers: Mapping[str, EndLayer], step: float, entering: Iterable[str]
-    ) -> Histories:
+    ) -> Motions:
         """That of a chain of nodes; entering : ends at which the wave enters an endless bar."""
         chain, clock = Chain(scene, layers, self.window.step), Clock.of(self.window.s, step)
         forces = self._forces(scene, chain, clock)
@@ -114,7 +112,7 @@ class Motions:
         highest = 2.0 / self.scene.step_limit()
         return max(1, int(np.count_nonzero(np.abs(clock.change) <= ABOVE * highest)))
 
-    def exact(self, places: Mapping[str, float] | None = None) -> Histories:
+    def exact(self, places: Mapping[str, float] | None = None) -> Motions:
         """That of rods; places : m, by monitor, if they are not those of its nodes."""
         finer = self.window.finer(FINER)
         pushed: dict[str, np.ndarray] = {}
@@ -144,7 +142,7 @@ class Motions:
         """The velocity of the wave of an end along the bar."""
         return self.case.wave[self.case.side(side).waves["p"]].velocity
 
-    def _history(self, window: Window, transforms: np.ndarray, name: str) -> dict[str, np.ndarray]:
+    def _history(self, window: Window, transforms: np.ndarray, name: str) -> History:
         """Velocity, displacement and stress at the times of a record, from their transforms (3, f); 0 afterwards."""
         from scipy.interpolate import CubicSpline
 
@@ -154,8 +152,8 @@ class Motions:
             own = window.history(values)
             if not np.array_equal(time, grid):
                 own = np.where(time <= grid[-1] + 0.5 * window.step, CubicSpline(grid, own)(time), 0.0)
-            found[quantity] = own
-        return found
+            found[quantity] = own[:, None]
+        return History(self.scene.positions[self.nodes[name], :2], time, found)
 
 
 def _stress(scene: BarScene, response: Response, moved: np.ndarray, clock: Clock, node: int) -> np.ndarray:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from dembound.accuracy.reference import Exact, along
-from dembound.accuracy.runner import Gauge, Gauges
+from dembound.accuracy.history import History, Motions, along
+from dembound.accuracy.reference import Exact
 from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
@@ -69,12 +69,12 @@ class PulseInBar(Exact):
             sentence=f"exact (d'Alembert), up to the first spall at {1e3 * at:.4g} ms",
         )
 
-    def gauges(self, case: Case, recorded: Gauges) -> dict[str, Gauge]:
+    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
         """The motion and stress at the nodes of the monitors, at the same times."""
         return {name: self._at(gauge) for name, gauge in recorded.items()}
 
-    def _at(self, gauge: Gauge) -> Gauge:
-        place = float(gauge.position[0])
+    def _at(self, gauge: History) -> History:
+        place = float(gauge.place[0])
         length, speed, impedance = self.bar_length, self.speed, self.impedance
 
         def pressure(time: np.ndarray) -> np.ndarray:
@@ -83,4 +83,4 @@ class PulseInBar(Exact):
         velocity = bar_velocity(place, gauge.time, pressure, length, speed, impedance, self.far_end)
         displacement = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * np.diff(gauge.time))])
         stress = bar_stress(place, gauge.time, pressure, length, speed, self.far_end)
-        return replace(gauge, displacement=along(displacement, 0), velocity=along(velocity, 0), stress=stress)
+        return History.of(gauge.place, gauge.time, along(displacement, 0), along(velocity, 0), stress)

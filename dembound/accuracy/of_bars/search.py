@@ -17,12 +17,13 @@ import numpy as np
 
 from dembound.accuracy.best import Choice
 from dembound.accuracy.budget import expected
-from dembound.accuracy.cause import Cause, Recorded
+from dembound.accuracy.cause import Cause
 from dembound.accuracy.end import ended_earlier
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_bars.causes import QUIET, difference, largest_motion, not_linear, split
 from dembound.accuracy.of_bars.exact import ExactMotion
 from dembound.accuracy.of_bars.floors import Floors, first_echo, is_regular
-from dembound.accuracy.of_bars.motions import Histories, Motions
+from dembound.accuracy.of_bars.motions import BarMotions
 from dembound.accuracy.of_bars.options import BarCandidate, bar_candidates, may_break
 from dembound.accuracy.of_bars.window import Window
 from dembound.bar.scene import build_bar
@@ -117,18 +118,24 @@ class Motion:
         """The error at the worst monitor."""
         return self._error_of(self.recorded)
 
-    def _error_of(self, recorded: Mapping[str, Recorded], last: Mapping[str, float] | None = None) -> float:
+    def _error_of(self, recorded: Motions, last: Mapping[str, float] | None = None) -> float:
         """The error of what is recorded; last : s, by monitor, up to which it counts."""
-        times, own, exact = self._motions.times, self._own, self._exact
+        own, exact = self._own, self._exact
         if last is not None:
             own = {
-                name: {q: np.where(times[name] <= last[name], values, exact[name][q]) for q, values in each.items()}
+                name: replace(
+                    each,
+                    values={
+                        q: np.where(each.time[:, None] <= last[name], values, exact[name].values[q])
+                        for q, values in each.values.items()
+                    },
+                )
                 for name, each in own.items()
             }
         return expected([difference("all", own, exact, recorded)], recorded).worst
 
     @property
-    def _surely_counted(self) -> dict[str, Recorded]:
+    def _surely_counted(self) -> dict[str, History]:
         """The part of what is recorded that counts for all choices."""
         counted = self.exact.surely_counted(self._motions.window)
         return {
@@ -152,33 +159,33 @@ class Motion:
     def moves(self) -> bool:
         """Whether anything moves at a monitor, but for rounding errors."""
         largest = largest_motion(self.choice.scene.case, self.choice.scene.case.run.duration)["velocity"]
-        return any(np.abs(own["velocity"]).max() > QUIET * largest for own in self._exact.values())
+        return any(np.abs(own.velocity).max() > QUIET * largest for own in self._exact.values())
 
     @cached_property
-    def _motions(self) -> Motions:
+    def _motions(self) -> BarMotions:
         """The motions at all steps."""
         scene, step, steps = self.choice.scene, self.choice.step, self.choice.steps
         times = dict.fromkeys(self.exact.places, step * np.arange(steps + 1))
-        return Motions(scene.case, scene, Window.up_to(steps * step, step), times)
+        return BarMotions(scene.case, scene, Window.up_to(steps * step, step), times)
 
     @cached_property
-    def _own(self) -> Histories:
+    def _own(self) -> Motions:
         return self._motions.own()
 
     @cached_property
-    def _exact(self) -> Histories:
+    def _exact(self) -> Motions:
         return self.exact.at(self._motions.window)
 
     @cached_property
-    def recorded(self) -> dict[str, Recorded]:
+    def recorded(self) -> dict[str, History]:
         """The motion as a run records it; without the stress of end nodes, which is that half a spacing inside."""
         ends = (0, self.choice.scene.count - 1)
         at_ends = [name for name, node in self._motions.nodes.items() if node in ends]
         return {
-            name: Recorded(
-                np.array([self.exact.places[name], 0.0]),
-                self._motions.times[name],
-                {q: values[:, None] for q, values in own.items() if q != "stress" or name not in at_ends},
+            name: replace(
+                own,
+                place=np.array([self.exact.places[name], 0.0]),
+                values={q: values for q, values in own.values.items() if q != "stress" or name not in at_ends},
             )
             for name, own in self._own.items()
         }

@@ -9,8 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.cause import CONTINUUM, GRID, SIDES, STEP, Cause, Causes, Recorded
+from dembound.accuracy.cause import CONTINUUM, GRID, SIDES, STEP, Cause, Causes
 from dembound.accuracy.delays import error_of_delay
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
 from dembound.accuracy.of_disks.pair import Pair, run_pair, sides_of_pair
 from dembound.accuracy.of_disks.walls import wall_error
@@ -30,9 +31,7 @@ MOTIONS = ("velocity", "displacement")
 """Quantities of disks."""
 
 
-def causes_of_disks(
-    case: DiskCase, recorded: Mapping[str, Recorded], time_step: float, work: float, most: float
-) -> Causes:
+def causes_of_disks(case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
     """The causes of the error of a run, with histories at the recorded times.
 
     case : to the end of the run. recorded : by monitor. time_step (s), work (particle-steps) : of the run. most :
@@ -41,9 +40,7 @@ def causes_of_disks(
     return _Disks(case, build(case), recorded, time_step, work, most).causes()
 
 
-def causes_by_formula(
-    case: DiskCase, scene: DiskScene, recorded: Mapping[str, Recorded], time_step: float
-) -> list[Cause]:
+def causes_by_formula(case: DiskCase, scene: DiskScene, recorded: Motions, time_step: float) -> list[Cause]:
     """The same but for sides that are compared by runs; the recorded run may be another one than that of the case.
 
     scene, time_step (s) : of the case.
@@ -57,7 +54,7 @@ class _Disks:
 
     case: DiskCase
     scene: DiskScene
-    recorded: Mapping[str, Recorded]
+    recorded: Motions
     time_step: float
     work: float
     most: float
@@ -80,7 +77,7 @@ class _Disks:
             name
             for name, own in self.recorded.items()
             for side, table in self.case.boundary.items()
-            if table.factors and abs(own.position[normal_axis(side)] - edges[side]) < reach
+            if table.factors and abs(own.place[normal_axis(side)] - edges[side]) < reach
         ]
         if at:
             names = " and ".join(dict.fromkeys(at))
@@ -138,7 +135,7 @@ class _Disks:
             yield Cause(f"{side} side", "by the reflection of dashpots at normal incidence", errors)
 
     def _returned(
-        self, own: Recorded, side: str, waves: Mapping[Motion, str], shares: Mapping[Motion, Reflected]
+        self, own: History, side: str, waves: Mapping[Motion, str], shares: Mapping[Motion, Reflected]
     ) -> dict[str, np.ndarray | float]:
         """What a driven side keeps back of its waves, and sends back of what returns to it.
 
@@ -175,7 +172,7 @@ class _Disks:
         }
         yield Cause(STEP, words, steps)
 
-    def _delayed(self, own: Recorded, step: float) -> dict[str, np.ndarray]:
+    def _delayed(self, own: History, step: float) -> dict[str, np.ndarray]:
         """What dispersion adds with steps of this length (s)."""
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
         for way in self._ways(own):
@@ -192,7 +189,7 @@ class _Disks:
         """Where waves start."""
         return sources_of(self.case, self.scene.ground)
 
-    def _ways(self, own: Recorded) -> list[_Way]:
+    def _ways(self, own: History) -> list[_Way]:
         """The ways of P and S waves to a monitor: from a driven side, or from the nearest load or hole.
 
         A wave at an angle comes through a continuum, which delays it less: its way is the longer side of the disks.
@@ -202,7 +199,7 @@ class _Disks:
         driving = list(self.case.driving)
         if driving and not any(load.wave for load in self.case.load):
             axis = normal_axis(driving[0])
-            path = max(float(each.distance(own.position[None])[0]) for each in sources if not each.is_local)
+            path = max(float(each.distance(own.place[None])[0]) for each in sources if not each.is_local)
             if not self.case.side(OPPOSITE[driving[0]]).is_artificial:
                 path = self.case.size[axis]  # the mean of the ways there, and back from the other side
             return _both_ways(np.eye(2)[axis], path, ground.wave_speeds(axis), [AXES[axis]])
@@ -210,8 +207,8 @@ class _Disks:
             extent = self.case.packing.extent
             return _both_ways(np.eye(2)[1], max(extent), ground.wave_speeds(1), [AXES[0], DIAGONAL])
         local = [each for each in sources if np.isfinite(each.box).all()]
-        places = [np.clip(own.position, each.box[:2], each.box[2:]) for each in local]
-        rays = [own.position - place for place in places]
+        places = [np.clip(own.place, each.box[:2], each.box[2:]) for each in local]
+        rays = [own.place - place for place in places]
         if not rays:
             return []
         ray = min(rays, key=lambda each: float(np.hypot(*each)))
@@ -244,7 +241,7 @@ def _both_ways(
     return [_Way("p", along, path, p, directions), _Way("s", across, path, s, directions)]
 
 
-def reflected_motion(own: Recorded, column: int, share: Reflected) -> dict[str, np.ndarray]:
+def reflected_motion(own: History, column: int, share: Reflected) -> dict[str, np.ndarray]:
     """Velocity and displacement (k,) that a side reflects of a recorded motion along x or y (column 0 or 1).
 
     In phase R/(1 − R) of the motion, as 1 − R of it has come in; what is out of phase has the shape of a mass's force,

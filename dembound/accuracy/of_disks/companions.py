@@ -9,13 +9,13 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.cause import Recorded
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged, movable_sides
 from dembound.accuracy.of_disks.load_places import middle_of_loads, middles_of_loads
 from dembound.accuracy.of_disks.pair import PairScenes, measured, ratios, scenes_of_pair, sides_of_pair
 from dembound.accuracy.of_disks.patches import patch_around, weights_at
-from dembound.accuracy.runner import Gauges, Outcome
+from dembound.accuracy.runner import Outcome
 from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
@@ -65,15 +65,19 @@ class Companions:
         return LESS * choose_step(self._lattice)[0]
 
     @property
-    def far(self) -> Gauges:
+    def far(self) -> Motions:
         """The motion of the disks of all patches without what sides send back, until bonds break."""
-        return _until(self._far.gauges, self.first_break)
+        return self._until_break(self._far.motions)
 
     @property
     def first_break(self) -> float:
         """Time (s) at which the first bond breaks there, infinite without one."""
         found = self._far.findings.get(BREAK_TIME)
         return math.inf if found is None else found.value
+
+    def _until_break(self, motions: Motions) -> Motions:
+        """The histories before the first bond breaks with far sides."""
+        return {name: each.before(self.first_break) for name, each in motions.items()}
 
     @cached_property
     def _far(self) -> Outcome:
@@ -109,11 +113,11 @@ class Companions:
         """Bricks of the companion's disks beyond each side that may move, with which nothing returns."""
         return needed_by(build(self._own))
 
-    def recorded(self, scene: DiskScene) -> dict[str, Recorded]:
+    def recorded(self, scene: DiskScene) -> dict[str, History]:
         """That motion, at the places of the monitors in a scene, seen from the loads."""
         time = next(iter(self.far.values())).time
         motion = self._motion(self.far, self._places(scene))
-        return {name: Recorded(scene.monitored[name], time, values) for name, values in motion.items()}
+        return {name: History(scene.monitored[name], time, values) for name, values in motion.items()}
 
     def moved(self, scene: DiskScene) -> list[dict[str, dict[str, np.ndarray]]]:
         """How that motion differs at the places of a scene's monitors from that at those given, (k, 2).
@@ -142,7 +146,7 @@ class Companions:
             return {name: scene.monitored[name] * stretch for name in names}
         return {name: own + scene.monitored[name] - seen for name in names}
 
-    def _motion(self, gauges: Gauges, places: Mapping[str, np.ndarray]) -> dict[str, dict[str, np.ndarray]]:
+    def _motion(self, gauges: Motions, places: Mapping[str, np.ndarray]) -> dict[str, dict[str, np.ndarray]]:
         """Motion (k, 2) along x and y at places (2,) m near the monitors, by monitor and quantity."""
         found: dict[str, dict[str, np.ndarray]] = {}
         for name, patch in self._patches.items():
@@ -150,7 +154,7 @@ class Companions:
             disks = [gauges[_named(name, k)] for k in range(len(patch))]
             found[name] = {
                 q: sum(
-                    (w * gauge.of(q)[:, :2] for w, gauge in zip(weights, disks, strict=True)),  # type: ignore[arg-type]
+                    (w * gauge.values[q][:, :2] for w, gauge in zip(weights, disks, strict=True)),
                     np.zeros((len(disks[0].time), 2)),
                 )
                 for q in QUANTITIES
@@ -189,26 +193,15 @@ class Companions:
         """Bricks by which a side moves."""
         return math.ceil(wider * scene.case.packing.copies[normal_axis(side)] - 1e-9)
 
-    def _run(self, case: DiskCase) -> Gauges:
+    def _run(self, case: DiskCase) -> Motions:
         """The motion of the monitors of a companion, until bonds break with far sides."""
-        return _until(self._measured(case).gauges, self.first_break)
+        return self._until_break(self._measured(case).motions)
 
     def _measured(self, case: DiskCase) -> Outcome:
         """The outcome of a companion."""
         outcome = measured(case, self.step)
         self.work += outcome.work
         return outcome
-
-
-def _until(gauges: Gauges, time: float) -> Gauges:
-    """Histories before a time (s)."""
-    if math.isinf(time):
-        return gauges
-    return {
-        name: replace(each, time=each.time[own], displacement=each.displacement[own], velocity=each.velocity[own])
-        for name, each in gauges.items()
-        for own in [each.time < time]
-    }
 
 
 def _named(monitor: str, number: int) -> str:

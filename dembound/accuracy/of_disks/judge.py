@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from dembound.accuracy.best import Choice as Best
-from dembound.accuracy.cause import Causes, Recorded
+from dembound.accuracy.cause import Causes
 from dembound.accuracy.choice import Named
+from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import Judge
 from dembound.accuracy.moved_sides import Extended
 from dembound.accuracy.of_disks.boxes import box_facts
@@ -36,16 +37,12 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
     places: ClassVar[Mapping[str, int]] = {BREAK_X: 0, BREAK_Y: 1}
     first_break = BREAK_TIME
 
-    def causes(
-        self, case: DiskCase, recorded: Mapping[str, Recorded], time_step: float, work: float, most: float
-    ) -> Causes:
+    def causes(self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
         """Sides, by companions; dispersion, steps, continuum and walls, by formulas."""
         return causes_of_disks(case, recorded, time_step, work, most)
 
-    def of_another_seed(self, case: DiskCase, recorded: Mapping[str, Recorded], work: float) -> Causes:
+    def of_another_seed(self, case: DiskCase, recorded: Motions, work: float) -> Causes:
         """The difference from a run with the next seed; see `Judge.of_another_seed`."""
-        if getattr(case.packing, "seed", None) is None:
-            return super().of_another_seed(case, recorded, work)
         return cause_of_packing(case, recorded, work)
 
     def notes(self, case: DiskCase, summary: Mapping[str, Any]) -> Iterator[str]:

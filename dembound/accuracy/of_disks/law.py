@@ -14,15 +14,16 @@ their time, and motion near a load differs by p/ρc_p² or so (docs/error_bound.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from dembound.accuracy.cause import Cause, Recorded
+from dembound.accuracy.cause import Cause
 from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.differences import keeps
+from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.pair import measured, ratios
 from dembound.casefile.disks import DiskCase
@@ -72,7 +73,7 @@ class ElasticTwin:
             return self.factor > 1.0
         return self.factor * min(1.0, diameter / self.diameter) > RESERVE
 
-    def causes(self, scene: DiskScene, recorded: Mapping[str, Recorded]) -> list[Cause]:
+    def causes(self, scene: DiskScene, recorded: Motions) -> list[Cause]:
         """The error by the law, if there is a stress at rest. scene : of a choice; recorded : its motion."""
         if self.stress == 0.0:
             return []
@@ -81,7 +82,7 @@ class ElasticTwin:
         near, slower = NEAR_LOAD * self.stress / (ground.density * p**2), self.stress / (2.0 * ground.density * s**2)
         errors: dict[str, dict[str, np.ndarray | float]] = {}
         for name, own in recorded.items():
-            path = max((_way(each, own.position, scene.case.size) for each in sources), default=0.0)
+            path = max((_way(each, own.place, scene.case.size) for each in sources), default=0.0)
             delay = partial(np.full_like, fill_value=slower * path / s)
             parts = error_of_delay(own.time, own.values["velocity"], delay)
             late = Cause("", "", {name: dict(zip(("velocity", "displacement"), parts, strict=True))})

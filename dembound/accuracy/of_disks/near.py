@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dembound.accuracy.cause import Recorded
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.load_places import middle_of_forces
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene
@@ -19,12 +19,12 @@ NEAR, CURVED = 0.08, 0.6
 a force in rock within a factor of 1.6 at r of 4 to 14 disks, for k of 0.08 to 0.28 per disk (docs/error_bound.md)."""
 
 
-def errors_near_loads(scene: DiskScene, own: Recorded) -> dict[str, float]:
+def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
     """The error at one monitor by quantity, RMS over RMS of its larger component; 0 without forces in places.
 
     own : the motion, whose RMS frequency and part along the ray from the nearest force count.
     """
-    rays = [_nearest(own.position - place, scene) for place in _places(scene)]
+    rays = [_nearest(own.place - place, scene) for place in _places(scene)]
     if not rays:
         return dict.fromkeys(own.values, 0.0)
     diameter, ray = scene.ground.brick.mean_diameter, min(rays, key=lambda each: float(np.hypot(*each)))

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.accuracy.cause import Recorded
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.coarser import Coarser, coarser, largest_diameter
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged, movable_sides
-from dembound.accuracy.runner import Gauges, Outcome, measure
+from dembound.accuracy.runner import Outcome, measure
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.settings import signals_of
@@ -44,25 +44,22 @@ class Pair:
     matters, histories of a third run, as own with whole cells at its sides, and its weight, see `Coarser`.
     """
 
-    own: Gauges
-    far: Gauges
+    own: Motions
+    far: Motions
     ratio: float
     size: tuple[float, float]
     echo_free: bool
     work: int
-    whole: Gauges | None = None
+    whole: Motions | None = None
     weight: float = 0.0
 
-    def difference(self, recorded: Recorded, monitor: str, quantity: str) -> np.ndarray:
+    def difference(self, recorded: History, monitor: str, quantity: str) -> np.ndarray:
         """What the sides add to a recorded quantity (k, 2): own less far, at the times of the record."""
-        from scipy.interpolate import CubicSpline
-
         own, far = self.own[monitor], self.far[monitor]
-        values = own.of(quantity)[:, :2] - far.of(quantity)[:, :2]  # type: ignore[arg-type]
+        values = own.values[quantity][:, :2] - far.values[quantity][:, :2]
         if self.whole is not None:
-            values += self.weight * (self.whole[monitor].of(quantity) - own.of(quantity))[:, :2]  # type: ignore[arg-type]
-        inside = np.minimum(recorded.time, own.time[-1])
-        return np.asarray(CubicSpline(own.time, values)(inside))
+            values += self.weight * (self.whole[monitor].values[quantity] - own.values[quantity])[:, :2]
+        return History(own.place, own.time, {quantity: values}).at(recorded.time).values[quantity]
 
 
 def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
@@ -76,13 +73,13 @@ def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) ->
         raise CaseError([f"a pair of runs would take {times:.2g} times the work that may be spent (--budget)"])
     own, far, *whole = (measured(each.case, pair.step) for each in pair.scenes)
     return Pair(
-        own.gauges,
-        far.gauges,
+        own.motions,
+        far.motions,
         pair.ratio,
         pair.larger.case.packing.extent,
         pair.echo_free,
         own.work + far.work + sum(each.work for each in whole),
-        whole[0].gauges if whole else None,
+        whole[0].motions if whole else None,
         pair.weight,
     )
 

@@ -7,7 +7,7 @@ companions of larger disks, the rest by formulas.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
@@ -16,8 +16,9 @@ import numpy as np
 
 from dembound.accuracy.best import Choice
 from dembound.accuracy.budget import Expected, expected
-from dembound.accuracy.cause import SIDES, Cause, Recorded
+from dembound.accuracy.cause import SIDES, Cause
 from dembound.accuracy.end import ended_earlier
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.expected import of_ground, of_sides
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
@@ -125,7 +126,7 @@ class _Found:
     """A choice with its error; recorded : the motion without it, by monitor; causes : of the error."""
 
     candidate: Candidate
-    recorded: Mapping[str, Recorded]
+    recorded: Motions
     causes: list[Cause]
 
     @cached_property
@@ -134,7 +135,7 @@ class _Found:
         return expected(self.causes, self.recorded)
 
     @property
-    def motion(self) -> dict[str, Recorded]:
+    def motion(self) -> dict[str, History]:
         """The motion with what the sides add to it."""
         sides = [cause.errors for cause in self.causes if cause.name == SIDES]
         return {

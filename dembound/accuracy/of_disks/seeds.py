@@ -7,12 +7,13 @@ errors of the same size, independent of each other, their difference is √2 tim
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.cause import Cause, Causes, Recorded
+from dembound.accuracy.cause import Cause, Causes
+from dembound.accuracy.history import Motions
+from dembound.accuracy.judge import no_seed
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.results.histories import Quantity
@@ -23,26 +24,24 @@ PACKING = "packing"
 MOTIONS: tuple[Quantity, ...] = ("velocity", "displacement")
 
 
-def cause_of_packing(case: DiskCase, recorded: Mapping[str, Recorded], work: float) -> Causes:
+def cause_of_packing(case: DiskCase, recorded: Motions, work: float) -> Causes:
     """What the seed of a random packing adds to the motion of its monitors, from one more run as long as the case's.
 
-    case : of a packing with a seed, to the end of the run. work (particle-steps) : of the run. Raises the errors of
-    runs.
+    case : to the end of the run. work (particle-steps) : of the run. Raises CaseError for a packing without a seed, and
+    the errors of runs.
     """
-    from scipy.interpolate import CubicSpline
-
-    seed = int(getattr(case.packing, "seed"))  # noqa: B009
+    seed = getattr(case.packing, "seed", None)
+    if seed is None:
+        raise no_seed(case)
     ended = {"until": type(case.run).model_fields["until"].default, "checkpoint": 0.0}
     packing = case.packing.model_copy(update={"seed": seed + 1})
     other = replace(case, packing=packing, run=case.run.model_copy(update=ended))
     outcome = measure(other, Progress())[0]
     errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in recorded.items():
-        gauge = outcome.gauges[name]
-        times = np.minimum(own.time, gauge.time[-1])
+        other_motion = outcome.motions[name].at(own.time)
         errors[name] = {
-            quantity: (own.values[quantity] - CubicSpline(gauge.time, gauge.of(quantity)[:, :2])(times))
-            / math.sqrt(2.0)
+            quantity: (own.values[quantity] - other_motion.values[quantity][:, :2]) / math.sqrt(2.0)
             for quantity in MOTIONS
         }
     words = f"from a run with the seed {seed + 1}: the difference over √2"

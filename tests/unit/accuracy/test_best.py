@@ -9,9 +9,10 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import choose
 from dembound.accuracy.best import Choice
+from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks import search as of_disks
 from dembound.accuracy.of_disks.search import SAFETY
-from dembound.accuracy.runner import Gauges, measure
+from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.running import Progress
@@ -40,7 +41,7 @@ def chosen() -> Choice:
     return choose(bar(), 0.02)
 
 
-def exact(case: DiskCase, gauges: Gauges, name: str) -> np.ndarray:
+def exact(case: DiskCase, gauges: Motions, name: str) -> np.ndarray:
     """The velocity of a plane wave from the first disk of the given case, at the times of a history."""
     way = {"near": 3.75, "back": 24.75}[name] - 0.25
     return np.asarray(case.wave["push"].velocity(gauges[name].time - way / 1000.0))
@@ -48,7 +49,7 @@ def exact(case: DiskCase, gauges: Gauges, name: str) -> np.ndarray:
 
 def true_error(given: DiskCase, case: Any) -> float:
     """Largest RMS of the velocity's error over that of the velocity."""
-    gauges = measure(case, Progress())[0].gauges
+    gauges = measure(case, Progress())[0].motions
     errors = [gauges[name].velocity[:, 0] - exact(given, gauges, name) for name in gauges]
     sizes = [exact(given, gauges, name) for name in gauges]
     return max(float(np.linalg.norm(e) / np.linalg.norm(s)) for e, s in zip(errors, sizes, strict=True))

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.budget import Estimate
-from dembound.accuracy.cause import SIDES, Cause, Causes, Recorded
+from dembound.accuracy.cause import SIDES, Cause, Causes
+from dembound.accuracy.history import History
 
 TIME = np.linspace(0.0, 1.0, 5)
 MOTION = np.array([[0.0, 0.0], [1.0, 3.0], [-1.0, 4.0], [2.0, 0.0], [0.0, 0.0]])
@@ -13,7 +14,7 @@ MOTION = np.array([[0.0, 0.0], [1.0, 3.0], [-1.0, 4.0], [2.0, 0.0], [0.0, 0.0]])
 
 def estimate(echo_free: bool = True) -> Estimate:
     """Sides that add a constant of 1 along x and −2 along y; a grid of which only the size is known."""
-    recorded = {"a": Recorded(np.zeros(2), TIME, {"velocity": MOTION})}
+    recorded = {"a": History(np.zeros(2), TIME, {"velocity": MOTION})}
     added = np.tile([1.0, -2.0], (5, 1))
     sides = Cause(SIDES, "from a pair", {"a": {"velocity": added}})
     grid = Cause("grid", "by formula", {"a": {"velocity": 0.25}})
@@ -48,13 +49,13 @@ def test_lines_begin_with_the_errors_and_end_with_what_is_missing():
 
 
 def test_causes_found_alike_share_a_line():
-    recorded = {"a": Recorded(np.zeros(2), TIME, {"velocity": MOTION})}
+    recorded = {"a": History(np.zeros(2), TIME, {"velocity": MOTION})}
     two = [Cause(name, "by formula", {"a": {"velocity": 0.03}}) for name in ("grid", "time step")]
     assert Estimate(recorded, Causes(two)).lines()[1:] == ["grid and time step by formula"]
 
 
 def test_a_monitor_at_rest_has_no_error():
-    recorded = {"a": Recorded(np.zeros(2), TIME, {"velocity": np.zeros((5, 2))})}
+    recorded = {"a": History(np.zeros(2), TIME, {"velocity": np.zeros((5, 2))})}
     cause = Cause(SIDES, "from a pair", {"a": {"velocity": np.zeros((5, 2))}})
     found = Estimate(recorded, Causes([cause]))
     assert found.shares("a", "velocity") == {}

@@ -10,8 +10,9 @@ from small_cases import PUSHED, small
 from dembound.accuracy.advise import choose
 from dembound.accuracy.best import Choice
 from dembound.accuracy.budget import Estimate
-from dembound.accuracy.cause import Cause, Causes, Recorded
+from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.end import END, LEAST_SAVED, earlier_ends, ended_earlier
+from dembound.accuracy.history import History
 from dembound.accuracy.runner import measure
 from dembound.running import Progress
 
@@ -29,7 +30,7 @@ PASSED, ECHO = 0.0245 + 0.03, 2.0 * 26.25 / 1000.0
 """When the wave has passed, and the time from the nearer monitor to the end on its right and back, s."""
 
 
-def passing(late: float = 0.0) -> dict[str, Recorded]:
+def passing(late: float = 0.0) -> dict[str, History]:
     """The wave at both monitors, and a velocity of `late` m/s at the farther one from 0.3 s on."""
     wave, time = small(BAR).wave["push"], np.linspace(0.0, 0.4, 4001)
     found = {}
@@ -37,9 +38,7 @@ def passing(late: float = 0.0) -> dict[str, Recorded]:
         velocity = wave.velocity(time - way / 1000.0) + more * (time >= 0.3)
         displacement = np.cumsum(velocity) * 1e-4
         values = {"velocity": velocity, "displacement": displacement}
-        found[name] = Recorded(
-            np.zeros(2), time, {q: np.column_stack([each, 0.0 * each]) for q, each in values.items()}
-        )
+        found[name] = History(np.zeros(2), time, {q: np.column_stack([each, 0.0 * each]) for q, each in values.items()})
     return found
 
 
@@ -117,7 +116,7 @@ def test_the_run_of_a_choice_ends_when_it_is_expected_to() -> None:
     choice = choose(small(BAR), 0.01)
     assert choice.holds
     assert choice.case.run.until == "silent"
-    gauges = measure(choice.case, Progress())[0].gauges
+    gauges = measure(choice.case, Progress())[0].motions
     expected = float(choice.words.rpartition("about ")[2].removesuffix(" s"))
     assert gauges["near"].time[-1] == pytest.approx(expected, rel=0.05)
     assert expected == pytest.approx(PASSED + ECHO, rel=0.05)

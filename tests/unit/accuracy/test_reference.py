@@ -4,17 +4,18 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.choice import Choice
+from dembound.accuracy.history import History
 from dembound.accuracy.reference import Reference, Wanted, errors
-from dembound.accuracy.runner import Gauge, Outcome
+from dembound.accuracy.runner import Outcome
 from dembound.errors import CaseError
 
 
-def gauge(samples: int, x: float = 1.0, y: float = 0.0, place: float = 0.0, after: float = 0.0) -> Gauge:
+def gauge(samples: int, x: float = 1.0, y: float = 0.0, place: float = 0.0, after: float = 0.0) -> History:
     """A motion of a second along both axes with these factors; y is added to by `after` from 0.5 s on."""
     time = np.linspace(0.0, 1.0, samples)
     shape = np.sin(np.pi * time)
     motion = np.column_stack([x * shape, y * shape + after * (time > 0.5), 0.0 * time])
-    return Gauge(np.array([place, 0.0]), time, 2.0 * motion, motion, 3.0 * motion[:, 0])
+    return History.of(np.array([place, 0.0]), time, 2.0 * motion, motion, 3.0 * motion[:, 0])
 
 
 @pytest.fixture
@@ -24,7 +25,7 @@ def compared(bar):
     def compare(found, expected, until: float = np.inf, **wanted):
         choice = Choice("it", {}, bar())
         reference = Reference("finest", "the finest", lambda choice, outcome: expected, until=until)
-        return errors(choice, Outcome(gauges=found), reference, Wanted(**wanted))
+        return errors(choice, Outcome(motions=found), reference, Wanted(**wanted))
 
     return compare
 

@@ -16,7 +16,7 @@ def test_monitors_in_the_half_that_is_not_stepped_have_their_own_signs(bar) -> N
     )
 
     assert half.count == whole.count // 2
-    for name, gauge in whole.gauges.items():
+    for name, gauge in whole.motions.items():
         largest = np.abs(gauge.velocity).max()
         assert np.abs(gauge.velocity[:, 0]).max() > 0.01 * largest
-        np.testing.assert_allclose(half.gauges[name].velocity, gauge.velocity, rtol=0.0, atol=1e-12 * largest)
+        np.testing.assert_allclose(half.motions[name].velocity, gauge.velocity, rtol=0.0, atol=1e-12 * largest)

@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.exact.lamb import LambProblem
 from dembound.accuracy.of_disks.exact.pressure import CavityProblem, GarvinProblem
-from dembound.accuracy.of_disks.exact.problem import Motion, Problem
+from dembound.accuracy.of_disks.exact.problem import Problem
 from dembound.accuracy.of_disks.exact.scattering import ScatteringProblem
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
@@ -29,7 +30,7 @@ PROBLEMS: tuple[type[Problem], ...] = (LambProblem, CavityProblem, GarvinProblem
 SAMPLES = 2000
 """Number of times at which the exact motion is written."""
 
-__all__ = ["PROBLEMS", "Motion", "Problem", "exact_motions", "problem_of", "write_exact"]
+__all__ = ["PROBLEMS", "Problem", "exact_motions", "problem_of", "write_exact"]
 
 
 def problem_of(scene: DiskScene, name: str | None = None) -> Problem:
@@ -57,13 +58,13 @@ def problem_of(scene: DiskScene, name: str | None = None) -> Problem:
     return max(found, key=lambda problem: min([*problem.until.values(), duration]))
 
 
-def exact_motions(scene: DiskScene, name: str | None = None) -> tuple[Problem, dict[str, Motion]]:
+def exact_motions(scene: DiskScene, name: str | None = None) -> tuple[Problem, dict[str, History]]:
     """The problem that a scene is, and the motion of monitors, each as long as it is exact; errors as `problem_of`."""
     problem = problem_of(scene, name)
     times = np.linspace(0.0, scene.case.run.duration, SAMPLES)
     needed = times <= max(problem.until.values(), default=0.0)
     motions = problem.motions(times[needed])
-    return problem, {monitor: motions[monitor].before(end) for monitor, end in problem.until.items()}
+    return problem, {monitor: motions[monitor].until(end) for monitor, end in problem.until.items()}
 
 
 def write_exact(case: DiskCase, path: Path, name: str | None = None) -> Problem:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.exact import exact_motions, problem_of
 from dembound.accuracy.reference import Exact
-from dembound.accuracy.runner import Gauge, Gauges
 from dembound.boundaries import SIDES
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile import Case
@@ -35,11 +35,11 @@ class Continuum(Exact):
         problem = problem_of(build(case))
         return cls(case, problem.name, problem.sentence, min(problem.until.values(), default=math.inf))
 
-    def gauges(self, case: Case, recorded: Gauges) -> dict[str, Gauge]:
+    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
         """The motion at the monitors' places; errors as of `exact_motions`."""
         assert isinstance(case, DiskCase)
         _, motions = exact_motions(build(self._without_ends(case)), self.name)
-        return {name: Gauge(recorded[name].position, *motion) for name, motion in motions.items()}
+        return {name: replace(motion, place=recorded[name].place) for name, motion in motions.items()}
 
     def _without_ends(self, case: DiskCase) -> DiskCase:
         """The case of a choice, with the sides of the base if it ends where the rock of the base goes on."""

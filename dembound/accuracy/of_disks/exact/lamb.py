@@ -9,10 +9,10 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.exact.problem import (
     BEGINNING,
     ROUGH,
-    Motion,
     Problem,
     has_pressure,
     law_problems,
@@ -60,6 +60,7 @@ class LambProblem(Problem):
     load: LineLoad
     wave: Wave
     away: Mapping[str, float]
+    places: Mapping[str, np.ndarray]
 
     @property
     def until(self) -> dict[str, float]:
@@ -83,18 +84,19 @@ class LambProblem(Problem):
         if problems := [*law_problems(case), *half_space, *_ends_of_the_surface(scene, load)]:
             raise CaseError(problems)
         wave = case.wave[load.wave]
-        away = {name: _away(scene, load, name, place) for name, place in places_of(scene).items()}
+        places = places_of(scene)
+        away = {name: _away(scene, load, name, place) for name, place in places.items()}
         for distance in away.values():
             end = case.run.duration - abs(distance) / solid.p_wave_speed
             must_be_continuous(load.wave, wave.velocity, BEGINNING * end, end)
-        return cls(solid, load, wave, away)
+        return cls(solid, load, wave, away, places)
 
-    def motions(self, times: np.ndarray) -> dict[str, Motion]:
+    def motions(self, times: np.ndarray) -> dict[str, History]:
         """Motion of the surface at the monitors; the velocity is the slope between the times."""
-        return {name: self._motion(times, distance) for name, distance in self.away.items()}
+        return {name: self._motion(times, self.places[name], distance) for name, distance in self.away.items()}
 
-    def _motion(self, times: np.ndarray, distance: float) -> Motion:
-        """Motion at a distance from the load."""
+    def _motion(self, times: np.ndarray, place: np.ndarray, distance: float) -> History:
+        """Motion at a place (2,) m of the surface, at a distance (m) from the load."""
         solid = self.solid
         speeds = solid.p_wave_speed, solid.s_wave_speed
         try:
@@ -104,7 +106,7 @@ class LambProblem(Problem):
         except RuntimeError:
             raise CaseError([f"wave.{self.load.wave}: {ROUGH}"]) from None
         moved = np.column_stack([np.sign(distance) * along, -down, np.zeros(len(times))])
-        return Motion(times, moved, np.gradient(moved, times, axis=0))
+        return History.of(place, times, moved, np.gradient(moved, times, axis=0))
 
 
 def _away(scene: DiskScene, load: LineLoad, name: str, place: np.ndarray) -> float:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from dembound.accuracy.reference import Exact, along
-from dembound.accuracy.runner import Gauge, Gauges
+from dembound.accuracy.history import History, Motions, along
+from dembound.accuracy.reference import Exact
 from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
@@ -38,7 +38,7 @@ class PlaneWave(Exact):
         ((motion, _),) = waves.items()
         return cls(side, motion) if all(_keeps_plane(case, side, motion)) else None
 
-    def gauges(self, case: Case, recorded: Gauges) -> dict[str, Gauge]:
+    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
         """The wave at the monitors' particles, at the same times."""
         assert isinstance(case, DiskCase)
         scene, axis = build(case), normal_axis(self.side)
@@ -47,12 +47,9 @@ class PlaneWave(Exact):
         wave, column = case.wave[case.driving[self.side][self.motion]], axis_of_motion(self.side, self.motion)
         found = {}
         for name, gauge in recorded.items():
-            late = gauge.time - abs(float(gauge.position[axis]) - start) / speed
-            found[name] = replace(
-                gauge,
-                displacement=along(wave.displacement(late), column),
-                velocity=along(wave.velocity(late), column),
-            )
+            late = gauge.time - abs(float(gauge.place[axis]) - start) / speed
+            moved, moving = (along(motion(late), column) for motion in (wave.displacement, wave.velocity))
+            found[name] = History.of(gauge.place, gauge.time, moved, moving)
         return found
 
 

@@ -9,10 +9,10 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.exact.problem import (
     BEGINNING,
     ROUGH,
-    Motion,
     Problem,
     echoes,
     has_pressure,
@@ -102,7 +102,7 @@ class CavityProblem(Problem):
         """The problem of a scene, see `Blast.of`."""
         return cls(Blast.of(scene))
 
-    def motions(self, times: np.ndarray) -> dict[str, Motion]:
+    def motions(self, times: np.ndarray) -> dict[str, History]:
         """Motion of the monitors, away from the hole's axis."""
         blast, found = self.blast, {}
         for name, place in blast.places.items():
@@ -114,7 +114,7 @@ class CavityProblem(Problem):
                 raise blast.rough() from None
             direction = np.append(away / math.hypot(*away), 0.0)
             moved, moving = (np.outer(values, direction) for values in (motion.displacement, motion.velocity))
-            found[name] = Motion(times, moved, moving)
+            found[name] = History.of(place, times, moved, moving)
         return found
 
 
@@ -152,7 +152,7 @@ class GarvinProblem(Problem):
             )
         return cls(blast)
 
-    def motions(self, times: np.ndarray) -> dict[str, Motion]:
+    def motions(self, times: np.ndarray) -> dict[str, History]:
         """Motion of the monitors."""
         from scipy.interpolate import CubicSpline
 
@@ -173,7 +173,8 @@ class GarvinProblem(Problem):
                     for rate in moment[1:]
                 )
                 still = np.zeros(len(times))
-                found[name] = Motion(times, *(np.column_stack([both[0], -both[1], still]) for both in (moved, moving)))
+                both = (np.column_stack([each[0], -each[1], still]) for each in (moved, moving))
+                found[name] = History.of(place, times, *both)
         except RuntimeError:
             raise blast.rough() from None
         return found

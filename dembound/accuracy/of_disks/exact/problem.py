@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
+from dembound.accuracy.history import History
 from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.messages import numbered
@@ -38,22 +39,6 @@ CONTINUOUS = "the solution needs a continuous wave"
 ROUGH = f"is so rough that the solution does not converge; {CONTINUOUS}"
 
 
-class Motion(NamedTuple):
-    """Motion of a monitor: x, y, and rotation, which exact problems leave zero."""
-
-    time: np.ndarray
-    """(k,) s"""
-    displacement: np.ndarray
-    """(k, 3) m, m, rad"""
-    velocity: np.ndarray
-    """(k, 3) m/s, m/s, rad/s"""
-
-    def before(self, end: float) -> Motion:
-        """The motion up to a time, s."""
-        chosen = self.time <= end
-        return Motion(*(values[chosen] for values in self))
-
-
 class Problem(ABC):
     """A problem with an exact solution, which a case may be."""
 
@@ -78,7 +63,7 @@ class Problem(ABC):
         """The problem that a scene is; raises CaseError, with the reasons, if it is none."""
 
     @abstractmethod
-    def motions(self, times: np.ndarray) -> dict[str, Motion]:
+    def motions(self, times: np.ndarray) -> dict[str, History]:
         """Motion of all monitors by name at times (k,) s; raises CaseError where no solution is found."""
 
 

@@ -9,10 +9,10 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.exact.problem import (
     BEGINNING,
     ROUGH,
-    Motion,
     Problem,
     echoes,
     hole_of,
@@ -79,7 +79,7 @@ class ScatteringProblem(Problem):
         must_be_continuous(name, case.wave[name].velocity, -BEGINNING * duration, duration)
         return cls(solid, hole, found.waves, case.wave[name], name, surface_of(scene), places_of(scene))
 
-    def motions(self, times: np.ndarray) -> dict[str, Motion]:
+    def motions(self, times: np.ndarray) -> dict[str, History]:
         """Motion of the monitors: the sum over all plane waves."""
         centre = np.array([self.hole.centre])
         places = np.array([*self.places.values()]).reshape(-1, 2) - centre
@@ -94,7 +94,10 @@ class ScatteringProblem(Problem):
                 raise CaseError([f"wave.{self.wave_name}: {ROUGH}"]) from None
             moved[:, :2] += found.displacement
             moving[:, :2] += found.velocity
-        return {name: Motion(times, moved[k].T, moving[k].T) for k, name in enumerate(self.places)}
+        return {
+            name: History.of(place, times, moved[k].T, moving[k].T)
+            for k, (name, place) in enumerate(self.places.items())
+        }
 
     def _about_the_hole(self, wave: GroundWave) -> PlaneWave:
         """A plane wave of the ground as one about the hole's axis."""

@@ -8,10 +8,10 @@ import pytest
 
 from dembound.accuracy.chart.references import exact_of
 from dembound.accuracy.choice import choices_of
+from dembound.accuracy.history import History
 from dembound.accuracy.of_bars.pulse import PulseInBar
 from dembound.accuracy.of_disks.exact.continuum import Continuum
 from dembound.accuracy.of_disks.exact.plane_wave import PlaneWave
-from dembound.accuracy.runner import Gauge
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import load, with_changes
@@ -57,9 +57,9 @@ def test_other_bars_have_none(spalling, changes) -> None:
 def test_the_far_end_of_a_bar_reflects(spalling, end: str, echo: float) -> None:
     case = spalling({"bar.strength": 1e9, "boundary.right": {"type": end}})
     time = np.array([0.7e-3, 1.7e-3])  # 0.5 m from the load: the crest of 0.2 ms, and its echo
-    at = Gauge(np.array([0.5, 0.0]), time, np.zeros((2, 3)), np.zeros((2, 3)), np.zeros(2))
+    at = History.of(np.array([0.5, 0.0]), time, np.zeros((2, 3)), np.zeros((2, 3)), np.zeros(2))
     crest = 12e6 / (2500.0 * 1000.0)
-    found = exact_of(case).gauges(case, {"gauge": at})["gauge"]
+    found = exact_of(case).motions(case, {"gauge": at})["gauge"]
     assert found.velocity[:, 0] == pytest.approx([crest, echo * crest])
     assert found.stress == pytest.approx([-12e6, echo * 12e6])
 
@@ -116,9 +116,9 @@ def test_its_motion_is_that_of_each_choice_at_the_monitors_of_the_choice() -> No
         for name in ("outside, 80 m, disks of 0.5 m", "outside, 40 m, disks of 1 m")
     )
     solution = exact_of(case)
-    still = Gauge(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
+    still = History.of(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
     here, there, elsewhere = (
-        solution.gauges(each, {name: replace(still, position=place) for name, place in build(each).monitored.items()})
+        solution.motions(each, {name: replace(still, place=place) for name, place in build(each).monitored.items()})
         for each in (case, larger, other)
     )
     np.testing.assert_allclose(there["side"].position - here["side"].position, [20.0, 20.0])
@@ -152,9 +152,9 @@ def test_sides_of_a_choice_that_end_the_rock_are_its_error() -> None:
     """The exact motion beside free and fixed sides, whose top is no free surface either, is that of endless rock."""
     case = load(folder() / "charts" / "blast.toml")
     ended = {f"boundary.{side}": {"type": "fixed"} for side in ("left", "right", "bottom")}
-    still = Gauge(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
+    still = History.of(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
     beside, alone = (
-        exact_of(case).gauges(each, dict.fromkeys(("side", "between", "diagonal"), still))
+        exact_of(case).motions(each, dict.fromkeys(("side", "between", "diagonal"), still))
         for each in (with_changes(case, ended | {"boundary.top": {"type": "free"}}), case)
     )
     for name, gauge in alone.items():
@@ -166,4 +166,4 @@ def test_a_choice_of_another_problem_has_none() -> None:
     case = load(folder() / "charts" / "blast.toml")
     quarter = with_changes(case, {"boundary.left": {"type": "symmetry"}})
     with pytest.raises(CaseError, match=r'boundary\.left\.type: is "symmetry", must be a side beyond'):
-        exact_of(case).gauges(quarter, {})
+        exact_of(case).motions(quarter, {})

@@ -92,10 +92,10 @@ def test_a_choice_that_fails_is_kept_with_its_reason(charted, spalling) -> None:
 
 
 def test_reasons_against_a_comparison_are_one_line(bar) -> None:
-    def gauges(*_):
+    def motions(*_):
         raise CaseError(["hole: is no circle", "motion.held: must be empty"])
 
-    line = study._line(Choice("odd", {}, bar()), Outcome(), Reference("exact", "exact", gauges), Options())
+    line = study._line(Choice("odd", {}, bar()), Outcome(), Reference("exact", "exact", motions), Options())
     assert (line.outcome.failure, line.errors) == ("hole: is no circle; motion.held: must be empty", ())
 
 
@@ -331,7 +331,7 @@ def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:
     with h5py.File(path) as file:
         assert [group.attrs["name"] for group in file["choices"].values()] == [row["choice"] for row in rows]
         run = file["runs"][run_of(file["choices/0000"])]
-        gauge, motion = run["gauges/gauge"], found.lines[0].outcome.gauges["gauge"]
+        gauge, motion = run["gauges/gauge"], found.lines[0].outcome.motions["gauge"]
         np.testing.assert_array_equal(gauge["velocity"][:], motion.velocity)
         assert file["reference"].attrs["spall place"] == pytest.approx(1.0 - 0.2 / 3.0)
         assert file.attrs["sentence"] == found.sentence

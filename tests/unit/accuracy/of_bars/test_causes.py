@@ -8,8 +8,9 @@ from estimated_bars import RICKER, SCENES, dalembert, estimated, exact, recorded
 from small_cases import SPALLING, small
 
 from dembound.accuracy.budget import Estimate
-from dembound.accuracy.cause import GRID, SIDES, STEP, Cause, Causes, Recorded
+from dembound.accuracy.cause import GRID, SIDES, STEP, Cause, Causes
 from dembound.accuracy.extended import extended
+from dembound.accuracy.history import History
 from dembound.accuracy.of_bars.causes import causes_of_bar
 from dembound.exact.bar import bar_stress, bar_velocity
 from dembound.kinds import with_changes
@@ -147,7 +148,7 @@ def test_nothing_is_said_about_a_bar_that_has_broken_but_about_the_time_before()
     assert Estimate(before, known).total("gauge", "velocity") == pytest.approx(error, rel=0.03)
 
 
-def _until(recorded: Recorded, time: float) -> Recorded:
+def _until(recorded: History, time: float) -> History:
     kept = recorded.time <= time
     return replace(recorded, time=recorded.time[kept], values={q: v[kept] for q, v in recorded.values.items()})
 
@@ -183,7 +184,7 @@ def test_a_monitor_that_no_wave_has_reached() -> None:
 )
 def test_what_is_not_estimated(changes: dict[str, object], line: str) -> None:
     case = scene("ranges" if "method.horizon" not in changes else "m = 3, soft ends")
-    recorded = {"near": Recorded(np.zeros(2), np.zeros(9), {"velocity": np.zeros((9, 2))})}
+    recorded = {"near": History(np.zeros(2), np.zeros(9), {"velocity": np.zeros((9, 2))})}
 
     found = causes_of_bar(with_changes(case, changes), recorded, 1e-6)
 
@@ -192,7 +193,7 @@ def test_what_is_not_estimated(changes: dict[str, object], line: str) -> None:
 
 def test_histories_of_errors_add_up_and_sizes_do_not() -> None:
     values = np.array([[3.0, 0.0], [4.0, 0.0]])
-    recorded = {"here": Recorded(np.zeros(2), np.arange(2.0), {"velocity": values})}
+    recorded = {"here": History(np.zeros(2), np.arange(2.0), {"velocity": values})}
 
     def found(*errors: np.ndarray | float) -> Estimate:
         return Estimate(recorded, Causes([Cause(str(k), "", {"here": {"velocity": e}}) for k, e in enumerate(errors)]))

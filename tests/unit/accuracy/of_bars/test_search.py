@@ -23,7 +23,7 @@ def true_error(choice: Choice) -> float:
     assert isinstance(given, BarCase)
     assert isinstance(case, BarCase)
     recorded, _ = recorded_of(case)
-    places = {name: own.position for name, own in recorded_of(given)[0].items()}
+    places = {name: own.place for name, own in recorded_of(given)[0].items()}
     found = []
     for name, own in recorded.items():
         true = exact(case, type(own)(places[name], own.time, own.values))

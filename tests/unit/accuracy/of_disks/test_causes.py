@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, SURROUNDED, Tables, small
 
-from dembound.accuracy.cause import GRID, STEP, Recorded
+from dembound.accuracy.cause import GRID, STEP
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.causes import causes_of_disks, reflected_motion
 from dembound.accuracy.of_disks.matched_sides import Reflected
 from dembound.disks.reports.continuum_facts import expected_errors
@@ -38,7 +39,7 @@ def recorded(velocity):
     step = TIME[1] - TIME[0]
     motion = np.stack([np.zeros_like(TIME), velocity], axis=1)
     displacement = step * (np.cumsum(motion, axis=0) - 0.5 * motion)
-    return {"middle": Recorded(PLACE, TIME, {"velocity": motion, "displacement": displacement})}
+    return {"middle": History(PLACE, TIME, {"velocity": motion, "displacement": displacement})}
 
 
 def cause(tables, name, record, step=1e-4):
@@ -91,7 +92,7 @@ def test_single_disks_at_the_edge_of_a_random_packing_are_named():
     times = np.linspace(0.0, 0.03, 31)
     motion = {quantity: np.zeros((31, 2)) for quantity in ("velocity", "displacement")}
     at = {"edge": (7.8, 2.0), "inside": (4.0, 2.0), "free": (4.0, 3.9)}
-    record = {name: Recorded(np.array(place), times, motion) for name, place in at.items()}
+    record = {name: History(np.array(place), times, motion) for name, place in at.items()}
     found = causes_of_disks(small(GRAINS, changes={"monitor": []}), record, 1e-4, 1e6, 1e6)
     (line,) = [line for line in found.missing if "single disks" in line]
     assert line.endswith("at edge")

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dembound.accuracy.of_run import SHORT
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import choose
 from dembound.accuracy.best import Choice
-from dembound.accuracy.cause import Recorded
+from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
-from dembound.accuracy.of_run import SHORT
-from dembound.accuracy.runner import Gauges, measure
+from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.kinds import with_changes
 from dembound.motion.paths import Source
@@ -124,7 +124,7 @@ def test_without_the_stress_at_rest_an_elastic_body_moves_alike() -> None:
     fixed = {"run.time_step": 0.9 * plan(own_twin().case).time_step}
     settled = with_changes(own_twin().case, {"static": CONFINED["static"], **fixed})
     without = with_changes(own_twin().case, fixed)
-    one, other = (measure(case, Progress())[0].gauges["beside"].velocity for case in (settled, without))
+    one, other = (measure(case, Progress())[0].motions["beside"].velocity for case in (settled, without))
     np.testing.assert_allclose(one, other, atol=1e-9 * float(np.abs(other).max()))
 
 
@@ -160,9 +160,9 @@ def test_bonds_of_any_strength_always_hold() -> None:
     assert found.stress == 0.0
 
 
-def _recorded(gauges: Gauges) -> dict[str, Recorded]:
+def _recorded(gauges: Motions) -> dict[str, History]:
     return {
-        name: Recorded(each.position, each.time, {q: each.of(q)[:, :2] for q in ("velocity", "displacement")})  # type: ignore[arg-type]
+        name: History(each.position, each.time, {q: each.values[q][:, :2] for q in ("velocity", "displacement")})  # type: ignore[arg-type]
         for name, each in gauges.items()
     }
 
@@ -173,7 +173,7 @@ def test_the_stress_at_rest_that_turns_with_the_disks_is_counted() -> None:
     fixed = {"run.time_step": 0.9 * plan(confined()).time_step}
     full = confined({**fixed, "material.elastic_start": False})
     elastic = small_with(twin.case, fixed)
-    own, other = (_recorded(measure(case, Progress())[0].gauges)["beside"] for case in (elastic, full))
+    own, other = (_recorded(measure(case, Progress())[0].motions)["beside"] for case in (elastic, full))
     scene = plan(elastic).scene
     (cause,) = twin.causes(scene, {"beside": own})  # type: ignore[arg-type]
     for quantity in ("velocity", "displacement"):

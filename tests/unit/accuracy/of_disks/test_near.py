@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
-from dembound.accuracy.cause import Recorded
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.near import CURVED, NEAR, errors_near_loads
 from dembound.disks.scene import DiskScene, build
 
@@ -21,11 +21,11 @@ def scene(radius: float) -> DiskScene:
     return build(small(PUSHED, changes={"packing": packing, "boundary": {}, "load": [push]}))  # type: ignore[arg-type]
 
 
-def recorded(place: tuple[float, float], move: tuple[float, float]) -> Recorded:
+def recorded(place: tuple[float, float], move: tuple[float, float]) -> History:
     """Motion of one frequency along a vector."""
     shape = np.array(move)
     velocity = np.sin(RATE * TIME)[:, None] * shape
-    return Recorded(
+    return History(
         np.array(place), TIME, {"velocity": velocity, "displacement": -np.cos(RATE * TIME)[:, None] * shape / RATE}
     )
 

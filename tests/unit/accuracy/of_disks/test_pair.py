@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from small_cases import Tables, small
 
-from dembound.accuracy.cause import Recorded
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks import pair as pairs
 from dembound.accuracy.of_disks.pair import Pair, run_pair
-from dembound.accuracy.runner import Gauge
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
@@ -29,16 +28,16 @@ SCENE: Tables = {
 """A lattice of 48 × 24 disks, with a load and a monitor nearer to its right side."""
 
 
-def gauge(x: float, y: float) -> Gauge:
+def gauge(x: float, y: float) -> History:
     """Motion at a constant velocity (m/s) along x and y, with a rotation that must not count."""
     motion = np.outer(TIME, [x, y, 9.0])
-    return Gauge(np.zeros(2), TIME, motion, np.tile([x, y, 9.0], (len(TIME), 1)))
+    return History.of(np.zeros(2), TIME, motion, np.tile([x, y, 9.0], (len(TIME), 1)))
 
 
 def test_the_difference_is_own_less_far_at_the_times_of_the_record():
     pair = Pair({"a": gauge(3.0, 1.0)}, {"a": gauge(1.0, 2.0)}, 3.0, (1.0, 1.0), True, 0)
     times = np.array([0.0, 0.33, 0.78])
-    recorded = Recorded(np.zeros(2), times, {})
+    recorded = History(np.zeros(2), times, {})
     np.testing.assert_allclose(pair.difference(recorded, "a", "velocity"), np.tile([2.0, -1.0], (3, 1)))
     np.testing.assert_allclose(pair.difference(recorded, "a", "displacement"), np.outer(times, [2.0, -1.0]), atol=1e-12)
 
@@ -46,7 +45,7 @@ def test_the_difference_is_own_less_far_at_the_times_of_the_record():
 def test_whole_cells_add_their_part_with_their_weight():
     pair = Pair({"a": gauge(3.0, 1.0)}, {"a": gauge(1.0, 2.0)}, 3.0, (1.0, 1.0), True, 0)
     with_whole = replace(pair, whole={"a": gauge(7.0, 1.0)}, weight=0.25)
-    found = with_whole.difference(Recorded(np.zeros(2), TIME[:2], {}), "a", "velocity")
+    found = with_whole.difference(History(np.zeros(2), TIME[:2], {}), "a", "velocity")
     np.testing.assert_allclose(found, np.tile([3.0, -1.0], (2, 1)))
 
 

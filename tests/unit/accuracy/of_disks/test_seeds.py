@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, PUSHED, small
 
-from dembound.accuracy.cause import Recorded
+from dembound.accuracy.history import History
 from dembound.accuracy.of_disks import seeds as packing
-from dembound.accuracy.runner import Gauge, Outcome
+from dembound.accuracy.runner import Outcome
 from dembound.errors import CaseError
 
 TIME = np.linspace(0.0, 1.0, 21)
@@ -19,12 +19,12 @@ def test_the_difference_to_another_seed_over_the_root_of_two(monkeypatch):
     def other(given, progress):
         seen.append(given)
         motion = np.outer(TIME, [1.0, 2.0, 9.0])
-        return Outcome(work=300, gauges={"top": Gauge(np.zeros(2), TIME, motion, 3.0 * motion)}), 0.0, 0.0
+        return Outcome(work=300, motions={"top": History.of(np.zeros(2), TIME, motion, 3.0 * motion)}), 0.0, 0.0
 
     monkeypatch.setattr(packing, "measure", other)
     times = np.array([0.0, 0.13, 0.7])
     own = {"velocity": np.outer(times, [5.0, 2.0]), "displacement": np.outer(times, [2.0, 5.0])}
-    found = packing.cause_of_packing(case, {"top": Recorded(np.zeros(2), times, own)}, 200.0)
+    found = packing.cause_of_packing(case, {"top": History(np.zeros(2), times, own)}, 200.0)
     (cause,) = found.found
     np.testing.assert_allclose(cause.errors["top"]["velocity"], np.outer(times, [2.0, -4.0]) / 2**0.5, atol=1e-12)
     np.testing.assert_allclose(cause.errors["top"]["displacement"], np.outer(times, [1.0, 3.0]) / 2**0.5, atol=1e-12)
