@@ -12,7 +12,7 @@ from dembound.accuracy.choice import Choice, Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.moved_sides import Extended
 from dembound.accuracy.reference import Exact, FinerRun
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.motion.scene import Scene
@@ -69,7 +69,7 @@ class Judge(ABC, Generic[C, S]):
     def exact(self, case: C) -> Exact | None:
         """The exact solution of a case, None if none is known; raises CaseError if the reasons are."""
 
-    def finer(self, case: C, choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> FinerRun | None:
+    def finer(self, case: C, choices: Sequence[Choice], outcomes: Sequence[Run]) -> FinerRun | None:
         """A finer run than those of choices with these outcomes, with the ends of a case; by default there is none."""
         return None
 

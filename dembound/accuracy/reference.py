@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.history import History, Motions, loud_of
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.results.compare import distance, on_common_clock, relative_errors
@@ -40,7 +40,7 @@ class Reference:
 
     name: str
     sentence: str
-    motions: Callable[[Choice, Outcome], Motions]
+    motions: Callable[[Choice, Run], Motions]
     until: float = math.inf
     findings: Mapping[str, float] = field(default_factory=dict)
     own: Sequence[int] = ()
@@ -76,7 +76,7 @@ class FinerRun(Protocol):
     def spacing(self) -> float:
         """Distance of its nodes, m."""
 
-    def motions(self, run: Outcome, choice: Outcome) -> dict[str, History]:
+    def motions(self, run: Run, choice: Run) -> dict[str, History]:
         """Its histories at the monitors of a choice; run : its outcome, or that of its case with ends farther away."""
 
 
@@ -95,7 +95,7 @@ class MonitorError:
     apart: float
 
 
-def errors(choice: Choice, outcome: Outcome, reference: Reference, wanted: Wanted) -> list[MonitorError]:
+def errors(choice: Choice, outcome: Run, reference: Reference, wanted: Wanted) -> list[MonitorError]:
     """The errors of a choice at all monitors that are not quiet in the reference, the largest RMS first.
 
     Raises CaseError for a monitor that does not exist and if the reference does not move until histories end.

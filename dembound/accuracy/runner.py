@@ -1,11 +1,19 @@
-"""One run of a choice: what it costs, and what its monitors record. Nothing is written."""
+"""Runs of choices and of companions: what they cost, and what their monitors record.
 
+A companion is a run beside that of a case, with other sides, disks or seeds, that shows what these do. No files of
+results are written.
+"""
+
+import math
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
+from dembound.accuracy.choice import AnyCase, digest
 from dembound.accuracy.history import History, Motions
 from dembound.casefile import Case
 from dembound.motion.clock import Clock
@@ -26,8 +34,8 @@ That is the work of less than a second: short runs have fine companions, too.
 
 
 @dataclass
-class Outcome:
-    """The results of a choice, of its first run except for the costs.
+class Run:
+    """The results of a run; where a case is run several times, of the first run except for the costs.
 
     Attributes
     ----------
@@ -50,10 +58,75 @@ class Outcome:
     cpu: list[float] = field(default_factory=list)
     wall: list[float] = field(default_factory=list)
 
+    def finding(self, name: str) -> float:
+        """A number that the run has found, such as the time (s) of its first break; infinite if it has not."""
+        found = self.findings.get(name)
+        return math.inf if found is None else found.value
+
+
+class Kept(Protocol):
+    """Runs by the digest of their case."""
+
+    def get(self, key: str) -> Run | None:
+        """The run of the case with this digest; None if there is none."""
+
+    def add(self, key: str, run: Run) -> None:
+        """Keep the run of a case."""
+
+
+class InMemory:
+    """Runs that are kept as long as this object."""
+
+    def __init__(self) -> None:
+        self._runs: dict[str, Run] = {}
+
+    def get(self, key: str) -> Run | None:
+        """The run of the case with this digest; None if there is none."""
+        return self._runs.get(key)
+
+    def add(self, key: str, run: Run) -> None:
+        """Keep the run of a case."""
+        self._runs[key] = run
+
+
+Shown = Callable[[str], AbstractContextManager[Progress]]
+"""Returns the progress of a run, given its name."""
+
+
+class Runner:
+    """Runs cases, each once.
+
+    Attributes
+    ----------
+    work : of all runs that it has made, in the unit of their kind of body.
+    """
+
+    def __init__(self, kept: Kept | None = None, shown: Shown = lambda name: nullcontext(Progress())) -> None:
+        self.work = 0
+        self._kept, self._shown = kept or InMemory(), shown
+
+    def run(self, case: Case, name: str = "", inside: Box | None = None) -> Run:
+        """The run of a case, without costs unless they are kept; name, inside : see `Shown` and `measure`.
+
+        Raises the errors of `measure`.
+        """
+        key = digest(case)
+        if (found := self._kept.get(key)) is None:
+            with self._shown(name) as progress:
+                found, _, _ = measure(case, progress, inside=inside)
+            self._kept.add(key, found)
+            self.work += found.work
+        return found
+
+
+def at_step(case: AnyCase, step: float) -> AnyCase:
+    """The case with a given time step, s."""
+    return replace(case, run=case.run.model_copy(update={"time_step": step}))
+
 
 def measure(
     case: Case, progress: Progress, watched: bool = True, inside: Box | None = None
-) -> tuple[Outcome, float, float]:
+) -> tuple[Run, float, float]:
     """Run a case; returns its results without costs, CPU time while stepping and time of the whole run, s.
 
     The whole run is building, settling and stepping, without files and pictures. Times do not include compiling.
@@ -72,13 +145,13 @@ def measure(
         simulation.track(*planned.kind.trackers(simulation))
         with cpu.with_compiling():
             simulation.run(planned.steps)
-    return _outcome(planned, simulation, records, inside), cpu.seconds["step"], wall.seconds["whole"]
+    return _run_of(planned, simulation, records, inside), cpu.seconds["step"], wall.seconds["whole"]
 
 
-def _outcome(planned: Plan, simulation: Simulation, records: Records, inside: Box | None) -> Outcome:
+def _run_of(planned: Plan, simulation: Simulation, records: Records, inside: Box | None) -> Run:
     """The results of a run that is over."""
     scene, kind = planned.scene, planned.kind
-    return Outcome(
+    return Run(
         time_step=planned.time_step,
         step_limit=planned.step_limit,
         steps=planned.steps,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.accuracy.history import History, Motions
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run
 from dembound.errors import CaseError
 from dembound.motion.kind import Finding
 from dembound.results.committed import changed_file
@@ -37,7 +37,7 @@ class Record:
     def __init__(self, path: Path) -> None:
         self.path = path
 
-    def outcome(self, key: str) -> Outcome | None:
+    def get(self, key: str) -> Run | None:
         """The results of the case with this digest; None if it has not been run."""
         if not self.path.is_file():
             return None
@@ -49,7 +49,7 @@ class Record:
             for name, value in values.items():
                 if not isinstance(value, str if name == "failure" else int | float):
                     raise TypeError(f"runs/{key}, attribute {name}: is {value!r}")  # which open_record tells of
-            found = Outcome(**values)
+            found = Run(**values)
             found.motions = _read_motions(group["gauges"])
             found.findings = {
                 name: Finding(float(value[()]), text_of(value.attrs["unit"]))
@@ -58,7 +58,7 @@ class Record:
             found.cpu, found.wall = group["cpu"][:].tolist(), group["wall"][:].tolist()
             return found
 
-    def add(self, key: str, outcome: Outcome) -> None:
+    def add(self, key: str, outcome: Run) -> None:
         """Write the results of a case; costs come later, one by one."""
         with understood(self.path), changed_file(self.path) as file:
             group = file.require_group("runs").create_group(key)

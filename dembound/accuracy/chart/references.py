@@ -14,7 +14,7 @@ from dembound.accuracy.history import Motions
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.labels import label
 from dembound.accuracy.reference import Exact, FinerRun, Reference
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.casefile.chart import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
@@ -28,7 +28,7 @@ SIDES = "boundary."
 DISCRETE = ("bar.spacing", "method", "run")
 """Beginnings of the keys of bars that the finer reference replaces."""
 
-RunOf = Callable[[str, Case, Box | None], Outcome]
+RunOf = Callable[[str, Case, Box | None], Run]
 """Returns the outcome of a case that is no choice, given its name, and the part of its scene in which breaks count."""
 
 AFFORDABLE = 16
@@ -37,7 +37,7 @@ AFFORDABLE = 16
 
 
 def reference_of(
-    case: Case, choices: Sequence[Choice], outcomes: Sequence[Outcome], wanted: ReferenceName | None, run: RunOf
+    case: Case, choices: Sequence[Choice], outcomes: Sequence[Run], wanted: ReferenceName | None, run: RunOf
 ) -> Reference:
     """The reference of this name for choices with these outcomes.
 
@@ -66,7 +66,7 @@ def exact_of(case: Case) -> Exact:
 class _References:
     """The references for choices with these outcomes."""
 
-    def __init__(self, case: Case, choices: Sequence[Choice], outcomes: Sequence[Outcome], run: RunOf) -> None:
+    def __init__(self, case: Case, choices: Sequence[Choice], outcomes: Sequence[Run], run: RunOf) -> None:
         self._case, self._choices, self._outcomes, self._run = case, choices, outcomes, run
         self._own = _finest(outcomes)
         self._judge = judge_of(case)
@@ -165,23 +165,21 @@ class _References:
         sentence = f"the finest run, {self._choices[self._own].name}"
         return self._of_run("finest", sentence, self._outcomes[self._own], lambda run, _: run.motions)
 
-    def _done(self, name: str, case: Case, inside: Box | None = None) -> Outcome:
+    def _done(self, name: str, case: Case, inside: Box | None = None) -> Run:
         """The outcome of a case that is no choice, breaking inside a box; raises RunError if its run fails."""
         outcome = self._run(name, case, inside)
         if outcome.failure:
             raise RunError(f"{name}: {outcome.failure}")
         return outcome
 
-    def _places(self, fine: FinerRun | None) -> Callable[[Outcome, Outcome], Motions]:
+    def _places(self, fine: FinerRun | None) -> Callable[[Run, Run], Motions]:
         """The gauges of a run for the outcome of a choice, at their places in the scene before it was extended."""
         if fine is not None:
             return fine.motions
         places = {name: gauge.place for name, gauge in self._outcomes[self._own].motions.items()}
         return lambda run, _: {name: replace(run.motions[name], place=place) for name, place in places.items()}
 
-    def _of_run(
-        self, name: str, sentence: str, run: Outcome, gauges: Callable[[Outcome, Outcome], Motions]
-    ) -> Reference:
+    def _of_run(self, name: str, sentence: str, run: Run, gauges: Callable[[Run, Run], Motions]) -> Reference:
         """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
@@ -197,7 +195,7 @@ class _References:
         )
 
 
-def _finest(outcomes: Sequence[Outcome]) -> int:
+def _finest(outcomes: Sequence[Run]) -> int:
     """The number of the choice with the most nodes times steps, the first of several.
 
     Work would be no measure of accuracy for bars: wider horizons have more bonds and larger errors.
@@ -216,7 +214,7 @@ def _shifted(findings: Mapping[str, Finding], inside: Box, axes: Mapping[str, in
     }
 
 
-def _is_same_run(outcome: Outcome, run: Outcome) -> bool:
+def _is_same_run(outcome: Run, run: Run) -> bool:
     """Whether two outcomes are of the same run: the same work in the same steps, and the same bits."""
     if (outcome.time_step, outcome.steps, outcome.work) != (run.time_step, run.steps, run.work):
         return False

@@ -1,7 +1,6 @@
 """A chart: every choice is run, compared with the reference, and placed by its error and cost."""
 
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -14,14 +13,13 @@ from dembound.accuracy.chart.record import Record, record_in
 from dembound.accuracy.chart.references import exact_of, reference_of
 from dembound.accuracy.choice import Choice, choices_of, digest
 from dembound.accuracy.reference import MonitorError, Reference, Wanted, errors
-from dembound.accuracy.runner import Outcome, measure
+from dembound.accuracy.runner import Run, Runner, Shown, measure
 from dembound.casefile import Case
 from dembound.casefile.chart import ReferenceName
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import kind_of
 from dembound.results.histories import Quantity
-from dembound.running import Progress
 from dembound.table import Box
 
 LEVELS = (0.01, 0.001)
@@ -29,9 +27,6 @@ LEVELS = (0.01, 0.001)
 
 SHORT, AT_ONCE = 0.1, 25
 """CPU time (s) in which a timed run is repeated, and how often at most; its cost is the median of these runs."""
-
-Shown = Callable[[str], AbstractContextManager[Progress]]
-"""Returns the progress of a run, given its name."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +48,7 @@ class Line:
     """A choice in the chart: its results and the errors of its monitors, the largest first; none after a failure."""
 
     choice: Choice
-    outcome: Outcome
+    outcome: Run
     errors: Sequence[MonitorError] = ()
 
     @property
@@ -184,7 +179,7 @@ def _wanted_reference(case: Case, options: Options) -> ReferenceName | None:
     return options.reference or case.chart.reference
 
 
-def _line(choice: Choice, outcome: Outcome, reference: Reference, options: Options) -> Line:
+def _line(choice: Choice, outcome: Run, reference: Reference, options: Options) -> Line:
     """A choice beside the reference; one that cannot be compared has failed."""
     if outcome.failure:
         return Line(choice, outcome)
@@ -203,8 +198,9 @@ class _Runs:
 
     def __init__(self, record: Record, shown: Shown) -> None:
         self._record, self._shown = record, shown
+        self._runner = Runner(record, shown)
 
-    def all_of(self, choices: Sequence[Choice], repeats: int) -> list[Outcome]:
+    def all_of(self, choices: Sequence[Choice], repeats: int) -> list[Run]:
         """The outcomes of choices, each with as many costs; in every round all choices run, one after the other."""
         count = len(choices)
         outcomes = [
@@ -220,20 +216,16 @@ class _Runs:
             del outcome.cpu[repeats:], outcome.wall[repeats:]
         return outcomes
 
-    def one(self, name: str, case: Case, inside: Box | None = None) -> Outcome:
+    def one(self, name: str, case: Case, inside: Box | None = None) -> Run:
         """The outcome of a case, without costs if it has to be run; inside : where its findings are looked for."""
-        key = digest(case)
-        if (found := self._record.outcome(key)) is not None:
-            return found
         try:
-            with self._shown(name) as progress:
-                outcome, _, _ = measure(case, progress, inside=inside)
+            return self._runner.run(case, name, inside)
         except DemboundError as error:
-            outcome = Outcome(failure=str(error).splitlines()[0])
-        self._record.add(key, outcome)
-        return outcome
+            failed = Run(failure=str(error).splitlines()[0])
+            self._record.add(digest(case), failed)
+            return failed
 
-    def _time(self, name: str, case: Case, outcome: Outcome) -> None:
+    def _time(self, name: str, case: Case, outcome: Run) -> None:
         """Run a case again, and add its costs to its outcome."""
         costs: list[tuple[float, float]] = []
         with self._shown(name) as progress:

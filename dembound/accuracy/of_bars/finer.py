@@ -18,7 +18,7 @@ import numpy as np
 
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.history import History
-from dembound.accuracy.runner import STEP_AND_END, Outcome
+from dembound.accuracy.runner import STEP_AND_END, Run
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
@@ -37,7 +37,7 @@ class Finer:
     spacing: float
     cells: int
 
-    def motions(self, run: Outcome, choice: Outcome) -> dict[str, History]:
+    def motions(self, run: Run, choice: Run) -> dict[str, History]:
         """Its histories at the monitors of a choice; run : its outcome, or that of the bar extended at its ends."""
         nodes = {name: _node(gauge, self.spacing, self.cells) for name, gauge in choice.motions.items()}
         return {
@@ -46,7 +46,7 @@ class Finer:
         }
 
 
-def finer(case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Finer:
+def finer(case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Run]) -> Finer:
     """The reference for choices with these outcomes; case : of the bar, loads and ends.
 
     Raises CaseError if the bar would have too many nodes, and for a bar with ranges, whose Courant numbers differ.

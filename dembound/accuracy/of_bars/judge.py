@@ -17,7 +17,7 @@ from dembound.accuracy.of_bars.extended import extended_bar
 from dembound.accuracy.of_bars.finer import Finer, finer
 from dembound.accuracy.of_bars.pulse import PulseInBar
 from dembound.accuracy.of_bars.search import best_of_bar
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run
 from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.bar.scene import BarScene
 from dembound.casefile.bar import BarCase
@@ -45,7 +45,7 @@ class BarJudge(Judge[BarCase, BarScene]):
         """A pulse at the left end of a bar without attenuation."""
         return PulseInBar.of(case)
 
-    def finer(self, case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Finer:
+    def finer(self, case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Run]) -> Finer:
         """Finite differences at Courant number 1."""
         return finer(case, choices, outcomes)
 

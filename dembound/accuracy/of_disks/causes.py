@@ -16,6 +16,7 @@ from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
 from dembound.accuracy.of_disks.pair import Pair, run_pair, sides_of_pair
 from dembound.accuracy.of_disks.walls import wall_error
 from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, delay_of
+from dembound.accuracy.runner import Runner
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
 from dembound.casefile.disks import DiskCase
@@ -102,7 +103,7 @@ class _Disks:
             reason = "beside a continuum no pair of runs is made"
             return Causes([], [f"{' and '.join(sides)}: {reason}"])
         try:
-            pair = run_pair(self.case, self.scene, self.time_step, self.most)
+            pair = run_pair(self.case, self.scene, self.time_step, self.most, Runner())
         except DemboundError as error:
             return Causes([], [f"sides: {'; '.join(str(error).splitlines())}"])
         errors = {

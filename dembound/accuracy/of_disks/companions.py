@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,9 +13,9 @@ from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged, movable_sides
 from dembound.accuracy.of_disks.load_places import middle_of_loads, middles_of_loads
-from dembound.accuracy.of_disks.pair import PairScenes, measured, ratios, scenes_of_pair, sides_of_pair
+from dembound.accuracy.of_disks.pair import PairScenes, ratios, scenes_of_pair, sides_of_pair
 from dembound.accuracy.of_disks.patches import patch_around, weights_at
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
@@ -35,14 +35,14 @@ LESS = 0.9
 class Companions:
     """Companions of a case of disks.
 
-    case, scene, time_step (s) : those given. most : particle-steps that the first two may take. work : spent so far.
+    case, scene, time_step (s) : those given. most : particle-steps that the first two may take. runner : runs them.
     """
 
     case: DiskCase
     scene: DiskScene
     time_step: float
     most: float
-    work: int = 0
+    runner: Runner = field(default_factory=Runner)
 
     @cached_property
     def pair(self) -> PairScenes | None:
@@ -72,15 +72,14 @@ class Companions:
     @property
     def first_break(self) -> float:
         """Time (s) at which the first bond breaks there, infinite without one."""
-        found = self._far.findings.get(BREAK_TIME)
-        return math.inf if found is None else found.value
+        return self._far.finding(BREAK_TIME)
 
     def _until_break(self, motions: Motions) -> Motions:
         """The histories before the first bond breaks with far sides."""
         return {name: each.before(self.first_break) for name, each in motions.items()}
 
     @cached_property
-    def _far(self) -> Outcome:
+    def _far(self) -> Run:
         """The run with far sides."""
         return self._measured(self._own if self.pair is None else enlarged(build(self._own), self.pair.bricks)[0])
 
@@ -197,11 +196,9 @@ class Companions:
         """The motion of the monitors of a companion, until bonds break with far sides."""
         return self._until_break(self._measured(case).motions)
 
-    def _measured(self, case: DiskCase) -> Outcome:
-        """The outcome of a companion."""
-        outcome = measured(case, self.step)
-        self.work += outcome.work
-        return outcome
+    def _measured(self, case: DiskCase) -> Run:
+        """The run of a companion."""
+        return self.runner.run(at_step(case, self.step))
 
 
 def _named(monitor: str, number: int) -> str:

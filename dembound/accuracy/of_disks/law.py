@@ -25,7 +25,8 @@ from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.differences import keeps
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.pair import measured, ratios
+from dembound.accuracy.of_disks.pair import ratios
+from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import HISTORY_KEYS, STRENGTH_KEYS
 from dembound.casefile.types import LAWS
@@ -98,7 +99,7 @@ class ElasticTwin:
         return f"the elastic law, which holds up to {self.factor:.3g} times these waves {size}"
 
 
-def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str]) -> ElasticTwin | None:
+def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str], runner: Runner) -> ElasticTwin | None:
     """The case under the elastic law if this holds with its own disks; None if not, or if it is not known.
 
     planned : of the case. most : particle-steps that the companion should take. kept : keys that do not change.
@@ -118,7 +119,7 @@ def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str]
     if not isinstance(twin, DiskCase):
         return None
     try:
-        factor, diameter = _factor(watched, planned, most)
+        factor, diameter = _factor(watched, planned, most, runner)
     except DemboundError:  # no companion can run
         return None
     found = ElasticTwin(twin, plan(twin), factor, diameter, _turning_stress(case))
@@ -165,7 +166,7 @@ def _diameter(planned: Plan) -> float:
     return planned.scene.ground.brick.mean_diameter
 
 
-def _factor(case: DiskCase, planned: Plan, most: float) -> tuple[float, float]:
+def _factor(case: DiskCase, planned: Plan, most: float, runner: Runner) -> tuple[float, float]:
     """The load factor, and the diameter (m) of the disks with which it was found: as small as can be afforded."""
     own, scene = _diameter(planned), planned.scene
     assert isinstance(scene, DiskScene)
@@ -178,5 +179,4 @@ def _factor(case: DiskCase, planned: Plan, most: float) -> tuple[float, float]:
         step = choose_step(built)[0]
         if built.disk_count * case.run.duration / step <= most:
             break
-    found = measured(quiet, step).findings.get(LOAD_FACTOR)
-    return math.inf if found is None else found.value, built.ground.brick.mean_diameter
+    return runner.run(at_step(quiet, step)).finding(LOAD_FACTOR), built.ground.brick.mean_diameter

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.coarser import Coarser, coarser, largest_diameter
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged, movable_sides
-from dembound.accuracy.runner import Outcome, measure
+from dembound.accuracy.runner import Runner, at_step
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.settings import signals_of
@@ -20,7 +20,6 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.outside import choice
-from dembound.running import Progress
 
 RATIOS = (3.0, 4.0, 5.0, 6.0)
 """Diameters of the pair over those of the case that are tried, the smallest that can be afforded is taken."""
@@ -62,7 +61,7 @@ class Pair:
         return History(own.place, own.time, {quantity: values}).at(recorded.time).values[quantity]
 
 
-def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
+def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float, runner: Runner) -> Pair:
     """The pair of a case that costs at most so many particle-steps, if this is possible; else the cheapest one.
 
     scene, time_step (s) : of the case. Raises CaseError if no side can move, or even the cheapest pair costs too much,
@@ -71,7 +70,8 @@ def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) ->
     pair = scenes_of_pair(case, scene, time_step, most)
     if (times := sum(map(_work, pair.scenes)) / most) > LEEWAY:
         raise CaseError([f"a pair of runs would take {times:.2g} times the work that may be spent (--budget)"])
-    own, far, *whole = (measured(each.case, pair.step) for each in pair.scenes)
+    step = pair.step
+    own, far, *whole = (runner.run(at_step(each.case, step)) for each in pair.scenes)
     return Pair(
         own.motions,
         far.motions,
@@ -177,9 +177,3 @@ def _count(case: DiskCase, bricks: Mapping[str, float]) -> float:
 def _work(scene: DiskScene) -> float:
     """Particle-steps of a run."""
     return scene.disk_count * scene.case.run.duration / choose_step(scene)[0]
-
-
-def measured(case: DiskCase, step: float) -> Outcome:
-    """The outcome of a run at this step, s."""
-    run = case.run.model_copy(update={"time_step": step})
-    return measure(replace(case, run=run), Progress())[0]

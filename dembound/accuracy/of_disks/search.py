@@ -31,7 +31,7 @@ from dembound.accuracy.of_disks.options import (
     with_diameter,
 )
 from dembound.accuracy.of_disks.pair import sides_of_pair
-from dembound.accuracy.runner import BUDGET, SHORT
+from dembound.accuracy.runner import BUDGET, SHORT, Runner
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
@@ -57,15 +57,16 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
     planned = plan(case)
     assert isinstance(planned.scene, DiskScene)
     most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
-    twin = elastic_twin(case, planned, most, kept)
+    runner = Runner()
+    twin = elastic_twin(case, planned, most, kept, runner)
     if twin is None:
-        return _best(case, planned, bound, kept, most)
-    found = _best(twin.case, twin.planned, bound, kept, most, twin)
+        return _best(case, planned, bound, kept, most, runner)
+    found = _best(twin.case, twin.planned, bound, kept, most, runner, twin)
     own_cost = found.own_cost * planned.steps / twin.planned.steps  # steps of the given law cost as much: nothing opens
     found = replace(found, given=case, words=f"{twin.words}; {found.words}", own_cost=own_cost)
     if found.holds or twin.stress == 0.0:
         return found
-    other = _best(case, planned, bound, kept, most)
+    other = _best(case, planned, bound, kept, most, runner)
     other = replace(other, cost=other.cost * own_cost / other.own_cost, own_cost=own_cost)
     return min(found, other, key=lambda choice: choice.error)
 
@@ -76,10 +77,11 @@ def _best(
     bound: float,
     kept: Sequence[str],
     most: float,
+    runner: Runner,
     twin: ElasticTwin | None = None,
 ) -> Choice:
     """The best choice under the law of a case, planned; twin : the same, if it is not that of the given case."""
-    companions = Companions(case, planned.scene, planned.time_step, most)  # type: ignore[arg-type]
+    companions = Companions(case, planned.scene, planned.time_step, most, runner)  # type: ignore[arg-type]
     moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
     if not _is_reached(planned) or not any(map(np.any, moved)):
         raise CaseError(["--error: nothing moves at the monitors"], case.name)

@@ -14,10 +14,9 @@ import numpy as np
 from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import no_seed
-from dembound.accuracy.runner import measure
+from dembound.accuracy.runner import Runner
 from dembound.casefile.disks import DiskCase
 from dembound.results.histories import Quantity
-from dembound.running import Progress
 
 PACKING = "packing"
 
@@ -36,13 +35,13 @@ def cause_of_packing(case: DiskCase, recorded: Motions, work: float) -> Causes:
     ended = {"until": type(case.run).model_fields["until"].default, "checkpoint": 0.0}
     packing = case.packing.model_copy(update={"seed": seed + 1})
     other = replace(case, packing=packing, run=case.run.model_copy(update=ended))
-    outcome = measure(other, Progress())[0]
+    run = Runner().run(other)
     errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in recorded.items():
-        other_motion = outcome.motions[name].at(own.time)
+        other_motion = run.motions[name].at(own.time)
         errors[name] = {
             quantity: (own.values[quantity] - other_motion.values[quantity][:, :2]) / math.sqrt(2.0)
             for quantity in MOTIONS
         }
     words = f"from a run with the seed {seed + 1}: the difference over √2"
-    return Causes([Cause(PACKING, words, errors, is_sample=True)], cost=outcome.work / work)
+    return Causes([Cause(PACKING, words, errors, is_sample=True)], cost=run.work / work)

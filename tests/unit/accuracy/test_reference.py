@@ -6,7 +6,7 @@ import pytest
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.history import History
 from dembound.accuracy.reference import Reference, Wanted, errors
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run
 from dembound.errors import CaseError
 
 
@@ -25,7 +25,7 @@ def compared(bar):
     def compare(found, expected, until: float = np.inf, **wanted):
         choice = Choice("it", {}, bar())
         reference = Reference("finest", "the finest", lambda choice, outcome: expected, until=until)
-        return errors(choice, Outcome(motions=found), reference, Wanted(**wanted))
+        return errors(choice, Run(motions=found), reference, Wanted(**wanted))
 
     return compare
 

@@ -1,8 +1,10 @@
-"""One run of a choice: what its monitors record."""
+"""One run of a choice: what its monitors record, and that it is made once."""
 
 import numpy as np
 
-from dembound.accuracy.runner import measure
+from dembound.accuracy import runner
+from dembound.accuracy.runner import Run, measure
+from dembound.motion.kind import Finding
 from dembound.running import Progress
 
 
@@ -20,3 +22,19 @@ def test_monitors_in_the_half_that_is_not_stepped_have_their_own_signs(bar) -> N
         largest = np.abs(gauge.velocity).max()
         assert np.abs(gauge.velocity[:, 0]).max() > 0.01 * largest
         np.testing.assert_allclose(half.motions[name].velocity, gauge.velocity, rtol=0.0, atol=1e-12 * largest)
+
+
+def test_a_case_is_run_once_and_its_work_is_counted(bar, monkeypatch) -> None:
+    made = []
+
+    def run_of(case, progress, inside=None):
+        made.append(case)
+        return Run(work=7, findings={"break time": Finding(0.5, "s")}), 0.0, 0.0
+
+    monkeypatch.setattr(runner, "measure", run_of)
+    runs = runner.Runner()
+    first = runs.run(bar())
+    assert runs.run(bar()) is first
+    assert runs.run(bar({"run.duration": 0.01})) is not first
+    assert (len(made), runs.work) == (2, 14)
+    assert (first.finding("break time"), first.finding("spall time")) == (0.5, np.inf)

@@ -8,13 +8,14 @@ import h5py
 import numpy as np
 import pytest
 
+from dembound.accuracy import runner
 from dembound.accuracy.chart import references as reference
 from dembound.accuracy.chart import study
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.chart.tables import COLUMNS, write_results, write_table
 from dembound.accuracy.choice import Choice, choices_of, combinations
 from dembound.accuracy.reference import Reference, Wanted
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run
 from dembound.errors import CaseError, RunError
 from dembound.motion.kind import Finding
 from dembound.results.structure import run_of
@@ -95,7 +96,7 @@ def test_reasons_against_a_comparison_are_one_line(bar) -> None:
     def motions(*_):
         raise CaseError(["hole: is no circle", "motion.held: must be empty"])
 
-    line = study._line(Choice("odd", {}, bar()), Outcome(), Reference("exact", "exact", motions), Options())
+    line = study._line(Choice("odd", {}, bar()), Run(), Reference("exact", "exact", motions), Options())
     assert (line.outcome.failure, line.errors) == ("hole: is no circle; motion.held: must be empty", ())
 
 
@@ -227,8 +228,8 @@ def test_breaks_beyond_the_scene_of_the_case_are_no_end_of_the_comparison(bar, m
     case = bar({**SPALLING_DISKS, "boundary.right": {"type": "viscous"}, "run.duration": 0.03})
     sides = {"boundary.right": [{"type": "viscous"}, {"type": "viscous", "beta_p": 0.5}]}
     boxes = []
-    measured = study.measure
-    monkeypatch.setattr(study, "measure", lambda *a, inside=None, **k: boxes.append(inside) or measured(*a, **k))
+    measured = runner.measure
+    monkeypatch.setattr(runner, "measure", lambda *a, inside=None, **k: boxes.append(inside) or measured(*a, **k))
     found = chart(case, Options(combinations(case, sides), 1, "extended"), tmp_path / "chart", False, Log())
     assert boxes.count((0.0, 0.0, 10.0, 1.0)) == 1  # the extended scene grows to the right
     assert found.reference.name == "extended"

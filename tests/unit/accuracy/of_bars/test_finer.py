@@ -6,15 +6,15 @@ import pytest
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.history import History
 from dembound.accuracy.of_bars.finer import finer
-from dembound.accuracy.runner import Outcome
+from dembound.accuracy.runner import Run
 from dembound.kinds import with_changes
 
 
-def outcome(*positions: float) -> Outcome:
+def outcome(*positions: float) -> Run:
     """An outcome with gauges at these places, m."""
     nothing = np.zeros((1, 3))
     gauges = {f"g{k}": History.of(np.array([x, 0.0]), np.zeros(1), nothing, nothing) for k, x in enumerate(positions)}
-    return Outcome(motions=gauges)
+    return Run(motions=gauges)
 
 
 def choices(case, *spacings: float) -> list[Choice]:
@@ -57,7 +57,7 @@ def test_it_records_at_the_places_of_every_choice(spalling) -> None:
     of_choices = [outcome(0.35, 1.0), outcome(0.325, 1.0)]
     found = finer(case, choices(case, 0.05, 0.025), of_choices)
     assert [monitor.position for monitor in found.case.monitor] == pytest.approx([0.325, 0.35, 1.0])
-    run = Outcome(motions={m.name: outcome(m.position).motions["g0"] for m in found.case.monitor})
+    run = Run(motions={m.name: outcome(m.position).motions["g0"] for m in found.case.monitor})
     for choice in of_choices:
         places = {name: gauge.place[0] for name, gauge in found.motions(run, choice).items()}
         assert places == pytest.approx({name: gauge.place[0] for name, gauge in choice.motions.items()})

@@ -6,14 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from dembound.accuracy.of_run import SHORT
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import choose
 from dembound.accuracy.best import Choice
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
-from dembound.accuracy.runner import measure
+from dembound.accuracy.runner import SHORT, Runner, measure
 from dembound.casefile.disks import DiskCase
 from dembound.kinds import with_changes
 from dembound.motion.paths import Source
@@ -43,7 +42,7 @@ def confined(changes: dict[str, Any] | None = None) -> DiskCase:
 
 
 def twin_of(case: DiskCase, most: float = SHORT, kept: tuple[str, ...] = ()) -> ElasticTwin | None:
-    return elastic_twin(case, plan(case), most, kept)
+    return elastic_twin(case, plan(case), most, kept, Runner())
 
 
 @cache

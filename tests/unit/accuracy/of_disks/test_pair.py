@@ -9,6 +9,7 @@ from small_cases import Tables, small
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks import pair as pairs
 from dembound.accuracy.of_disks.pair import Pair, run_pair
+from dembound.accuracy.runner import Runner
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
@@ -55,7 +56,7 @@ def scene():
 
 
 def test_a_pair_that_can_be_afforded_has_the_smallest_disks_and_no_echoes(scene):
-    pair = run_pair(scene.case, scene, choose_step(scene)[0], 1e9)
+    pair = run_pair(scene.case, scene, choose_step(scene)[0], 1e9, Runner())
     assert pair.ratio == pairs.RATIOS[0]
     assert pair.echo_free
     assert pair.size[1] == pytest.approx(6.0, rel=0.1)  # free sides stay
@@ -65,7 +66,7 @@ def test_a_pair_that_can_be_afforded_has_the_smallest_disks_and_no_echoes(scene)
 
 
 def test_a_budget_that_is_too_small_leaves_echoes_and_the_largest_disks(scene):
-    pair = pairs.scenes_of_pair(scene.case, scene, choose_step(scene)[0], 1.0)
+    pair = pairs.scenes_of_pair(scene.case, scene, choose_step(scene)[0], 1.0, Runner())
     assert not pair.echo_free
     assert pair.ratio == max(pairs.ratios(scene.case, scene))
     assert pair.larger.size[0] == pytest.approx(12.0 + 2 * (pairs.SMALLER[-1] - 1.0) * 12.0, rel=0.1)  # at each side
@@ -73,7 +74,7 @@ def test_a_budget_that_is_too_small_leaves_echoes_and_the_largest_disks(scene):
 
 def test_a_pair_that_costs_more_than_may_be_spent_is_not_run(scene):
     with pytest.raises(CaseError, match=r"a pair of runs would take .* times the work that may be spent"):
-        run_pair(scene.case, scene, choose_step(scene)[0], 1.0)
+        run_pair(scene.case, scene, choose_step(scene)[0], 1.0, Runner())
 
 
 def test_disks_stay_small_enough_for_waves_and_holes(scene):
@@ -89,4 +90,4 @@ def test_disks_stay_small_enough_for_waves_and_holes(scene):
 def test_sides_that_waves_enter_do_not_move():
     case = small(SCENE, changes={"boundary": {"left": {"type": "viscous_input", "wave_p": "pulse"}}, "load": []})
     with pytest.raises(CaseError, match="lets motion in"):
-        run_pair(case, build(case), 1e-5, 1e9)
+        run_pair(case, build(case), 1e-5, 1e9, Runner())
