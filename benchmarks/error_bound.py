@@ -24,11 +24,11 @@ import tomli_w
 from error_bound_scenes import scenes
 
 from dembound.accuracy.advise import choose
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History, Motions, loud
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.options import FACTORS, Candidate, candidates, with_diameter
+from dembound.accuracy.of_disks.options import FACTORS, DiskOption, disk_options, with_diameter
 from dembound.accuracy.of_disks.search import COSTLIEST
 from dembound.accuracy.runner import SHORT, measure
 from dembound.boundaries import normal_axis
@@ -87,15 +87,15 @@ def _plane(history: History) -> History:
     return replace(history, values={quantity: each[:, :2] for quantity, each in history.values.items()})
 
 
-def every_choice(case: DiskCase, bound: float, most: float) -> list[Candidate]:
+def every_choice(case: DiskCase, bound: float, most: float) -> list[DiskOption]:
     """All choices for a bound that cost at most so much (s), whatever their error, the cheapest first."""
     planned = plan(case)
     companions = Companions(case, planned.scene, planned.time_step, SHORT)  # type: ignore[arg-type]
-    found: list[Candidate] = []
+    found: list[DiskOption] = []
     for factor in FACTORS:
         plain = with_diameter(companions, factor)
         if plain is not None:
-            found += candidates(companions, plain, factor, bound, ())
+            found += disk_options(companions, plain, factor, bound, ())
     return sorted((each for each in found if each.cost <= most), key=lambda each: each.cost)
 
 
@@ -155,7 +155,7 @@ def cases(names: list[str]) -> Iterator[tuple[str, DiskCase]]:
 
 def main(names: list[str]) -> None:
     """Print a line for each scene and bound, the spread of errors by bound, and the share of those that keep it."""
-    found: dict[float, list[tuple[Choice, float]]] = {bound: [] for bound in BOUNDS}
+    found: dict[float, list[tuple[Best, float]]] = {bound: [] for bound in BOUNDS}
     print("| scene | bound | chosen | expected | true | true/expected | steps, s | of the case, s | search, s |")
     print("|---|---|---|---|---|---|---|---|---|")
     for name, case in cases(names):
@@ -176,7 +176,7 @@ def main(names: list[str]) -> None:
     by_bound(found)
 
 
-def by_bound(found: Mapping[float, list[tuple[Choice, float]]]) -> None:
+def by_bound(found: Mapping[float, list[tuple[Best, float]]]) -> None:
     """Print a line for each bound: choices that were expected to keep it, those that do, and how errors scatter."""
     print("\n| bound | choices | within it | true over expected error | cost over that of the case |")
     print("|---|---|---|---|---|")

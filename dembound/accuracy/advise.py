@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.differences import value_at
 from dembound.accuracy.judges import judge_of
 from dembound.casefile import Case
 from dembound.errors import CaseError
 
 
-def choose(case: Case, bound: float, kept: Sequence[str] = ()) -> Choice:
+def choose(case: Case, bound: float, kept: Sequence[str] = ()) -> Best:
     """The cheapest choice whose errors are within a bound at all monitors; without one that with the smallest error.
 
     A bound is RMS over RMS, such as 0.01, of velocity and displacement, of bars of stress, too. kept : dotted keys

@@ -4,23 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from dembound.accuracy.differences import differences, in_toml
+from dembound.accuracy.choice import Choice
 from dembound.casefile import Case
 
 
 @dataclass(frozen=True)
-class Choice:
-    """What was chosen.
+class Best:
+    """The best choice that was found for an error bound.
 
-    given : the case. case : with which it is to be run; itself if nothing is better. words : the choice in words.
-    error : expected at the worst monitor, RMS over RMS, by : its causes. bound : that was asked for. cost, own_cost :
-    predicted CPU time (s) of its steps, and of the given case's. tried : number of choices whose error was found.
-    reserve : factor by which the error is to be below the bound, as true ones scatter about those that are expected.
+    given : the case. choice : with which it is to be run, without changes if nothing is better. error : expected at the
+    worst monitor, RMS over RMS, by : its causes. bound : that was asked for. cost, own_cost : predicted CPU time (s) of
+    the steps, and of those of the given case. tried : number of choices whose error was found. reserve : factor by
+    which the error is to be below the bound, as true ones scatter about those that are expected.
     """
 
     given: Case
-    case: Case
-    words: str
+    choice: Choice
     error: float
     by: dict[str, float]
     bound: float
@@ -35,6 +34,11 @@ class Choice:
         return self.reserve * self.error <= self.bound
 
     @property
-    def changes(self) -> list[str]:
-        """Keys that are changed, a line of TOML each."""
-        return in_toml(differences(self.given, self.case))
+    def case(self) -> Case:
+        """The case of the choice."""
+        return self.choice.case
+
+    @property
+    def words(self) -> str:
+        """The choice in words."""
+        return self.choice.name

@@ -6,10 +6,11 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
+from dembound.accuracy.differences import differences, in_toml
 from dembound.accuracy.labels import label
 from dembound.casefile import Case
 from dembound.casefile.toml import value_of
@@ -43,11 +44,25 @@ AnyCase = TypeVar("AnyCase", bound=Case)
 
 @dataclass(frozen=True)
 class Choice:
-    """A choice: its name, the keys it changes, and the changed case."""
+    """A change of a case.
+
+    name : in words. changes : dotted keys with their new values, None for what is left out, as `with_changes` takes
+    them. case : the changed case.
+    """
 
     name: str
     changes: Mapping[str, Any]
     case: Case
+
+    @classmethod
+    def of(cls, given: Case, case: Case, name: str) -> Self:
+        """The choice that makes a case of the given one."""
+        return cls(name, differences(given, case), case)
+
+    @property
+    def toml(self) -> list[str]:
+        """A line of TOML for each key that it changes."""
+        return in_toml(self.changes)
 
 
 def choices_of(case: Case, named: Mapping[str, Mapping[str, Any]]) -> tuple[list[Choice], list[str]]:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.budget import expected
 from dembound.accuracy.cause import Cause
+from dembound.accuracy.choice import Choice
 from dembound.accuracy.history import Motions
 from dembound.casefile import Case
 from dembound.errors import DemboundError
@@ -43,26 +44,26 @@ class EarlierEnd:
 
 
 def ended_earlier(
-    choice: Choice,
+    best: Best,
     recorded: Motions,
     motion: Motions,
     causes: Sequence[Cause],
     kept: Sequence[str],
-) -> Choice:
+) -> Best:
     """A choice that keeps its bound with the earliest end with which it still does; itself without one.
 
     recorded : motion beside which errors are measured. motion : what its monitors are expected to record. causes : of
     its error. kept : keys that do not change.
     """
-    for end in earlier_ends(choice.case, motion, choice.bound, kept) if choice.holds else []:
+    for end in earlier_ends(best.case, motion, best.bound, kept) if best.holds else []:
         error = expected([*causes, end.lost], recorded)
-        last = end.share * choice.given.run.duration
-        words = f"{choice.words}, until the monitors are silent after about {last:.3g} s"
-        cost = end.share * choice.cost
-        found = replace(choice, case=end.case, words=words, error=error.worst, by=error.by, cost=cost)
+        last = end.share * best.given.run.duration
+        words = f"{best.words}, until the monitors are silent after about {last:.3g} s"
+        cost = end.share * best.cost
+        found = replace(best, choice=Choice.of(best.given, end.case, words), error=error.worst, by=error.by, cost=cost)
         if found.holds:
             return found
-    return choice
+    return best
 
 
 def earlier_ends(case: Case, motion: Motions, bound: float, kept: Sequence[str]) -> list[EarlierEnd]:

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Generic, TypeVar
 
-from dembound.accuracy.best import Choice as Best
+from dembound.accuracy.best import Best
 from dembound.accuracy.cause import Causes
 from dembound.accuracy.choice import Choice, Named
 from dembound.accuracy.history import Motions

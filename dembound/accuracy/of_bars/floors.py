@@ -19,7 +19,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from dembound.accuracy.of_bars.options import BarCandidate
+from dembound.accuracy.of_bars.options import BarOption
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene
 from dembound.methods.rod import Range
@@ -43,12 +43,12 @@ class Floors:
     def __init__(self) -> None:
         self._known: dict[Kind, list[tuple[float, float]]] = defaultdict(list)
 
-    def add(self, choice: BarCandidate, error: float, without_echo: float) -> None:
+    def add(self, choice: BarOption, error: float, without_echo: float) -> None:
         """A choice whose error is known; without_echo : the part of it before `first_echo`."""
         for kind, size in zip(_kinds(choice), (error, without_echo), strict=True):
             self._known[kind].append((choice.spacing, size))
 
-    def of(self, choice: BarCandidate) -> float:
+    def of(self, choice: BarOption) -> float:
         """What the error of a choice is at least; 0 where nothing is known."""
         same, alike = (self._known[kind] for kind in _kinds(choice))
         finer = [error * (choice.spacing / at) ** 2 / MARGIN for at, error in same if choice.spacing <= at]
@@ -57,13 +57,13 @@ class Floors:
         return max([*finer, *coarser, *others], default=0.0)
 
 
-def _kinds(choice: BarCandidate) -> tuple[Kind, Kind]:
+def _kinds(choice: BarOption) -> tuple[Kind, Kind]:
     """Choices of which errors are compared: those with the same ends, and with any."""
     same = choice.method, f"{choice.courant:.2f}"
     return (choice.ends, *same), same
 
 
-def is_regular(choice: BarCandidate, places: Mapping[str, float]) -> bool:
+def is_regular(choice: BarOption, places: Mapping[str, float]) -> bool:
     """Whether the rules hold for finer and coarser nodes than those of a choice; places : m, by monitor."""
     scene, rod = choice.scene, choice.scene.rod
     away = max(abs(float(scene.positions[scene.monitors[name], 0]) - place) for name, place in places.items())

@@ -33,7 +33,7 @@ Changes = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class BarCandidate:
+class BarOption:
     """A choice.
 
     scene : of the case. step : s, steps : of the run. ends, method : these in words. cost : predicted CPU time of the
@@ -76,7 +76,7 @@ class BarCandidate:
         return changed(given, self.changes)
 
 
-def bar_candidates(case: BarCase, kept: Sequence[str]) -> Iterator[BarCandidate]:
+def bar_options(case: BarCase, kept: Sequence[str]) -> Iterator[BarOption]:
     """All choices that keep the values of some keys, those with fewer changes first; none that cannot run."""
     breaks = may_break(case)
     for ends, of_ends in _ends(case, kept):
@@ -129,7 +129,7 @@ def _spacings(case: BarCase, factor: float) -> Changes:
     return {key: float(f"{factor * spacing:.12g}") for key, spacing in own.items()}
 
 
-def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequence[str]) -> Iterator[BarCandidate]:
+def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequence[str]) -> Iterator[BarOption]:
     """The same nodes with several steps."""
     try:
         other = changed(case, changes)
@@ -146,4 +146,4 @@ def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequ
         choice = changes | of_step
         is_valid = step <= min(limit * (1.0 + ROUNDING), other.run.duration)
         if is_valid and (not kept or keeps(case, changed(case, choice), kept)):
-            yield BarCandidate(scene, step, choice, *words)
+            yield BarOption(scene, step, choice, *words)

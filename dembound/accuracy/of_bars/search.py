@@ -15,16 +15,17 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.budget import expected
 from dembound.accuracy.cause import Cause
+from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_bars.causes import QUIET, difference, largest_motion, not_linear, split
 from dembound.accuracy.of_bars.exact import ExactMotion
 from dembound.accuracy.of_bars.floors import Floors, first_echo, is_regular
 from dembound.accuracy.of_bars.motions import BarMotions
-from dembound.accuracy.of_bars.options import BarCandidate, bar_candidates, may_break
+from dembound.accuracy.of_bars.options import BarOption, bar_options, may_break
 from dembound.accuracy.of_bars.window import Window
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
@@ -44,7 +45,7 @@ ALONG = "; its nodes and method remain, as it may break, and the error is that b
 """What is said of a bar that may break."""
 
 
-def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Choice:
+def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Best:
     """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
 
     Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
@@ -60,20 +61,21 @@ def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Choice:
         raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
     best, tried = cheapest(motions, bound)
     words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
+    choice = Choice.of(case, best.choice.case(case), words)
     costs = best.choice.cost, own.choice.cost
-    choice = Choice(case, best.choice.case(case), words, best.error, best.by, bound, *costs, tried, SAFETY)
-    return choice if may_break(case) else ended_earlier(choice, best.recorded, best.recorded, best.causes, kept)
+    found = Best(case, choice, best.error, best.by, bound, *costs, tried, SAFETY)
+    return found if may_break(case) else ended_earlier(found, best.recorded, best.recorded, best.causes, kept)
 
 
 def given_motion(case: BarCase) -> Motion:
     """The motion of a case as it is; raises the errors of building its scene."""
     exact = ExactMotion(build_bar(case))
-    return Motion(next(each for each in bar_candidates(case, ()) if not each.changes), exact)
+    return Motion(next(each for each in bar_options(case, ()) if not each.changes), exact)
 
 
 def all_motions(own: Motion, kept: Sequence[str]) -> list[Motion]:
     """Those of all choices for a given case that do not cost too much, the cheapest first."""
-    choices = sorted(bar_candidates(own.choice.scene.case, kept), key=lambda each: each.cost)
+    choices = sorted(bar_options(own.choice.scene.case, kept), key=lambda each: each.cost)
     return [Motion(each, own.exact) for each in choices if each.cost <= COSTLIEST * own.choice.cost]
 
 
@@ -104,7 +106,7 @@ def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
 class Motion:
     """The motion of a choice beside the exact one."""
 
-    choice: BarCandidate
+    choice: BarOption
     exact: ExactMotion
 
     def add_to(self, floors: Floors) -> None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.choice import changed, is_valid
+from dembound.accuracy.choice import Choice, changed, is_valid
 from dembound.accuracy.of_disks.boxes import box_tables, boxes, continuum_beyond, may_be_boxed
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
@@ -23,31 +22,29 @@ ROUNDING = 1e-9
 """Part of a brick by which places may be beyond it."""
 
 
-@dataclass(frozen=True)
-class Arrangement:
-    """One way to end a scene.
-
-    name : in words. changes : keys of the case. may_widen : whether its sides may be farther away.
-    """
-
-    name: str
-    changes: Mapping[str, Any] = field(default_factory=dict)
-    may_widen: bool = False
+def may_widen(arrangement: Choice) -> bool:
+    """Whether sides of a choice reflect and may be farther away: not where disks fill only a box of the ground."""
+    assert isinstance(arrangement.case, DiskCase)
+    reflecting = [side for side, table in _silent(arrangement.case).items() if not table.is_outside]
+    return bool(reflecting) and arrangement.case.ground.size is None
 
 
-def arrangements(case: DiskCase, scene: DiskScene, bound: float) -> Iterator[Arrangement]:
-    """Those of a case, its own first; valid ones only. scene : of the case; bound : error asked for."""
-    silent = {side: table for side, table in case.boundary.items() if table.is_artificial and not table.waves}
-    in_ground = case.ground.size is not None
-    reflects = any(not table.is_outside for table in silent.values())
-    yield Arrangement("sides as given", {}, may_widen=reflects and not in_ground)
-    if not in_ground and case.incident is None and silent:
+def _silent(case: DiskCase) -> dict[str, Boundary]:
+    """The artificial sides through which no waves enter."""
+    return {side: table for side, table in case.boundary.items() if table.is_artificial and not table.waves}
+
+
+def arrangements(case: DiskCase, scene: DiskScene, bound: float) -> Iterator[Choice]:
+    """Choices of sides for a case, its own first; valid ones only. scene : of the case; bound : error asked for."""
+    silent = _silent(case)
+    yield Choice("sides as given", {}, case)
+    if case.ground.size is None and case.incident is None and silent:
         yield from _dashpots(case, silent)
     if case.incident is None:
         yield from _continuum(case, scene, silent, bound)
 
 
-def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Arrangement]:
+def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice]:
     """Matched dashpots, alone and with springs towards what makes waves."""
     if any(table.needs_column for table in silent.values()):
         return  # the motion of the ground is not zero beyond them
@@ -62,10 +59,10 @@ def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Arrang
         }
         changes = {f"boundary.{side}": table for side, table in tables.items()}
         if is_valid(case, changes, build):
-            yield Arrangement(f"{kind} sides", changes, may_widen=True)
+            yield Choice(f"{kind} sides", changes, changed(case, changes))
 
 
-def _continuum(case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float) -> Iterator[Arrangement]:
+def _continuum(case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float) -> Iterator[Choice]:
     """A continuum beyond all artificial sides, or those without waves, and round boxes of disks."""
     coarse = CONTINUUM_SHARE * bound
     accuracies: dict[str, dict[str, Any]] = {"": {}} | (
@@ -79,12 +76,12 @@ def _continuum(case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary],
             }
             changes = {**beyond, **accuracy}
             if changes and sides and is_valid(case, changes):
-                yield Arrangement(f"a {name}continuum beyond {' and '.join(sides)}", changes)
+                yield Choice(f"a {name}continuum beyond {' and '.join(sides)}", changes, changed(case, changes))
                 break
         yield from _boxes(case, accuracy, name)
 
 
-def _boxes(case: DiskCase, accuracy: Mapping[str, Any], name: str) -> Iterator[Arrangement]:
+def _boxes(case: DiskCase, accuracy: Mapping[str, Any], name: str) -> Iterator[Choice]:
     """Boxes of disks of several sizes in a continuum."""
     if not may_be_boxed(case):
         return
@@ -96,7 +93,7 @@ def _boxes(case: DiskCase, accuracy: Mapping[str, Any], name: str) -> Iterator[A
         changes = {"ground.size": tables.pop("ground")["size"], "packing": kept | tables.pop("packing"), **tables}
         changes |= accuracy
         if is_valid(case, changes):
-            yield Arrangement(f"a box of {_size(box)} in a {name}continuum", changes)
+            yield Choice(f"a box of {_size(box)} in a {name}continuum", changes, changed(case, changes))
 
 
 def _with_monitors(case: DiskCase, box: Box) -> Box:

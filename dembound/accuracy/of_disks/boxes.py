@@ -32,7 +32,7 @@ BAND = 4.0
 """Least distance of holes and loads from the sides of a box, in diameters: cracks near ties are not followed."""
 
 
-class Candidate(NamedTuple):
+class BoxOfDisks(NamedTuple):
     """A box: its rectangle (m), its disks and those of its free-field column, nodes, and nanoseconds of a step.
 
     error : of velocities, expected of its elements.
@@ -78,7 +78,7 @@ def _as_toml(tables: Mapping[str, Mapping[str, Any]]) -> str:
     return "\n".join(lines)
 
 
-def _in_words(scene: DiskScene, best: Candidate) -> str:
+def _in_words(scene: DiskScene, best: BoxOfDisks) -> str:
     """A box, what it holds, what it saves, and its error."""
     left, bottom, right, top = best.box
     share, error = best.cost / _cost(scene), in_percent(best.error)
@@ -89,7 +89,7 @@ def _in_words(scene: DiskScene, best: Candidate) -> str:
     )
 
 
-def cheapest_box(scene: DiskScene) -> Candidate | None:
+def cheapest_box(scene: DiskScene) -> BoxOfDisks | None:
     """The cheapest box of disks in place of a scene that `may_be_boxed`; None if it would gain little."""
     best = min(boxes(scene), key=lambda each: each.cost, default=None)
     return None if best is None or best.cost > WORTH * _cost(scene) else best
@@ -135,7 +135,7 @@ def _reaches(hole: Box, side: str, left: float, right: float) -> bool:
     return hole[0] <= left if side == "left" else hole[2] >= right
 
 
-def boxes(scene: DiskScene) -> Iterator[Candidate]:
+def boxes(scene: DiskScene) -> Iterator[BoxOfDisks]:
     """Boxes of disks with elements of different sizes round them, in place of a scene that `may_be_boxed`."""
     case, medium, diameter = scene.case, medium_of(scene.ground), scene.ground.brick.mean_diameter
     order, accuracy = case.outside.order, case.outside.accuracy
@@ -146,7 +146,7 @@ def boxes(scene: DiskScene) -> Iterator[Candidate]:
         if box[0] >= box[2] or box[1] >= box[3]:  # all that makes waves is on the continuum
             continue
         try:
-            yield _candidate(scene, box)
+            yield _with_continuum(scene, box)
         except CaseError:  # no mesh
             continue
 
@@ -168,7 +168,7 @@ def _round(scene: DiskScene, clearance: float) -> Box:
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
-def _candidate(scene: DiskScene, box: Box) -> Candidate:
+def _with_continuum(scene: DiskScene, box: Box) -> BoxOfDisks:
     """A box with its continuum and column."""
     case, ground = scene.case, scene.ground
     below = box[3] < case.size[1]
@@ -185,4 +185,4 @@ def _candidate(scene: DiskScene, box: Box) -> Candidate:
     beyond = step_cost.of_continuum(grid.nodes, grid.nodes * grid.absorbing / grid.elements, ties)
     cost = step_cost.of_disk(scene) * (inside + column) + sum(beyond.values())
     error = choice.element_error(signals_of(case), medium_of(ground), settings.order, settings.element)
-    return Candidate(box, inside + column, grid.nodes, cost, error)
+    return BoxOfDisks(box, inside + column, grid.nodes, cost, error)

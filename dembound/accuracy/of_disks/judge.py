@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
-from dembound.accuracy.best import Choice as Best
+from dembound.accuracy.best import Best
 from dembound.accuracy.cause import Causes
 from dembound.accuracy.choice import Named
 from dembound.accuracy.history import Motions

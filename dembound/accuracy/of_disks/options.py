@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from dembound.accuracy.choice import Choice
 from dembound.accuracy.differences import keeps
-from dembound.accuracy.of_disks.arrangements import Arrangement, arrangements
+from dembound.accuracy.of_disks.arrangements import arrangements, may_widen
 from dembound.accuracy.of_disks.companions import Companions, needed_by
 from dembound.casefile.disks import DiskCase
 from dembound.disks import step_cost
@@ -39,7 +40,7 @@ EQUAL = 1e-6
 
 
 @dataclass(frozen=True)
-class Candidate:
+class DiskOption:
     """A choice.
 
     case : of the choice. planned : with its sides where they are in `arrangement`, if they are `wider`, too. factor :
@@ -48,7 +49,7 @@ class Candidate:
 
     case: DiskCase
     planned: Plan
-    arrangement: Arrangement
+    arrangement: Choice
     factor: float
     wider: float
     cost: float
@@ -87,9 +88,9 @@ def with_diameter(companions: Companions, factor: float) -> Plan | None:
     return planned if _same_forces(companions.scene, planned.scene) else None
 
 
-def candidates(
+def disk_options(
     companions: Companions, plain: Plan, factor: float, bound: float, kept: Sequence[str]
-) -> Iterator[Candidate]:
+) -> Iterator[DiskOption]:
     """All choices with disks of one diameter that keep the values of some keys; those that cannot run are left out.
 
     plain : the plan with the given sides and these disks.
@@ -101,8 +102,8 @@ def candidates(
         planned = _planned(scene.case, arrangement.changes, may_reduce)
         if planned is None:
             continue
-        found = Candidate(_case_of(planned), planned, arrangement, factor, 0.0, cost_of(planned))
-        each = [found, *(_wider(found, companions) if arrangement.may_widen else [])]
+        found = DiskOption(_case_of(planned), planned, arrangement, factor, 0.0, cost_of(planned))
+        each = [found, *(_wider(found, companions) if may_widen(arrangement) else [])]
         yield from (choice for choice in each if keeps(companions.case, choice.case, kept))
 
 
@@ -155,7 +156,7 @@ def _case_of(planned: Plan) -> DiskCase:
     return planned.scene.case
 
 
-def _wider(plain: Candidate, companions: Companions) -> Iterator[Candidate]:
+def _wider(plain: DiskOption, companions: Companions) -> Iterator[DiskOption]:
     """The same choice with sides farther away, up to where nothing returns from them."""
     own, needed = plain.case, needed_by(plain.scene)
     last = own.packing.extent

@@ -14,9 +14,10 @@ from itertools import count
 
 import numpy as np
 
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.budget import Expected, expected
 from dembound.accuracy.cause import SIDES, Cause
+from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.companions import Companions
@@ -24,9 +25,9 @@ from dembound.accuracy.of_disks.expected import of_ground, of_sides
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
 from dembound.accuracy.of_disks.options import (
     FACTORS,
-    Candidate,
-    candidates,
+    DiskOption,
     cost_of,
+    disk_options,
     may_change_diameter,
     with_diameter,
 )
@@ -47,7 +48,7 @@ COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
 
 
-def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
+def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
     """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
 
     Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
@@ -63,12 +64,13 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
         return _best(case, planned, bound, kept, most, runner)
     found = _best(twin.case, twin.planned, bound, kept, most, runner, twin)
     own_cost = found.own_cost * planned.steps / twin.planned.steps  # steps of the given law cost as much: nothing opens
-    found = replace(found, given=case, words=f"{twin.words}; {found.words}", own_cost=own_cost)
+    choice = Choice.of(case, found.case, f"{twin.words}; {found.words}")
+    found = replace(found, given=case, choice=choice, own_cost=own_cost)
     if found.holds or twin.stress == 0.0:
         return found
     other = _best(case, planned, bound, kept, most, runner)
     other = replace(other, cost=other.cost * own_cost / other.own_cost, own_cost=own_cost)
-    return min(found, other, key=lambda choice: choice.error)
+    return min(found, other, key=lambda each: each.error)
 
 
 def _best(
@@ -79,7 +81,7 @@ def _best(
     most: float,
     runner: Runner,
     twin: ElasticTwin | None = None,
-) -> Choice:
+) -> Best:
     """The best choice under the law of a case, planned; twin : the same, if it is not that of the given case."""
     companions = Companions(case, planned.scene, planned.time_step, most, runner)  # type: ignore[arg-type]
     moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
@@ -87,16 +89,15 @@ def _best(
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
     search = _Search(companions, bound, kept, cost_of(planned), twin)
     best = search.best()
-    words, error, cost = best.candidate.words, best.error, best.candidate.cost
+    words, error, cost = best.option.words, best.error, best.option.cost
     breaks = companions.first_break
     if breaks < case.run.duration:
         words += f"; the error is that before bonds break, after about {breaks:.3g} s"
-    choice = Choice(
-        case, best.candidate.case, words, error.worst, error.by, bound, cost, search.own_cost, search.tried, SAFETY
-    )
+    choice = Choice.of(case, best.option.case, words)
+    found = Best(case, choice, error.worst, error.by, bound, cost, search.own_cost, search.tried, SAFETY)
     if breaks < case.run.duration:
-        return choice
-    return ended_earlier(choice, best.recorded, best.motion, best.causes, kept)
+        return found
+    return ended_earlier(found, best.recorded, best.motion, best.causes, kept)
 
 
 def _require_known(case: DiskCase) -> None:
@@ -127,7 +128,7 @@ def _is_reached(planned: Plan) -> bool:
 class _Found:
     """A choice with its error; recorded : the motion without it, by monitor; causes : of the error."""
 
-    candidate: Candidate
+    option: DiskOption
     recorded: Motions
     causes: list[Cause]
 
@@ -166,17 +167,17 @@ class _Search:
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
         found: list[_Found] = []
-        left: list[Candidate] = []
-        for candidate in self._by_cost():
-            if not self._keeps(self.of_sides.get(_sides(candidate), 0.0)):
-                left.append(candidate)
+        left: list[DiskOption] = []
+        for option in self._by_cost():
+            if not self._keeps(self.of_sides.get(_sides(option), 0.0)):
+                left.append(option)
                 continue
-            found += self._with_error(candidate)
+            found += self._with_error(option)
             if found and self._keeps(found[-1].error.worst):
                 return found[-1]
         return self._most_accurate(found, left)
 
-    def _most_accurate(self, found: list[_Found], left: list[Candidate]) -> _Found:
+    def _most_accurate(self, found: list[_Found], left: list[DiskOption]) -> _Found:
         """The choice with the smallest error of those found and those left out, as none keeps the bound.
 
         These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
@@ -194,24 +195,24 @@ class _Search:
             raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each.error.worst)
 
-    def _alone(self, candidate: Candidate) -> float:
+    def _alone(self, option: DiskOption) -> float:
         """The larger one of the errors that sides and disks of a choice are known to have alone."""
-        return max(self.of_sides.get(_sides(candidate), 0.0), self.of_disks.get(candidate.factor, 0.0))
+        return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(option.factor, 0.0))
 
     def _keeps(self, error: float) -> bool:
         """Whether an error is within the bound, with its reserve."""
         return SAFETY * error <= self.bound
 
-    def _by_cost(self) -> Iterator[Candidate]:
+    def _by_cost(self) -> Iterator[DiskOption]:
         """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
         factors = list(FACTORS) if may_change_diameter(self.companions.case, self.kept) else [1.0]
         number, least = count(), 0.0
-        waiting: list[tuple[float, int, Candidate | float]] = [(0.0, next(number), factors.pop(0))]
+        waiting: list[tuple[float, int, DiskOption | float]] = [(0.0, next(number), factors.pop(0))]
         while waiting:
             cost, _, item = heapq.heappop(waiting)
             if cost > COSTLIEST * self.own_cost:
                 return
-            if isinstance(item, Candidate):
+            if isinstance(item, DiskOption):
                 yield item
                 continue
             made = self._of(item) if self._are_small_enough(item) else []
@@ -222,10 +223,10 @@ class _Search:
             if factors:
                 heapq.heappush(waiting, (least, next(number), factors.pop(0)))
 
-    def _of(self, factor: float) -> list[Candidate]:
+    def _of(self, factor: float) -> list[DiskOption]:
         """Choices with disks of one diameter."""
         plain = self._with_diameter(factor)
-        return [] if plain is None else list(candidates(self.companions, plain, factor, self.bound, self.kept))
+        return [] if plain is None else list(disk_options(self.companions, plain, factor, self.bound, self.kept))
 
     def _with_diameter(self, factor: float) -> Plan | None:
         """The case with disks of another diameter, planned; None if it may not have them."""
@@ -243,22 +244,22 @@ class _Search:
         self.of_disks[factor] = expected(disks, self.companions.recorded(plain.scene)).worst
         return self._keeps(self.of_disks[factor])
 
-    def _with_error(self, candidate: Candidate) -> list[_Found]:
+    def _with_error(self, option: DiskOption) -> list[_Found]:
         """A choice with its error; nothing if a companion of it cannot run."""
-        scene, step = candidate.scene, candidate.planned.time_step
+        scene, step = option.scene, option.planned.time_step
         recorded = self.companions.recorded(scene)
         self.tried += 1
         try:
             disks, others = of_ground(self.companions, scene, step)
-            sides = [of_sides(self.companions, scene, step, candidate.wider)] if sides_of_pair(scene.case) else []
+            sides = [of_sides(self.companions, scene, step, option.wider)] if sides_of_pair(scene.case) else []
         except DemboundError:
             return []
         alone = expected(sides, recorded).worst
-        self.of_sides[_sides(candidate)] = max(alone, self.of_sides.get(_sides(candidate), 0.0))
+        self.of_sides[_sides(option)] = max(alone, self.of_sides.get(_sides(option), 0.0))
         law = [] if self.twin is None else self.twin.causes(scene, recorded)
-        return [_Found(candidate, recorded, [*disks, *others, *sides, *law])]
+        return [_Found(option, recorded, [*disks, *others, *sides, *law])]
 
 
-def _sides(candidate: Candidate) -> tuple[str, float]:
+def _sides(option: DiskOption) -> tuple[str, float]:
     """What the sides of a choice are, and how much farther away."""
-    return candidate.arrangement.name, candidate.wider
+    return option.arrangement.name, option.wider

@@ -8,7 +8,7 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import choose
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks import search as of_disks
 from dembound.accuracy.of_disks.search import SAFETY
@@ -37,7 +37,7 @@ def bar() -> DiskCase:
 
 
 @cache
-def chosen() -> Choice:
+def chosen() -> Best:
     return choose(bar(), 0.02)
 
 
@@ -76,7 +76,7 @@ def test_a_loose_bound_leaves_the_sides_as_they_are() -> None:
     """0.25 < bound/SAFETY, with larger disks only if their error leaves it."""
     choice = choose(bar(), 0.6, ["packing"])
     assert choice.holds
-    assert choice.changes == []
+    assert choice.choice.toml == []
 
 
 def test_kept_keys_remain_and_the_best_is_returned_where_nothing_holds() -> None:

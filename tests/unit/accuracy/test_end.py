@@ -8,9 +8,10 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import choose
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.budget import Estimate
 from dembound.accuracy.cause import Cause, Causes
+from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import END, LEAST_SAVED, earlier_ends, ended_earlier
 from dembound.accuracy.history import History
 from dembound.accuracy.runner import measure
@@ -85,7 +86,7 @@ def test_a_choice_keeps_its_bound_with_the_end() -> None:
     """40 µm are lost, 0.5 % of the final displacement of 7.5 mm, so that only larger bounds allow it."""
     case, motion = small(BAR), passing(4e-4)
     other = Cause("other", "", {name: {"velocity": 0.005, "displacement": 0.005} for name in motion})
-    choice = Choice(case, case, "as it is", 0.005, {"other": 0.005}, 0.02, 1.0, 1.0, 1, 1.4)
+    choice = Best(case, Choice("as it is", {}, case), 0.005, {"other": 0.005}, 0.02, 1.0, 1.0, 1, 1.4)
     ended = ended_earlier(choice, motion, motion, [other], [])
     assert ended.holds
     assert ended.cost == pytest.approx((PASSED + ECHO) / 0.4, abs=0.01)

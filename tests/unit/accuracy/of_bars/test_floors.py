@@ -8,7 +8,7 @@ import pytest
 from estimated_bars import scene
 
 from dembound.accuracy.of_bars.floors import MARGIN, Floors, first_echo, is_regular
-from dembound.accuracy.of_bars.options import BarCandidate
+from dembound.accuracy.of_bars.options import BarOption
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar import BarCase
 from dembound.kinds import with_changes
@@ -22,31 +22,31 @@ def built(name: str, **changes: Any) -> BarScene:
     return build_bar(case)
 
 
-def choice(name: str, courant: float, spacing: float = 0.01, ends: str = "dashpots", method: str = "") -> BarCandidate:
-    return BarCandidate(built(name, bar__spacing=spacing), courant * spacing / 2740.0, {}, ends, method)
+def choice(name: str, courant: float, spacing: float = 0.01, ends: str = "dashpots", method: str = "") -> BarOption:
+    return BarOption(built(name, bar__spacing=spacing), courant * spacing / 2740.0, {}, ends, method)
 
 
 @pytest.fixture(scope="module")
-def known() -> BarCandidate:
+def known() -> BarOption:
     return choice("viscous end", 0.5)
 
 
-def floor(known: BarCandidate, other: BarCandidate, error: float = 0.3, without_echo: float = 0.0) -> float:
+def floor(known: BarOption, other: BarOption, error: float = 0.3, without_echo: float = 0.0) -> float:
     floors = Floors()
     floors.add(known, error, without_echo)
     return floors.of(other)
 
 
-def test_of_finer_nodes_they_fall_with_the_square_of_the_spacing(known: BarCandidate) -> None:
+def test_of_finer_nodes_they_fall_with_the_square_of_the_spacing(known: BarOption) -> None:
     assert floor(known, choice("viscous end", 0.5, 0.0025)) == pytest.approx(0.3 / 16 / MARGIN)
     assert floor(known, known) == pytest.approx(0.3 / MARGIN)
 
 
-def test_of_coarser_nodes_they_are_as_large(known: BarCandidate) -> None:
+def test_of_coarser_nodes_they_are_as_large(known: BarOption) -> None:
     assert floor(known, choice("viscous end", 0.5, 0.04)) == pytest.approx(0.3)
 
 
-def test_of_other_ends_only_what_is_wrong_before_an_echo_counts(known: BarCandidate) -> None:
+def test_of_other_ends_only_what_is_wrong_before_an_echo_counts(known: BarOption) -> None:
     layers = replace(known, ends="layers")
     assert floor(known, layers) == 0.0
     assert floor(known, layers, without_echo=0.12) == pytest.approx(0.12 / MARGIN)
@@ -55,12 +55,12 @@ def test_of_other_ends_only_what_is_wrong_before_an_echo_counts(known: BarCandid
     assert floor(known, coarser, without_echo=0.12) == pytest.approx(0.12 / MARGIN)
 
 
-def test_other_methods_and_courant_numbers_say_nothing(known: BarCandidate) -> None:
+def test_other_methods_and_courant_numbers_say_nothing(known: BarOption) -> None:
     assert floor(known, choice("viscous end", 0.6), without_echo=0.3) == 0.0
     assert floor(known, replace(known, method=", corrected ends"), without_echo=0.3) == 0.0
 
 
-def test_the_largest_of_all_counts(known: BarCandidate) -> None:
+def test_the_largest_of_all_counts(known: BarOption) -> None:
     floors = Floors()
     for error in (0.1, 0.4, 0.2):
         floors.add(known, error, 0.0)

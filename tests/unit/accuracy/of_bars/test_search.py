@@ -9,7 +9,7 @@ from estimated_bars import BURST, exact, recorded_of, scene
 from small_cases import SPALLING, small
 
 from dembound.accuracy.advise import choose
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.of_bars.search import SAFETY, all_motions, cheapest, given_motion
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
@@ -17,7 +17,7 @@ from dembound.errors import CaseError
 from dembound.kinds import with_changes
 
 
-def true_error(choice: Choice) -> float:
+def true_error(choice: Best) -> float:
     """The largest RMS error over RMS of the run of a choice, beside the exact motion at the given case's nodes."""
     given, case = choice.given, choice.case
     assert isinstance(given, BarCase)
@@ -119,7 +119,7 @@ def test_the_small_stress_beside_a_free_end_does_not_count() -> None:
     shares = {q: np.linalg.norm(errors[q]) / np.linalg.norm(v[:, 0]) for q, v in recorded["far"].values.items()}
     assert shares["stress"] > 0.05 > shares["velocity"]
     assert choice.holds
-    assert choice.changes == []
+    assert choice.choice.toml == []
 
 
 def test_kept_keys_remain() -> None:
@@ -128,7 +128,7 @@ def test_kept_keys_remain() -> None:
     choice = choose(case, 0.02, ["boundary.right.beta_p", "bar", "run"])
 
     assert not choice.holds
-    assert choice.changes == []
+    assert choice.choice.toml == []
     assert choice.by["sides"] == pytest.approx(choice.error, rel=0.1)
 
 

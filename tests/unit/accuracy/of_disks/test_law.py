@@ -9,7 +9,7 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import choose
-from dembound.accuracy.best import Choice
+from dembound.accuracy.best import Best
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner, measure
@@ -205,7 +205,7 @@ def test_what_turns_is_the_given_stress_and_the_weight() -> None:
 
 
 @cache
-def chosen() -> Choice:
+def chosen() -> Best:
     return choose(confined(), 0.1)
 
 
@@ -215,7 +215,7 @@ def test_the_choice_is_one_under_the_elastic_law() -> None:
     assert isinstance(choice.case, DiskCase)
     assert choice.case.material.law == "elastic"
     assert "the elastic law, which holds up to" in choice.words
-    assert any(line.startswith("material = ") for line in choice.changes)
+    assert any(line.startswith("material = ") for line in choice.choice.toml)
     assert choice.given == confined()
 
 
