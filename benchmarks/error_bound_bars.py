@@ -26,7 +26,7 @@ from estimated_bars import SCENES, exact, recorded_of, scene
 from dembound.accuracy.advise import choose
 from dembound.accuracy.history import History, loud
 from dembound.accuracy.of_bars.floors import MARGIN, Floors
-from dembound.accuracy.of_bars.search import SAFETY, Motion, all_motions, cheapest, given_motion
+from dembound.accuracy.of_bars.search import SAFETY, Motion, affordable_motions, cheapest, given_motion
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 
@@ -80,7 +80,7 @@ def every(names: list[str]) -> None:
     print(f"| bar | choices | {bounds} | same choices | finer nodes, other ends | coarser nodes |")
     print("|---|---|" + "---|" * len(BOUNDS) + "---|---|---|")
     for name in names or SCENES:
-        motions = all_motions(given_motion(scene(name)), [])
+        motions = affordable_motions(given_motion(scene(name)), [])
         best = min(motions, key=lambda each: each.error)
         tried, same = [], 0
         for bound in BOUNDS:

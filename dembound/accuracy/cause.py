@@ -55,7 +55,7 @@ class Causes:
     echo_free: bool = False
 
     def __add__(self, other: Causes) -> Causes:
-        """Both."""
+        """The causes of both, and what is said about both."""
         return Causes(
             [*self.found, *other.found],
             [*self.missing, *other.missing],

@@ -23,7 +23,7 @@ def differences(given: Case, changed: Case) -> dict[str, Any]:
 
 
 def _differences(old: Any, new: Any, path: Path) -> Iterator[tuple[Path, Any]]:
-    """The same for values at a path."""
+    """Paths of keys below a path at which two values differ, each with the new value."""
     if old == new:
         return
     before, after = _named(old), _named(new)

@@ -70,7 +70,7 @@ class History:
         return self._part(self.time < end)
 
     def _part(self, kept: np.ndarray) -> History:
-        """Some of the samples (k,); itself if these are all."""
+        """The history with some of its samples, kept (k,) bool; itself if these are all."""
         if kept.all():
             return self
         return History(self.place, self.time[kept], {name: each[kept] for name, each in self.values.items()})
@@ -87,7 +87,7 @@ def loud(motions: Motions, quantity: str) -> list[str]:
 
 
 def loud_of(peaks: Mapping[str, float]) -> list[str]:
-    """Those of some monitors that count, by their largest values."""
+    """Monitors whose largest value is at least `QUIET` of that of the loudest one."""
     return [name for name, peak in peaks.items() if peak >= QUIET * max(peaks.values())]
 
 

@@ -33,8 +33,8 @@ class Wanted:
 class Reference:
     """What errors are measured against.
 
-    name : "exact", "extended", "finer" or "finest"; sentence : it in words. gauges : its histories for a choice and its
-    outcome. until : s, time up to which histories are compared. findings : its numbers by name. own : numbers of the
+    name : "exact", "extended", "finer" or "finest"; sentence : it in words. motions : histories for a choice and its
+    run. until : s, time up to which histories are compared. findings : its numbers by name. own : numbers of the
     choices that are the reference itself. cautions : what these errors do not include, in words.
     """
 
@@ -77,7 +77,7 @@ class FinerRun(Protocol):
         """Distance of its nodes, m."""
 
     def motions(self, run: Run, choice: Run) -> dict[str, History]:
-        """Its histories at the monitors of a choice; run : its outcome, or that of its case with ends farther away."""
+        """Histories at the monitors of a choice; run : of this case, or of that with ends farther away."""
 
 
 @dataclass(frozen=True)

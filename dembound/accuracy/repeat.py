@@ -56,7 +56,7 @@ class Cracked:
 
     @classmethod
     def of(cls, record: Path) -> Cracked:
-        """Those of a record."""
+        """The bonds that broke in the run of a record."""
         with open_record(record) as file:
             times, particles = file["cracks/time"][:], file["particles"]
             in_bar, x = is_line(file.attrs["size"]), np.sort(particles["position"][:, 0])

@@ -173,13 +173,13 @@ class _References:
         return outcome
 
     def _places(self, fine: FinerRun | None) -> Callable[[Run, Run], Motions]:
-        """The gauges of a run for the outcome of a choice, at their places in the scene before it was extended."""
+        """The histories of a run for the outcome of a choice, at their places in the scene before it was extended."""
         if fine is not None:
             return fine.motions
-        places = {name: gauge.place for name, gauge in self._outcomes[self._own].motions.items()}
+        places = {name: history.place for name, history in self._outcomes[self._own].motions.items()}
         return lambda run, _: {name: replace(run.motions[name], place=place) for name, place in places.items()}
 
-    def _of_run(self, name: str, sentence: str, run: Run, gauges: Callable[[Run, Run], Motions]) -> Reference:
+    def _of_run(self, name: str, sentence: str, run: Run, motions: Callable[[Run, Run], Motions]) -> Reference:
         """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
@@ -187,7 +187,7 @@ class _References:
         return Reference(
             name=name,
             sentence=sentence + "".join(f", up to its first break at {1e3 * time:.4g} ms" for time in breaks),
-            motions=lambda _, outcome: gauges(run, outcome),
+            motions=lambda _, outcome: motions(run, outcome),
             until=min(breaks, default=math.inf),
             findings=findings,
             own=tuple(k for k, outcome in enumerate(self._outcomes) if _is_same_run(outcome, run)),
@@ -219,7 +219,7 @@ def _is_same_run(outcome: Run, run: Run) -> bool:
     if (outcome.time_step, outcome.steps, outcome.work) != (run.time_step, run.steps, run.work):
         return False
     return outcome.motions.keys() == run.motions.keys() and all(
-        np.array_equal(gauge.velocity, run.motions[name].velocity)
-        and np.array_equal(gauge.displacement, run.motions[name].displacement)
-        for name, gauge in outcome.motions.items()
+        np.array_equal(history.velocity, run.motions[name].velocity)
+        and np.array_equal(history.displacement, run.motions[name].displacement)
+        for name, history in outcome.motions.items()
     )

@@ -55,7 +55,7 @@ def write_results(charted: Charted, path: Path) -> None:
 
 
 def _write_reference(group: h5py.Group, charted: Charted) -> None:
-    """Its name, in words, and its histories; those of an exact solution are those of the first choice with results."""
+    """Write the name of the reference and its histories, of an exact solution at the monitors of the first choice."""
     reference = charted.reference
     own = np.array(reference.own, dtype=int)
     group.attrs.update({"name": reference.name, "sentence": reference.sentence, "choices": own})

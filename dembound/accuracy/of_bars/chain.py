@@ -44,7 +44,7 @@ class Clock:
         return cls(step, s, 2.0 / step * np.sinh(half), np.cosh(half))
 
     def part(self, chosen: slice) -> Clock:
-        """Some of the frequencies."""
+        """The clock at some of its frequencies."""
         return Clock(self.step, self.s[chosen], self.change[chosen], self.mean[chosen])
 
 

@@ -38,8 +38,8 @@ class Finer:
     cells: int
 
     def motions(self, run: Run, choice: Run) -> dict[str, History]:
-        """Its histories at the monitors of a choice; run : its outcome, or that of the bar extended at its ends."""
-        nodes = {name: _node(gauge, self.spacing, self.cells) for name, gauge in choice.motions.items()}
+        """Histories at the monitors of a choice; run : of this case, or of that with ends farther away."""
+        nodes = {name: _node(history, self.spacing, self.cells) for name, history in choice.motions.items()}
         return {
             name: replace(run.motions[_name(node)], place=np.array([node * self.spacing, 0.0]))
             for name, node in nodes.items()
@@ -56,7 +56,7 @@ def finer(case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Run]) -> 
     bars = [choice.case.bar for choice in choices if isinstance(choice.case, BarCase)]
     cells = _cells({bar.cells for bar in bars if bar.length == case.bar.length})
     spacing = case.bar.length / cells
-    nodes = {_node(gauge, spacing, cells) for outcome in outcomes for gauge in outcome.motions.values()}
+    nodes = {_node(history, spacing, cells) for outcome in outcomes for history in outcome.motions.values()}
     run = {key: value for key, value in case.run.given().items() if key not in STEP_AND_END}
     changes: dict[str, Any] = {
         "bar.spacing": spacing,
@@ -76,9 +76,9 @@ def _cells(of_choices: set[int]) -> int:
     return cells if cells <= MOST * most else FINER * most
 
 
-def _node(gauge: History, spacing: float, cells: int) -> int:
-    """Number of the node nearest to that of a gauge; the last one for gauges of longer bars."""
-    return min(nearest_number(float(gauge.place[0]) / spacing), cells)
+def _node(history: History, spacing: float, cells: int) -> int:
+    """Number of the node nearest to that of a history; the last one for motions of longer bars."""
+    return min(nearest_number(float(history.place[0]) / spacing), cells)
 
 
 def _name(node: int) -> str:

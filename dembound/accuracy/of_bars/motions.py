@@ -53,11 +53,11 @@ class BarMotions:
         return {name: self.scene.monitors[name] for name in self.times}
 
     def own(self) -> Motions:
-        """That of the bar as it is."""
+        """The motion of the bar as it is stepped, with its own ends."""
         return self._in_nodes(self.scene, self.scene.layers, self.window.step, [])
 
     def endless(self, step: float) -> Motions:
-        """That of the bar without ends that absorb; step : Δt, s, 0 for exact time."""
+        """The motion of a bar that goes on beyond ends that absorb; step : Δt, s, 0 for exact time."""
         if not self.absorbing:
             return self._in_nodes(self.scene, self.scene.layers, step, [])
         least = max(4, 2 * self.case.method.horizon_beyond)
@@ -70,7 +70,7 @@ class BarMotions:
     def _in_nodes(
         self, scene: BarScene, layers: Mapping[str, EndLayer], step: float, entering: Iterable[str]
     ) -> Motions:
-        """That of a chain of nodes; entering : ends at which the wave enters an endless bar."""
+        """The motion of a chain of nodes; entering : ends at which the wave enters an endless bar."""
         chain, clock = Chain(scene, layers, self.window.step), Clock.of(self.window.s, step)
         forces = self._forces(scene, chain, clock)
         ends = {"left": 0, "right": scene.count - 1}
@@ -113,7 +113,7 @@ class BarMotions:
         return max(1, int(np.count_nonzero(np.abs(clock.change) <= ABOVE * highest)))
 
     def exact(self, places: Mapping[str, float] | None = None) -> Motions:
-        """That of rods; places : m, by monitor, if they are not those of its nodes."""
+        """The motion of rods without nodes and steps; places : m, by monitor, by default those of its nodes."""
         finer = self.window.finer(FINER)
         pushed: dict[str, np.ndarray] = {}
         for load in self.case.load:

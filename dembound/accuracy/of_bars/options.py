@@ -53,7 +53,7 @@ class BarOption:
 
     @property
     def spacing(self) -> float:
-        """Of the nodes, m."""
+        """Distance of the nodes, m."""
         return self.scene.case.bar.spacing
 
     @property
@@ -130,7 +130,7 @@ def _spacings(case: BarCase, factor: float) -> Changes:
 
 
 def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequence[str]) -> Iterator[BarOption]:
-    """The same nodes with several steps."""
+    """Choices with several time steps for the nodes that changes give; words : of the ends and of the method."""
     try:
         other = changed(case, changes)
         scene = build_bar(other)

@@ -51,7 +51,7 @@ class PulseInBar(Exact):
         return found._until_it_breaks(bar.breaking_stretch * bar.modulus)
 
     def _until_it_breaks(self, strength: float) -> PulseInBar | None:
-        """The same up to the first spall, by the closed form; None if the bar may break and there is none."""
+        """The solution up to the first spall, if the bar may break; None where its place has no closed form."""
         crest = abs(self.pressure) * self.wave.peak()
         if strength > crest:
             return self
@@ -71,16 +71,16 @@ class PulseInBar(Exact):
 
     def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
         """The motion and stress at the nodes of the monitors, at the same times."""
-        return {name: self._at(gauge) for name, gauge in recorded.items()}
+        return {name: self._at(history) for name, history in recorded.items()}
 
-    def _at(self, gauge: History) -> History:
-        place = float(gauge.place[0])
+    def _at(self, history: History) -> History:
+        place = float(history.place[0])
         length, speed, impedance = self.bar_length, self.speed, self.impedance
 
         def pressure(time: np.ndarray) -> np.ndarray:
             return np.where(time >= 0.0, self.pressure * self.wave.velocity(time), 0.0)
 
-        velocity = bar_velocity(place, gauge.time, pressure, length, speed, impedance, self.far_end)
-        displacement = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * np.diff(gauge.time))])
-        stress = bar_stress(place, gauge.time, pressure, length, speed, self.far_end)
-        return History.of(gauge.place, gauge.time, along(displacement, 0), along(velocity, 0), stress)
+        velocity = bar_velocity(place, history.time, pressure, length, speed, impedance, self.far_end)
+        displacement = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * np.diff(history.time))])
+        stress = bar_stress(place, history.time, pressure, length, speed, self.far_end)
+        return History.of(history.place, history.time, along(displacement, 0), along(velocity, 0), stress)

@@ -56,7 +56,7 @@ def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Best:
     own = given_motion(case)
     if not own.moves:
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
-    motions = all_motions(own, kept)
+    motions = affordable_motions(own, kept)
     if not motions:
         raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
     best, tried = cheapest(motions, bound)
@@ -73,8 +73,8 @@ def given_motion(case: BarCase) -> Motion:
     return Motion(next(each for each in bar_options(case, ()) if not each.changes), exact)
 
 
-def all_motions(own: Motion, kept: Sequence[str]) -> list[Motion]:
-    """Those of all choices for a given case that do not cost too much, the cheapest first."""
+def affordable_motions(own: Motion, kept: Sequence[str]) -> list[Motion]:
+    """Motions of all choices for a case that cost at most `COSTLIEST` times as much as it does, the cheapest first."""
     choices = sorted(bar_options(own.choice.scene.case, kept), key=lambda each: each.cost)
     return [Motion(each, own.exact) for each in choices if each.cost <= COSTLIEST * own.choice.cost]
 
@@ -147,12 +147,12 @@ class Motion:
 
     @property
     def by(self) -> dict[str, float]:
-        """Its causes at the monitor with the largest error; some have opposite signs, as those of grid and steps."""
+        """Shares of the error by cause at the worst monitor; some have opposite signs, as those of grid and steps."""
         return expected(self.causes, self.recorded).by
 
     @cached_property
     def causes(self) -> list[Cause]:
-        """Its causes."""
+        """What ends, nodes, steps and other places of monitors add to the motion."""
         at_nodes = self._motions.exact()
         causes = split(self._motions, self._own, at_nodes, self.recorded)
         return [*causes, difference(PLACES, at_nodes, self._exact, self.recorded)]

@@ -43,7 +43,7 @@ class Window:
         return cls(step, steps, int(next_fast_len(math.ceil(LONGER * steps) + 16, real=True)))
 
     def finer(self, times: int) -> Window:
-        """The same window with so many times as many samples."""
+        """The window with `times` as many samples in the same time."""
         return Window(self.step / times, self.steps * times, self.samples * times)
 
     @property

@@ -13,8 +13,8 @@ from dembound.accuracy.cause import CONTINUUM, GRID, SIDES, STEP, Cause, Causes
 from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
+from dembound.accuracy.of_disks.near import wall_error
 from dembound.accuracy.of_disks.pair import Pair, run_pair, sides_of_pair
-from dembound.accuracy.of_disks.walls import wall_error
 from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, delay_of
 from dembound.accuracy.runner import Runner
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
@@ -42,9 +42,9 @@ def causes_of_disks(case: DiskCase, recorded: Motions, time_step: float, work: f
 
 
 def causes_by_formula(case: DiskCase, scene: DiskScene, recorded: Motions, time_step: float) -> list[Cause]:
-    """The same but for sides that are compared by runs; the recorded run may be another one than that of the case.
+    """Causes of the error of a case that are known without runs: all but sides that absorb and let no waves in.
 
-    scene, time_step (s) : of the case.
+    scene, time_step (s) : of the case. recorded : motion at its monitors, also of another run.
     """
     return _Disks(case, scene, recorded, time_step, 0.0, 0.0).by_formula()
 

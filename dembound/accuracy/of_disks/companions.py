@@ -12,9 +12,8 @@ import numpy as np
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged, movable_sides
-from dembound.accuracy.of_disks.load_places import middle_of_loads, middles_of_loads
 from dembound.accuracy.of_disks.pair import PairScenes, ratios, scenes_of_pair, sides_of_pair
-from dembound.accuracy.of_disks.patches import patch_around, weights_at
+from dembound.accuracy.of_disks.places import middle_of_loads, middles_of_loads, patch_around, weights_at
 from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
@@ -145,15 +144,15 @@ class Companions:
             return {name: scene.monitored[name] * stretch for name in names}
         return {name: own + scene.monitored[name] - seen for name in names}
 
-    def _motion(self, gauges: Motions, places: Mapping[str, np.ndarray]) -> dict[str, dict[str, np.ndarray]]:
+    def _motion(self, motions: Motions, places: Mapping[str, np.ndarray]) -> dict[str, dict[str, np.ndarray]]:
         """Motion (k, 2) along x and y at places (2,) m near the monitors, by monitor and quantity."""
         found: dict[str, dict[str, np.ndarray]] = {}
         for name, patch in self._patches.items():
             weights = weights_at(patch, places[name])
-            disks = [gauges[_named(name, k)] for k in range(len(patch))]
+            disks = [motions[_named(name, k)] for k in range(len(patch))]
             found[name] = {
                 q: sum(
-                    (w * gauge.values[q][:, :2] for w, gauge in zip(weights, disks, strict=True)),
+                    (w * history.values[q][:, :2] for w, history in zip(weights, disks, strict=True)),
                     np.zeros((len(disks[0].time), 2)),
                 )
                 for q in QUANTITIES

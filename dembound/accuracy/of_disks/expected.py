@@ -11,8 +11,7 @@ from dembound.accuracy.cause import CONTINUUM, GRID, SIDES, STEP, Cause
 from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.of_disks.causes import causes_by_formula
 from dembound.accuracy.of_disks.companions import QUANTITIES, Companions
-from dembound.accuracy.of_disks.near import errors_near_loads
-from dembound.accuracy.of_disks.walls import wall_error
+from dembound.accuracy.of_disks.near import errors_near_loads, wall_error
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
@@ -84,7 +83,7 @@ def _places(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
 
 
 def _constant(delay: float, omega: np.ndarray) -> np.ndarray:
-    """The same delay (s) at all angular frequencies."""
+    """One delay (s) for all angular frequencies (k,) rad/s."""
     return np.full_like(omega, delay)
 
 

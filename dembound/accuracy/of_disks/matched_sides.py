@@ -42,7 +42,7 @@ class Reflected:
 
     @property
     def out_of_phase(self) -> float:
-        """The rest, as of a mass too much at the side, in quadrature."""
+        """Part of the size in quadrature to the dashpots, such as a mass too much at the side reflects."""
         return math.sqrt(max(self.size**2 - self.dashpots**2, 0.0))
 
 

@@ -157,7 +157,7 @@ def _case_of(planned: Plan) -> DiskCase:
 
 
 def _wider(plain: DiskOption, companions: Companions) -> Iterator[DiskOption]:
-    """The same choice with sides farther away, up to where nothing returns from them."""
+    """Variants of a choice with its sides farther away, up to where nothing returns from them."""
     own, needed = plain.case, needed_by(plain.scene)
     last = own.packing.extent
     area = last[0] * last[1]

@@ -35,6 +35,6 @@ def test_a_case_is_run_once_and_its_work_is_counted(bar, monkeypatch) -> None:
     runs = runner.Runner()
     first = runs.run(bar())
     assert runs.run(bar()) is first
-    assert runs.run(bar({"run.duration": 0.01})) is not first
+    assert runs.run(bar({"run.duration": 0.02})) is not first
     assert (len(made), runs.work) == (2, 14)
     assert (first.finding("break time"), first.finding("spall time")) == (0.5, np.inf)

@@ -46,15 +46,15 @@ class PlaneWave(Exact):
         start = float(scene.positions[scene.edges[self.side].nodes, axis].mean())
         wave, column = case.wave[case.driving[self.side][self.motion]], axis_of_motion(self.side, self.motion)
         found = {}
-        for name, gauge in recorded.items():
-            late = gauge.time - abs(float(gauge.place[axis]) - start) / speed
+        for name, history in recorded.items():
+            late = history.time - abs(float(history.place[axis]) - start) / speed
             moved, moving = (along(motion(late), column) for motion in (wave.displacement, wave.velocity))
-            found[name] = History.of(gauge.place, gauge.time, moved, moving)
+            found[name] = History.of(history.place, history.time, moved, moving)
         return found
 
 
 def _keeps_plane(case: DiskCase, side: str, motion: Motion) -> Iterator[bool]:
-    """Of the two sides along which the wave runs, whether each leaves a plane wave plane.
+    """Whether a plane wave stays plane, for each of the two sides along which it runs.
 
     Free sides do so on a lattice only. Those of random packings are softer, also with rows of equal disks along them:
     they slow the wave in a strip 20 disks high by up to 2 %.

@@ -6,7 +6,7 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.expected import of_ground
-from dembound.accuracy.of_disks.load_places import middles_of_loads
+from dembound.accuracy.of_disks.places import middles_of_loads
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.kinds import with_changes

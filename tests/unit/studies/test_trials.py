@@ -8,7 +8,7 @@ from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import step_limit
 from dembound.kinds import loads, with_changes
-from dembound.studies.quiet import PARTICLES, UNLOADED, parts_of, trials
+from dembound.studies.trials import PARTICLES, UNLOADED, parts_of, trials
 
 ROCK = """
 [bar]
