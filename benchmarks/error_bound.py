@@ -23,38 +23,35 @@ import numpy as np
 import tomli_w
 from error_bound_scenes import scenes
 
+from dembound.accuracy.advise import choose
+from dembound.accuracy.best import Best
+from dembound.accuracy.extended import extended
+from dembound.accuracy.history import History, Motions, loud
+from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.options import FACTORS, DiskOption, disk_options, with_diameter
+from dembound.accuracy.of_disks.search import COSTLIEST
+from dembound.accuracy.runner import SHORT, measure
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build
 from dembound.errors import DemboundError
 from dembound.kinds import loads, with_changes
 from dembound.running import Progress, plan
-from dembound.studies.accuracy import Choice, choose
-from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, with_diameter
-from dembound.studies.accuracy.companions import Companions
-from dembound.studies.accuracy.of_disks import COSTLIEST
-from dembound.studies.chart.errors import QUIET
-from dembound.studies.chart.measure import Gauges, measure
-from dembound.studies.estimate.of_run import SHORT
-from dembound.studies.extended import extended
 
 BOUNDS = (0.003, 0.01, 0.03, 0.1)
 FINER = 3
 QUANTITIES = ("velocity", "displacement")
 
 
-def reference(case: DiskCase) -> Gauges:
+def reference(case: DiskCase) -> Motions:
     """The motion in the enlarged scene, extrapolated to small disks, at the times of the finer run."""
     own, fine = (far_motion(with_changes(case, {"packing.radius": 0.5 / k})) for k in (1, FINER))
     found, lag = {}, _lag(case)
     for name, late in fine.items():
         gauge = replace(late, time=late.time - lag)
-        values = {}
-        for quantity in QUANTITIES:
-            coarse = at_times(own, name, quantity, gauge.time)
-            exact = gauge.of(quantity) + (gauge.of(quantity) - coarse) / (FINER**2 - 1)  # type: ignore[arg-type]
-            values[quantity] = exact
-        found[name] = replace(gauge, **values)
+        coarse = own[name].at(gauge.time)
+        values = {q: each + (each - coarse.values[q]) / (FINER**2 - 1) for q, each in gauge.values.items()}
+        found[name] = replace(gauge, values=values)
     return found
 
 
@@ -68,42 +65,37 @@ def _lag(case: DiskCase) -> float:
     return 0.0
 
 
-def far_motion(case: Any) -> Gauges:
+def far_motion(case: Any) -> Motions:
     """The motion in the enlarged scene."""
-    return measure(extended(case).case, Progress())[0].gauges
+    return measure(extended(case).case, Progress())[0].motions
 
 
-def at_times(gauges: Gauges, name: str, quantity: Any, times: np.ndarray) -> np.ndarray:
-    """Values (k, 3) of a quantity at some times."""
-    from scipy.interpolate import CubicSpline
-
-    gauge = gauges[name]
-    return np.asarray(CubicSpline(gauge.time, gauge.of(quantity))(np.clip(times, gauge.time[0], gauge.time[-1])))
-
-
-def true_error(found: Gauges, expected: Gauges) -> float:
+def true_error(found: Motions, expected: Motions) -> float:
     """The largest error of velocity or displacement at monitors that move, RMS over RMS."""
     errors = []
     for quantity in QUANTITIES:
-        values = {name: gauge.of(quantity)[:, :2] for name, gauge in expected.items()}  # type: ignore[arg-type]
-        loudest = max(np.abs(each).max() for each in values.values())
-        for name, each in values.items():
-            column = int(np.argmax(np.abs(each).max(axis=0)))
-            if np.abs(each).max() >= QUIET * loudest:
-                difference = at_times(found, name, quantity, expected[name].time)[:, column] - each[:, column]
-                errors.append(float(np.linalg.norm(difference) / np.linalg.norm(each[:, column])))
+        for name in loud({key: _plane(each) for key, each in expected.items()}, quantity):
+            own = _plane(expected[name])
+            column, values = own.component(quantity), own.values[quantity]
+            rest = found[name].at(own.time).values[quantity][:, column] - values[:, column]
+            errors.append(float(np.linalg.norm(rest) / np.linalg.norm(values[:, column])))
     return max(errors)
 
 
-def every_choice(case: DiskCase, bound: float, most: float) -> list[Candidate]:
+def _plane(history: History) -> History:
+    """The motion along x and y, without rotation."""
+    return replace(history, values={quantity: each[:, :2] for quantity, each in history.values.items()})
+
+
+def every_choice(case: DiskCase, bound: float, most: float) -> list[DiskOption]:
     """All choices for a bound that cost at most so much (s), whatever their error, the cheapest first."""
     planned = plan(case)
     companions = Companions(case, planned.scene, planned.time_step, SHORT)  # type: ignore[arg-type]
-    found: list[Candidate] = []
+    found: list[DiskOption] = []
     for factor in FACTORS:
         plain = with_diameter(companions, factor)
         if plain is not None:
-            found += candidates(companions, plain, factor, bound, ())
+            found += disk_options(companions, plain, factor, bound, ())
     return sorted((each for each in found if each.cost <= most), key=lambda each: each.cost)
 
 
@@ -115,7 +107,7 @@ class Truth:
     known: dict[str, float] = field(default_factory=dict)
 
     @cached_property
-    def reference(self) -> Gauges:
+    def reference(self) -> Motions:
         """What they are compared with."""
         return reference(self.case)
 
@@ -123,7 +115,7 @@ class Truth:
         """The largest error of a choice, RMS over RMS; infinite if it cannot run."""
         if choice.text not in self.known:
             try:
-                self.known[choice.text] = true_error(measure(choice, Progress())[0].gauges, self.reference)
+                self.known[choice.text] = true_error(measure(choice, Progress())[0].motions, self.reference)
             except DemboundError:
                 self.known[choice.text] = math.inf
         return self.known[choice.text]
@@ -163,7 +155,7 @@ def cases(names: list[str]) -> Iterator[tuple[str, DiskCase]]:
 
 def main(names: list[str]) -> None:
     """Print a line for each scene and bound, the spread of errors by bound, and the share of those that keep it."""
-    found: dict[float, list[tuple[Choice, float]]] = {bound: [] for bound in BOUNDS}
+    found: dict[float, list[tuple[Best, float]]] = {bound: [] for bound in BOUNDS}
     print("| scene | bound | chosen | expected | true | true/expected | steps, s | of the case, s | search, s |")
     print("|---|---|---|---|---|---|---|---|---|")
     for name, case in cases(names):
@@ -184,7 +176,7 @@ def main(names: list[str]) -> None:
     by_bound(found)
 
 
-def by_bound(found: Mapping[float, list[tuple[Choice, float]]]) -> None:
+def by_bound(found: Mapping[float, list[tuple[Best, float]]]) -> None:
     """Print a line for each bound: choices that were expected to keep it, those that do, and how errors scatter."""
     print("\n| bound | choices | within it | true over expected error | cost over that of the case |")
     print("|---|---|---|---|---|")

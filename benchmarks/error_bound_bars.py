@@ -23,14 +23,12 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from estimated_bars import SCENES, exact, recorded_of, scene
 
+from dembound.accuracy.advise import choose
+from dembound.accuracy.history import History, loud
+from dembound.accuracy.of_bars.floors import MARGIN, Floors
+from dembound.accuracy.of_bars.search import SAFETY, Motion, affordable_motions, cheapest, given_motion
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
-from dembound.studies.accuracy import choose
-from dembound.studies.accuracy.bar_floors import MARGIN, Floors
-from dembound.studies.accuracy.companions import quiet
-from dembound.studies.accuracy.of_bars import SAFETY, Motion, all_motions, cheapest, given_motion
-from dembound.studies.chart.errors import QUIET
-from dembound.studies.estimate.causes import Recorded
 
 BOUNDS = (0.003, 0.01, 0.03)
 
@@ -53,10 +51,10 @@ def true_error(given: BarCase, case: BarCase) -> float:
     scene, (found, _) = build_bar(given), recorded_of(case)
     errors = []
     for name, own in found.items():
-        moved = Recorded(scene.positions[scene.monitors[name]], own.time, own.values)
+        moved = History(scene.positions[scene.monitors[name]], own.time, own.values)
         expected = exact(case, moved)
         for quantity, values in own.values.items():
-            if name not in quiet(found, quantity, QUIET):
+            if name in loud(found, quantity):
                 rest = np.linalg.norm(values[:, 0] - expected[quantity])
                 errors.append(float(rest / np.linalg.norm(values[:, 0])))
     return max(errors)
@@ -82,7 +80,7 @@ def every(names: list[str]) -> None:
     print(f"| bar | choices | {bounds} | same choices | finer nodes, other ends | coarser nodes |")
     print("|---|---|" + "---|" * len(BOUNDS) + "---|---|---|")
     for name in names or SCENES:
-        motions = all_motions(given_motion(scene(name)), [])
+        motions = affordable_motions(given_motion(scene(name)), [])
         best = min(motions, key=lambda each: each.error)
         tried, same = [], 0
         for bound in BOUNDS:

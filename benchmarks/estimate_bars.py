@@ -18,7 +18,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from estimated_bars import SCENES, recorded_of, rows, scene
 
-from dembound.studies.estimate.bars import causes_of_bar
+from dembound.accuracy.of_bars.causes import causes_of_bar
 
 COLUMNS = {
     "scene": "{scene}",

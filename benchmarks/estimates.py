@@ -51,7 +51,7 @@ def reference_of(scene: Scene, case: Any, recorded: Mapping[str, Any]) -> dict[s
     times = next(iter(recorded.values())).time
     return {
         name: {
-            quantity: CubicSpline(gauge.time, gauge.of(quantity)[:, :2])(np.minimum(times, gauge.time[-1]))
+            quantity: CubicSpline(gauge.time, gauge.values[quantity][:, :2])(np.minimum(times, gauge.time[-1]))
             for quantity in ("velocity", "displacement")
         }
         for name, gauge in gauges.items()
@@ -61,15 +61,15 @@ def reference_of(scene: Scene, case: Any, recorded: Mapping[str, Any]) -> dict[s
 
 def _gauges(scene: Scene, case: Any) -> Mapping[str, Any]:
     """What the monitors of the reference record."""
+    from dembound.accuracy.extended import extended
+    from dembound.accuracy.runner import measure
     from dembound.kinds import with_changes
     from dembound.running import Progress
-    from dembound.studies.chart.measure import measure
-    from dembound.studies.extended import extended
 
     if scene.reference == "finer":
         case = with_changes(case, {"packing.radius": case.packing.radius / FINER})
     larger = with_changes(case, dict(scene.changes)) if scene.reference == "changed" else extended(case).case
-    return measure(larger, Progress())[0].gauges
+    return measure(larger, Progress())[0].motions
 
 
 def in_layer(case: Any, own: Any) -> dict[str, np.ndarray]:
@@ -86,7 +86,7 @@ def in_layer(case: Any, own: Any) -> dict[str, np.ndarray]:
     below = case.packing.radius if case.side("bottom").half_mass else 0.0
     found = {quantity: np.zeros((len(own.time), 2)) for quantity in ("velocity", "displacement")}
     column = axis_of_motion("bottom", motion)
-    for way in (own.position[1], 2.0 * height - own.position[1]):
+    for way in (own.place[1], 2.0 * height - own.place[1]):
         found["velocity"][:, column] += wave.velocity(own.time - (way - below) / speed)
         found["displacement"][:, column] += wave.displacement(own.time - (way - below) / speed)
     return found
@@ -96,20 +96,22 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
     """Rows of the table of one scene, and what its estimate says that it has not estimated."""
     import tomli_w
 
+    from dembound.accuracy.budget import Estimate
+    from dembound.accuracy.estimate import causes_of
+    from dembound.accuracy.history import History
+    from dembound.accuracy.runner import measure
     from dembound.kinds import loads
     from dembound.running import Progress
-    from dembound.studies.chart.measure import measure
-    from dembound.studies.estimate import Estimate, Recorded, causes_of
 
     case = loads(tomli_w.dumps(scene.tables), name="scene")
     run, stepping, _ = measure(case, Progress())
     recorded = {
-        name: Recorded(
-            gauge.position,
+        name: History(
+            gauge.place,
             gauge.time,
             {"velocity": gauge.velocity[:, :2], "displacement": gauge.displacement[:, :2]},
         )
-        for name, gauge in run.gauges.items()
+        for name, gauge in run.motions.items()
     }
     causes = causes_of(case, recorded, run.time_step, run.work)
     if scene.reference == "extended":  # which has the same grid, step, and sides through which waves enter

@@ -103,8 +103,11 @@ def estimates() -> Iterator[tuple[str, Callable[[], Found]]]:
 
 
 def _rows(rows: list[dict[str, Any]]) -> Found:
-    """Rows of a table as texts, without costs."""
-    texts = (", ".join(f"{key} {_short(each)}" for key, each in row.items() if key != "cost") for row in rows)
+    """Rows of a table as texts, without costs and CPU times."""
+    texts = (
+        ", ".join(f"{key} {_short(each)}" for key, each in row.items() if key not in ("cost", "stepping"))
+        for row in rows
+    )
     return {str(k): text for k, text in enumerate(texts)}
 
 
@@ -117,8 +120,8 @@ def choices() -> Iterator[tuple[str, Callable[[], Found]]]:
     """What is chosen for each bound in the scenes of the benchmark of choices."""
     from error_bound_scenes import scenes
 
+    from dembound.accuracy.advise import choose
     from dembound.kinds import loads
-    from dembound.studies.accuracy import choose
 
     for name, tables in scenes():
         case = loads(tomli_w.dumps(tables), name=name.replace(" ", "_"))

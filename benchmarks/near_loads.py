@@ -15,10 +15,10 @@ import tomli_w
 from error_bound import FINER, at_times, far_motion
 from error_bound_scenes import embedded
 
+from dembound.accuracy.history import History
+from dembound.accuracy.of_disks.near import errors_near_loads
 from dembound.kinds import loads, with_changes
 from dembound.running import plan
-from dembound.studies.accuracy.near_loads import errors_near_loads
-from dembound.studies.estimate.causes import Recorded
 
 WIDE = 40.0
 """Of the body, m; its disks are 1 m wide."""
@@ -50,7 +50,7 @@ def errors(frequency: float) -> tuple[list[float], list[float]]:
         measured.append(share * float(np.linalg.norm(late[:, 0]) / np.linalg.norm(exact[:, 0])))
     scene = plan(case).scene
     formula = [
-        errors_near_loads(scene, Recorded(gauge.position, gauge.time, {"velocity": gauge.velocity[:, :2]}))["velocity"]  # type: ignore[arg-type]
+        errors_near_loads(scene, History(gauge.place, gauge.time, {"velocity": gauge.velocity[:, :2]}))["velocity"]  # type: ignore[arg-type]
         for gauge in (replace(each, position=scene.monitored[name]) for name, each in fine.items())
     ]
     return measured, formula

@@ -86,13 +86,13 @@ class Ran:
 
 def in_memory(case: Any) -> Ran:
     """Run a case without files."""
+    from dembound.accuracy.runner import measure
     from dembound.running import Progress
-    from dembound.studies.chart.measure import measure
 
     began = time.process_time()
     outcome, stepping, _ = measure(case, Progress())
     total = time.process_time() - began
-    velocity = np.stack([gauge.velocity[:, :2] for gauge in outcome.gauges.values()], axis=1)
+    velocity = np.stack([gauge.velocity[:, :2] for gauge in outcome.motions.values()], axis=1)
     return Ran(outcome.count, len(velocity), velocity, total, stepping)
 
 

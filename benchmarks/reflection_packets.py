@@ -27,12 +27,12 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.reflection import beyond
+from dembound.disks.reflection.bricks import end_scene
+from dembound.disks.reflection.meter import Kind, Meter, homogenised_wave
 from dembound.disks.scene import DiskScene, build, ground_of
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
-from dembound.studies.reflection import beyond
-from dembound.studies.reflection.bricks import end_scene
-from dembound.studies.reflection.meter import Kind, Meter, homogenised_wave
 
 BRICK, DIAMETER, WAVE = 5.0, 0.5, 20.0
 """Side of bricks, mean diameter, and about the length of the waves, m."""

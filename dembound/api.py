@@ -12,6 +12,8 @@ import numpy as np
 import tomli_w
 
 from dembound import kinds
+from dembound.accuracy.budget import Estimate
+from dembound.accuracy.estimate import estimate_if_asked, estimate_results
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
@@ -21,7 +23,6 @@ from dembound.running import Progress, resume_case, run_case
 from dembound.running.recorded import recorded_case
 from dembound.studies import all_sides, calibration
 from dembound.studies.calibration import Calibration
-from dembound.studies.estimate import Estimate, estimate_if_asked, estimate_results
 from dembound.table import Table, as_toml
 
 __all__ = [

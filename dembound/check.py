@@ -21,11 +21,14 @@ def check(case: Case, results: Path = Path("results")) -> tuple[dict[str, str], 
 
     results : folder in which the run would write its own, whose disk has to have the space.
     """
+    from dembound.accuracy.judges import judge_of
+
     planned = plan(case)
     require_stages(planned)
     own = planned.kind.facts(planned.scene, planned.time_step)
     warnings = [*warnings_before(planned), *disk_warnings(planned, results)]
-    return _run_facts(planned, results) | own | proposals(planned), warnings
+    cheaper = judge_of(case).proposals(planned.scene)
+    return _run_facts(planned, results) | own | cheaper | proposals(planned), warnings
 
 
 def _run_facts(planned: Plan, results: Path) -> dict[str, str]:

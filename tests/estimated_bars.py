@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 from small_cases import Tables, small
 
+from dembound.accuracy.budget import Estimate
+from dembound.accuracy.cause import Causes
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_bars.causes import causes_of_bar
+from dembound.accuracy.runner import measure
 from dembound.casefile.bar import BarCase
 from dembound.kinds import with_changes
 from dembound.running import Progress
-from dembound.studies.chart.measure import Gauges, measure
-from dembound.studies.estimate.bars import causes_of_bar
-from dembound.studies.estimate.causes import Causes, Recorded
-from dembound.studies.estimate.estimate import Estimate
 
 BAR: Tables = {
     "bar": {"length": 1.0, "spacing": 0.01, "density": 2620.0, "wave_speed": 2740.0},
@@ -99,19 +100,19 @@ def scene(name: str) -> BarCase:
     return case
 
 
-def recorded_of(case: BarCase) -> tuple[dict[str, Recorded], float]:
+def recorded_of(case: BarCase) -> tuple[dict[str, History], float]:
     """What a run of a case records, and its time step, s."""
     outcome, _, _ = measure(case, Progress())
-    return {name: _recorded(outcome.gauges, name) for name in outcome.gauges}, outcome.time_step
+    return {name: _recorded(outcome.motions, name) for name in outcome.motions}, outcome.time_step
 
 
-def _recorded(gauges: Gauges, name: str) -> Recorded:
+def _recorded(gauges: Motions, name: str) -> History:
     gauge = gauges[name]
-    values = {quantity: gauge.of(quantity)[:, :2] for quantity in ("velocity", "displacement", "stress")}
-    return Recorded(gauge.position, gauge.time, values)
+    values = {quantity: gauge.values[quantity][:, :2] for quantity in ("velocity", "displacement", "stress")}
+    return History(gauge.place, gauge.time, values)
 
 
-def exact(case: BarCase, recorded: Recorded) -> dict[str, np.ndarray]:
+def exact(case: BarCase, recorded: History) -> dict[str, np.ndarray]:
     """Quantity -> exact values (k,) at a monitor.
 
     By d'Alembert; of bars with attenuation or ranges by finite differences on finer nodes at Courant number 1, with
@@ -120,7 +121,7 @@ def exact(case: BarCase, recorded: Recorded) -> dict[str, np.ndarray]:
     if case.bar.attenuation > 0.0 or case.bar.range:
         return _finer(case, recorded)
     length, half = case.bar.length, 0.5 * case.bar.spacing
-    place = float(recorded.position[0])
+    place = float(recorded.place[0])
     return {
         "velocity": dalembert(case, place, recorded.time, "velocity"),
         "displacement": dalembert(case, place, recorded.time, "displacement"),
@@ -150,7 +151,7 @@ def _reflected(case: BarCase, side: str) -> float:
     return 0.0 if end.is_artificial else -1.0 if 0 in end.prescribed(0) else 1.0
 
 
-def _finer(case: BarCase, recorded: Recorded) -> dict[str, np.ndarray]:
+def _finer(case: BarCase, recorded: History) -> dict[str, np.ndarray]:
     """By finite differences on finer nodes; the right end, if it absorbs, is farther away by half of all ways."""
     bar = case.bar
     changes: dict[str, Any] = {}
@@ -161,7 +162,7 @@ def _finer(case: BarCase, recorded: Recorded) -> dict[str, np.ndarray]:
     changes |= {"bar.spacing": bar.spacing / FINER, "method": {"type": "finite_difference"}}
     changes["run"] = {"duration": case.run.duration, "courant": 1.0}
     changes |= {f"load.{load.name}.nodes": 1 for load in case.load}
-    changes["monitor"] = [{"name": "here", "position": float(recorded.position[0])}]
+    changes["monitor"] = [{"name": "here", "position": float(recorded.place[0])}]
     finer, _ = recorded_of(with_changes(case, changes))
     return {
         quantity: np.interp(recorded.time, finer["here"].time, values[:, 0])
@@ -185,7 +186,7 @@ class Row:
         return self.estimate / self.truth if self.truth > 0.0 else np.inf
 
 
-def estimated(case: BarCase) -> tuple[dict[str, Recorded], Causes]:
+def estimated(case: BarCase) -> tuple[dict[str, History], Causes]:
     """The record of a case and the causes of its errors."""
     recorded, step = recorded_of(case)
     return recorded, causes_of_bar(case, recorded, step)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from dembound.accuracy.repeat import Cracked, repeated
 from dembound.running.recorded import recorded_case
-from dembound.studies.estimate.repeat import Cracked, repeated
 
 STEPS = (0.99, 0.98, 0.97, 0.95, 0.9, 0.75, 0.5, 0.25)
 """Time steps over that of the run."""

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 import dembound
+from dembound.accuracy.of_disks.exact import problem_of
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
-from dembound.studies.exact import problem_of
 
 BLAST = dembound.load(Path(__file__).parents[1] / "blast.toml")
 RADIUS, PLACES = 10.0, 72

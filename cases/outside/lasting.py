@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from dembound import api
+from dembound.accuracy.of_disks.exact import exact_motions
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.exact.lamb import surface_displacement
@@ -17,7 +18,6 @@ from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.studies.exact import exact_motions
 
 RADIUS, SPEED = 0.25, 300.0
 """m and m/s: those of Z's problem, section 3.2. The lattice is isotropic, ν = 0."""

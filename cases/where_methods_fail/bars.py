@@ -19,7 +19,7 @@ from dembound.motion.part import System
 from dembound.motion.simulation import Simulation
 from dembound.studies.dispersion import measure
 from dembound.studies.noise import short_run
-from dembound.studies.quiet import trials
+from dembound.studies.trials import trials
 
 METHODS: dict[str, dict[str, Any]] = {
     "finite_difference": {"type": "finite_difference"},

@@ -12,7 +12,7 @@ from dembound.kernels.elastic import contact_forces
 from dembound.motion.kind import StalledError
 from dembound.motion.simulation import Simulation
 from dembound.studies.noise import short_run
-from dembound.studies.quiet import trials
+from dembound.studies.trials import trials
 
 DIAMETER = 2.0 * RADIUS
 

@@ -9,7 +9,7 @@ from dembound.disks.stability import choose_step, step_limit
 from dembound.motion.simulation import Simulation
 from dembound.studies.calibration import calibrate
 from dembound.studies.noise import short_run
-from dembound.studies.quiet import trials
+from dembound.studies.trials import trials
 
 DIAMETER = 2.0 * RADIUS
 ALL = ("left", "right", "bottom", "top")

@@ -12,8 +12,8 @@ from dembound.cli.console import out
 from dembound.errors import CaseError, NotAccurateError
 
 if TYPE_CHECKING:
+    from dembound.accuracy.best import Best
     from dembound.casefile import Case
-    from dembound.studies.accuracy import Choice
 
 Error = Annotated[
     str | None,
@@ -69,28 +69,28 @@ def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequen
 
     Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `choose`.
     """
+    from dembound.accuracy.advise import choose
     from dembound.results.estimates import in_words
-    from dembound.studies.accuracy import choose
 
     kept = [*(keep or ()), *(text.partition("=")[0].strip() for text in changes or ())]
-    choice = choose(case, bound, kept)
-    lines = _lines(choice)
-    if not choice.holds:
-        best = f"the best of {choice.tried} choices has {in_words(choice.error)}"
+    best = choose(case, bound, kept)
+    lines = _lines(best)
+    if not best.holds:
+        found = f"the best of {best.tried} choices has {in_words(best.error)}"
         raise NotAccurateError(
-            "\n".join([f"--error: no choice keeps {100.0 * bound:.3g} %; {best}: {lines[0]}", *lines[1:]])
+            "\n".join([f"--error: no choice keeps {100.0 * bound:.3g} %; {found}: {lines[0]}", *lines[1:]])
         )
     for line in lines:
         out.print(f"{case.name}: {line}", markup=False)
-    return choice.case
+    return best.case
 
 
-def _lines(choice: Choice) -> list[str]:
+def _lines(best: Best) -> list[str]:
     """The choice in words, with its error and cost, and the keys that it changes."""
     from dembound.results.estimates import in_words, split_in_words
 
     return [
-        f"{choice.words}; expected error {in_words(choice.error)} ({split_in_words(choice.by)}), "
-        f"steps of about {choice.cost:.2g} s instead of {choice.own_cost:.2g} s",
-        *(choice.changes or ["the case as it is"]),
+        f"{best.words}; expected error {in_words(best.error)} ({split_in_words(best.by)}), "
+        f"steps of about {best.cost:.2g} s instead of {best.own_cost:.2g} s",
+        *(best.choice.toml or ["the case as it is"]),
     ]

@@ -19,8 +19,8 @@ from dembound.machine import one_thread_for_matrices
 if TYPE_CHECKING:
     import numpy as np
 
+    from dembound.disks.reflection import Measured, Reflections
     from dembound.plot.reflection import Curves
-    from dembound.studies.reflection import Measured, Reflections
 
 PRINTED = 15.0
 """Multiple of the angles (degrees) that are printed; the table of ``--table`` has all."""
@@ -65,10 +65,10 @@ def boundary(
     Nothing is run. With several sides, pictures and tables have their names.
     """
     one_thread_for_matrices()  # before numpy is imported
+    from dembound.disks.reflection import ANGLES, FREQUENCIES, measure_side, measured_sides
     from dembound.plot.reflection import plot_reflection
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
-    from dembound.studies.reflection import ANGLES, FREQUENCIES, measure_side, measured_sides
 
     prepare_computing(None)
     loaded = load_disks(case, changes)

@@ -82,10 +82,10 @@ def run(
 
     Its results are then in NAME_1pct, for an error of 0.3 % in NAME_0_3pct, unless --name is given.
     """
+    from dembound.accuracy.estimate import require_budget
     from dembound.results.folder import Folder
     from dembound.running import preflight
     from dembound.running.recorded import require_replaceable
-    from dembound.studies.estimate import require_budget
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
     bound = bound_of(error, keep)

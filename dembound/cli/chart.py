@@ -16,8 +16,8 @@ from dembound.cli.console import compact_table, err, out
 from dembound.interrupts import exit_code_of
 
 if TYPE_CHECKING:
+    from dembound.accuracy.chart.study import Charted, Line
     from dembound.running import Progress
-    from dembound.studies.chart.study import Charted, Line
 
 
 class ChartQuantity(StrEnum):
@@ -82,10 +82,10 @@ def chart(
 
     Writes chart.png, chart.csv and chart.h5, and prints the cheapest choice within 1 % and within 0.1 %.
     """
-    from dembound.studies.chart.errors import Wanted
-    from dembound.studies.chart.study import Options
-    from dembound.studies.chart.study import chart as make
-    from dembound.studies.choices import combinations, parsed
+    from dembound.accuracy.chart.study import Options
+    from dembound.accuracy.chart.study import chart as make
+    from dembound.accuracy.choice import combinations, parsed
+    from dembound.accuracy.reference import Wanted
 
     prepare_computing(threads)
     loaded = load_case(case, changes, name)
@@ -149,16 +149,16 @@ def _cells(charted: Charted, number: int, line: Line) -> list[str]:
 
 def _percent(error: float) -> str:
     """A relative error in per cent; 0 for rounding errors."""
-    from dembound.studies.chart.front import ROUNDING
+    from dembound.accuracy.chart.front import ROUNDING
 
     return f"{100.0 * error:.3g}" if error > ROUNDING else "0"
 
 
 def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:
     """Write the results of a chart, yielding each file."""
+    from dembound.accuracy.chart.tables import write_results, write_table
     from dembound.plot.chart import plot_chart
     from dembound.plot.style import save
-    from dembound.studies.chart.tables import write_results, write_table
 
     write_results(charted, folder / "chart.h5")
     yield folder / "chart.h5"

@@ -13,7 +13,7 @@ from dembound.cli.results import results_file
 from dembound.errors import CaseError, DemboundError, RecordError
 
 if TYPE_CHECKING:
-    from dembound.studies.estimate import Estimate
+    from dembound.accuracy.budget import Estimate
 
 Budget = Annotated[
     float | None,
@@ -45,8 +45,8 @@ def estimate(
 
     Writes estimate.h5 and the entry error_estimate of summary.json; see docs/estimates.md.
     """
+    from dembound.accuracy.estimate import estimate_results
     from dembound.results.folder import with_name
-    from dembound.studies.estimate import estimate_results
 
     prepare_computing(threads)
     problems: list[str] = []
@@ -64,7 +64,7 @@ def estimate(
 
 def print_estimate(folder: Path, budget: float | None = None) -> None:
     """Print the estimate of a run that is over; if there can be none, why."""
-    from dembound.studies.estimate import estimate_results
+    from dembound.accuracy.estimate import estimate_results
 
     try:
         _show(folder, estimate_results(folder, budget))

@@ -27,7 +27,7 @@ def exact(
 
     It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
     """
-    from dembound.studies.exact import write_exact
+    from dembound.accuracy.of_disks.exact import write_exact
 
     case = load_disks(path, changes, name or f"{path.stem}_exact")
     folder = output / case.name

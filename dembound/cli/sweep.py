@@ -78,7 +78,7 @@ def sweep(
 
     What is done is not repeated: the same command continues a sweep, and more values add members to it.
     """
-    from dembound.studies.choices import parsed
+    from dembound.accuracy.choice import parsed
     from dembound.studies.sweep.members import changes_of, members_of
     from dembound.studies.sweep.study import Options
     from dembound.studies.sweep.study import sweep as sweep_all
@@ -183,8 +183,8 @@ def _print_warnings(swept: Swept) -> None:
 
 def _table(title: str, statistics: Sequence[Statistic]) -> Table:
     """A row for each group of members and quantity."""
+    from dembound.accuracy.labels import in_words, short_keys
     from dembound.studies.sweep.values import unit_of
-    from dembound.studies.words import in_words, short_keys
 
     table = compact_table(
         *(Column(head, overflow="fold") for head in ("members", "quantity")),

@@ -5,6 +5,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+MANY = 10
+"""Bonds broken in a run up to which it is not said to be one draw of many."""
+
 
 @dataclass(frozen=True)
 class Cracks:

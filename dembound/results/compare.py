@@ -9,6 +9,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.results.histories import FREE_FIELD, UNITS, History, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
+from dembound.results.resample import at_times
 
 SAME_PLACE = 1e-9
 """Distance of two places over that from the origin up to which they are the same, but for rounding."""
@@ -110,8 +111,7 @@ def on_common_clock(
     (l, c) of the second.
     """
     shared = wanted_time <= min(time[-1], wanted_time[-1])
-    columns = [np.interp(wanted_time[shared], time, column) for column in np.atleast_2d(values.T)]
-    return np.array(columns).T.reshape(-1, *values.shape[1:]), wanted[shared]
+    return at_times(time, values, wanted_time[shared]), wanted[shared]
 
 
 def relative_errors(values: np.ndarray, wanted: np.ndarray) -> tuple[float, float]:

@@ -15,7 +15,7 @@ import numpy as np
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.studies.noise import RESOLUTION, Course, LongRun, long_run, short_run
-from dembound.studies.quiet import Trial, parts_of, trials
+from dembound.studies.trials import Trial, parts_of, trials
 
 FACTORS = 1.0 + 0.5 * RESOLUTION, 1.01, 1.1, 1.3, 2.0
 """Steps over the computed limit, or below it, that are tried to bracket the largest stable one."""

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import tomli_w
 
+from dembound.accuracy.chart.study import Options, chart
+from dembound.accuracy.choice import combinations
+from dembound.accuracy.reference import Wanted
 from dembound.kinds import loads, with_changes
 from dembound.running import Progress
-from dembound.studies.chart.errors import Wanted
-from dembound.studies.chart.study import Options, chart
-from dembound.studies.choices import combinations
 
 
 @contextmanager

@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 from small_cases import Tables, small
 
+from dembound.accuracy.budget import Estimate
+from dembound.accuracy.cause import SIDES
+from dembound.accuracy.estimate import causes_of
+from dembound.accuracy.extended import extended
+from dembound.accuracy.history import History
+from dembound.accuracy.runner import measure
 from dembound.running import Progress
-from dembound.studies.chart.measure import measure
-from dembound.studies.estimate import Estimate, Recorded, causes_of
-from dembound.studies.estimate.causes import SIDES
-from dembound.studies.extended import extended
 
 SPRINGS: Tables = {"type": "viscoelastic", "alpha_n": 1.0, "alpha_s": 0.5, "source": [0.0, 20.0]}
 
@@ -39,14 +41,14 @@ HALF_SPACE: Tables = {
 def test_estimated_errors_are_the_true_ones(side: Tables) -> None:
     case = small(HALF_SPACE | {"boundary": {"left": {"type": "symmetry"}, "right": side, "bottom": side}})
     run = measure(case, Progress())[0]
-    far = measure(extended(case).case, Progress())[0].gauges
+    far = measure(extended(case).case, Progress())[0].motions
     recorded = {
-        name: Recorded(
-            gauge.position,
+        name: History(
+            gauge.place,
             gauge.time,
             {"velocity": gauge.velocity[:, :2], "displacement": gauge.displacement[:, :2]},
         )
-        for name, gauge in run.gauges.items()
+        for name, gauge in run.motions.items()
     }
     found = Estimate(recorded, causes_of(case, recorded, run.time_step, run.work))
     assert not found.causes.missing

@@ -9,6 +9,7 @@ part of the wave at first, grows far above that.
 import numpy as np
 import pytest
 
+from dembound.accuracy.extended import extended
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.disks.scene import build
@@ -16,7 +17,6 @@ from dembound.kinds import with_changes
 from dembound.motion.proposals import proposals
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
-from dembound.studies.extended import extended
 
 ALIKE = 1e-9
 """Largest difference over the largest velocity."""

@@ -7,6 +7,7 @@ large that nothing returns, in which the bench and the floor in front of the slo
 import numpy as np
 import pytest
 
+from dembound.accuracy.extended import extended
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
@@ -15,7 +16,6 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.kinds import with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
-from dembound.studies.extended import extended
 
 PULSE = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
 PLACES = {"crest": (24.5, 29.5), "toe": (46.5, 14.5), "floor": (58.5, 14.5), "beyond": (64.5, 14.5)}

@@ -14,7 +14,6 @@ from dembound.disks.reports.incident_facts import incident_facts
 from dembound.disks.reports.summary import describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
-from dembound.disks.smallest_box import box_facts
 
 BALANCED = 1e-9
 """Part of the forces of a pressure below which their sum is a rounding error."""
@@ -31,7 +30,6 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
         facts |= continuum_facts(scene)
     if scene.ground_waves is not None:
         facts |= incident_facts(scene)
-    facts |= box_facts(scene)
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)
     facts |= _load_facts(scene)

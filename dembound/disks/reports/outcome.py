@@ -5,10 +5,8 @@ from typing import Any
 
 from dembound.disks.packing_errors import in_percent
 from dembound.disks.stepping.load_factor import load_factor_in_words
+from dembound.motion.cracks import MANY
 from dembound.results.reader import laws_in_words
-
-MANY = 10
-"""Bonds broken in a run up to which it is not said to be one draw of many."""
 
 SHOWN = 1e-3
 """Share of the stress below which what differs in the packing itself is not told."""

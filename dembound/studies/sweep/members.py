@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
+from dembound.accuracy.choice import choices_of, digest
+from dembound.accuracy.labels import in_words, short_keys
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
 from dembound.casefile.sweep import Action, Method
 from dembound.errors import CaseError
 from dembound.results.folder import PARTIAL, problem_of
-from dembound.studies.choices import choices_of, digest
-from dembound.studies.words import in_words, short_keys
 
 LONGEST = 80
 """Characters of a name from which on it is cut."""

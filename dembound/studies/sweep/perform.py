@@ -10,6 +10,8 @@ from contextlib import chdir, contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+from dembound.accuracy.choice import digest
+from dembound.accuracy.estimate import estimate_if_asked
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
@@ -22,8 +24,6 @@ from dembound.results.folder import Folder
 from dembound.results.json_files import write_json
 from dembound.results.summary_file import read_summary
 from dembound.running import Progress, Shared, resume_case, run_case
-from dembound.studies.choices import digest
-from dembound.studies.estimate import estimate_if_asked
 from dembound.studies.sweep.values import values_of_calibration, values_of_run
 
 MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"

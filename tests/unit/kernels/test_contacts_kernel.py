@@ -258,7 +258,7 @@ def test_a_pair_that_turns_as_a_whole_keeps_its_forces(one_pair) -> None:
 
 
 @pytest.mark.parametrize("geometry", [UPDATED, BONDED])
-def test_small_motions_meet_the_same_forces_in_every_geometry(random_pairs, geometry: int) -> None:
+def test_smaffordable_motions_meet_the_same_forces_in_every_geometry(random_pairs, geometry: int) -> None:
     size = 1e-6
     u = size * np.random.default_rng(4).uniform(-1.0, 1.0, (3, PARTICLES))
     pairs, still = random_pairs(PARTICLES, PAIRS), random_pairs(PARTICLES, PAIRS)
@@ -270,7 +270,7 @@ def test_small_motions_meet_the_same_forces_in_every_geometry(random_pairs, geom
     assert np.abs(still.force[:2]).max() > 0.02
 
 
-def test_adopted_pairs_start_where_small_motions_brought_them(random_pairs, plain) -> None:
+def test_adopted_pairs_start_where_smaffordable_motions_brought_them(random_pairs, plain) -> None:
     u = motion(1)[0][0]
     pairs = random_pairs(PARTICLES, PAIRS)
     pairs.slip[:] = 9.0

@@ -5,7 +5,7 @@ import pytest
 
 from dembound.motion.simulation import Simulation
 from dembound.studies.noise import DECIDED, GROWN, Course, LongRun, conserved, long_run, short_run
-from dembound.studies.quiet import trials
+from dembound.studies.trials import trials
 
 
 @pytest.fixture

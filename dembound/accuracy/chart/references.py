@@ -1,0 +1,225 @@
+"""The reference of a chart: an exact solution, an extended run, a finer run of a bar, or that of the finest choice."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from dembound.accuracy.choice import Choice
+from dembound.accuracy.extended import MOST, extended
+from dembound.accuracy.history import Motions
+from dembound.accuracy.judges import judge_of
+from dembound.accuracy.labels import label
+from dembound.accuracy.reference import Exact, FinerRun, Reference
+from dembound.accuracy.runner import Run
+from dembound.casefile import Case
+from dembound.casefile.chart import ReferenceName
+from dembound.errors import CaseError, DemboundError, RunError
+from dembound.kinds import with_changes
+from dembound.motion.kind import Finding
+from dembound.table import Box
+
+SIDES = "boundary."
+"""Beginning of all keys of sides."""
+
+DISCRETE = ("bar.spacing", "method", "run")
+"""Beginnings of the keys of bars that the finer reference replaces."""
+
+RunOf = Callable[[str, Case, Box | None], Run]
+"""Returns the outcome of a case that is no choice, given its name, and the part of its scene in which breaks count."""
+
+AFFORDABLE = 16
+"""Size of an extended scene over that of the choice with most particles, up to which it is run without being asked for.
+"""
+
+
+def reference_of(
+    case: Case, choices: Sequence[Choice], outcomes: Sequence[Run], wanted: ReferenceName | None, run: RunOf
+) -> Reference:
+    """The reference of this name for choices with these outcomes.
+
+    By default the exact solution if the case has one, and no hole. Else, if choices differ in their sides, the extended
+    scene, if it is affordable. Else of bars the finer run, of disks the choice with the most nodes times steps.
+
+    Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
+    """
+    return _References(case, choices, outcomes, run).of(wanted)
+
+
+def exact_of(case: Case) -> Exact:
+    """The exact solution of a case; raises CaseError, with the reasons, if none is known."""
+    if (found := judge_of(case).exact(case)) is not None:
+        return found
+    raise CaseError(
+        [
+            "--reference: there is no exact solution of this case; there are for a pulse on the free left end of a bar "
+            "without attenuation, for a plane wave that leaves through an absorbing side, and for the problems of "
+            "dembound exact"
+        ],
+        case.name,
+    )
+
+
+class _References:
+    """The references for choices with these outcomes."""
+
+    def __init__(self, case: Case, choices: Sequence[Choice], outcomes: Sequence[Run], run: RunOf) -> None:
+        self._case, self._choices, self._outcomes, self._run = case, choices, outcomes, run
+        self._own = _finest(outcomes)
+        self._judge = judge_of(case)
+
+    def of(self, wanted: ReferenceName | None) -> Reference:
+        """The reference of this name, or the default."""
+        if wanted is None:
+            return self._default()
+        made = {"exact": self._exact, "extended": self._extended, "finer": self._finer, "finest": self._finest}
+        if (found := made[wanted]()) is None:
+            raise CaseError(
+                ["--reference: finer is for bars; of disks take exact, extended or finest"], self._case.name
+            )
+        return found
+
+    def _default(self) -> Reference:
+        """The first that the case allows."""
+        if not getattr(self._case, "hole", ()):  # beside its wall of disks the errors of sides would not be seen
+            with suppress(CaseError):
+                return self._exact()
+        if not any(key.startswith(SIDES) for choice in self._choices for key in choice.changes):
+            return self._best()
+        try:
+            return self._extended(AFFORDABLE * max(outcome.count for outcome in self._outcomes))
+        except CaseError as error:
+            best, unseen = self._best(), "errors of its sides are not seen"
+            caution = f"{unseen}, as there is no extended scene: {error}"
+            return replace(best, sentence=f"{best.sentence}; {unseen}", cautions=(*best.cautions, caution))
+
+    def _best(self) -> Reference:
+        """The most accurate run of the same scene."""
+        try:
+            return self._finer() or self._finest()
+        except DemboundError as error:
+            finest = self._finest()
+            caution = f"the reference is the finest choice, as a finer run is not possible: {error}"
+            return replace(finest, cautions=(caution,))
+
+    def _exact(self) -> Reference:
+        """The exact solution."""
+        solution: Exact = exact_of(self._case)
+        return Reference(
+            name="exact",
+            sentence=solution.sentence,
+            motions=lambda choice, outcome: solution.motions(choice.case, outcome.motions),
+            until=solution.until,
+            findings=solution.findings,
+        )
+
+    def _extended(self, most: int = MOST) -> Reference:
+        """The scene with all keys of the finest choice but those of its sides, extended to at most so many particles.
+
+        Bars are those of the finer run.
+        """
+        changes = self._choices[self._own].changes
+        others = {key: each for key, each in changes.items() if not key.startswith(SIDES)}
+        plain = with_changes(self._case, others | self._sides())
+        fine = self._judge.finer(plain, self._choices, self._outcomes)
+        plain = fine.case if fine else plain
+        larger = extended(plain, most)
+        if larger.case is plain:
+            reason = "no side has to be moved, the extended scene is that of the case"
+            raise CaseError([f"--reference: {reason}"], self._case.name)
+        outcome = self._done("extended scene", larger.case, larger.inside)
+        outcome = replace(outcome, findings=_shifted(outcome.findings, larger.inside, self._judge.places))
+        sentence = larger.sentence.removeprefix("reference: ")
+        sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
+        return self._of_run("extended", sentence, outcome, self._places(fine))
+
+    def _sides(self) -> dict[str, Any]:
+        """Changes of sides for the extended scene: those of a choice with waves through a continuum; by default none.
+
+        A side that waves enter through cannot move away. A continuum is the one that returns next to nothing.
+        """
+        for choice in self._choices:
+            if self._judge.has_input_continuum(choice.case):
+                return {key: each for key, each in choice.changes.items() if key.startswith(SIDES)}
+        return {}
+
+    def _finer(self) -> Reference | None:
+        """Finite differences at Courant number 1 with a finer spacing than all choices; None for bodies without."""
+        own = self._choices[self._own]
+        fine = self._judge.finer(own.case, self._choices, self._outcomes)
+        if fine is None:
+            return None
+        outcome = self._done("finer reference", fine.case)
+        sentence = (
+            f"finite differences at Courant number 1 and a spacing of {fine.spacing:.4g} m, finer than all choices"
+        )
+        other = {key: value for key, value in own.changes.items() if not key.startswith(DISCRETE)}
+        sentence += f", {label(self._case, other)}" if other else ""
+        return self._of_run("finer", sentence, outcome, self._places(fine))
+
+    def _finest(self) -> Reference:
+        """The run of the finest choice."""
+        sentence = f"the finest run, {self._choices[self._own].name}"
+        return self._of_run("finest", sentence, self._outcomes[self._own], lambda run, _: run.motions)
+
+    def _done(self, name: str, case: Case, inside: Box | None = None) -> Run:
+        """The outcome of a case that is no choice, breaking inside a box; raises RunError if its run fails."""
+        outcome = self._run(name, case, inside)
+        if outcome.failure:
+            raise RunError(f"{name}: {outcome.failure}")
+        return outcome
+
+    def _places(self, fine: FinerRun | None) -> Callable[[Run, Run], Motions]:
+        """The histories of a run for the outcome of a choice, at their places in the scene before it was extended."""
+        if fine is not None:
+            return fine.motions
+        places = {name: history.place for name, history in self._outcomes[self._own].motions.items()}
+        return lambda run, _: {name: replace(run.motions[name], place=place) for name, place in places.items()}
+
+    def _of_run(self, name: str, sentence: str, run: Run, motions: Callable[[Run, Run], Motions]) -> Reference:
+        """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
+        findings = {found: value for found, (value, _) in run.findings.items()}
+        at = self._judge.first_break
+        breaks = [findings[at]] if at in findings and self._case.chart.until == "break" else []
+        return Reference(
+            name=name,
+            sentence=sentence + "".join(f", up to its first break at {1e3 * time:.4g} ms" for time in breaks),
+            motions=lambda _, outcome: motions(run, outcome),
+            until=min(breaks, default=math.inf),
+            findings=findings,
+            own=tuple(k for k, outcome in enumerate(self._outcomes) if _is_same_run(outcome, run)),
+            cautions=self._judge.cautions([choice.case for choice in self._choices]),
+        )
+
+
+def _finest(outcomes: Sequence[Run]) -> int:
+    """The number of the choice with the most nodes times steps, the first of several.
+
+    Work would be no measure of accuracy for bars: wider horizons have more bonds and larger errors.
+    """
+    done = [k for k, outcome in enumerate(outcomes) if not outcome.failure]
+    if not done:
+        raise RunError("no choice could be run")
+    return max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
+
+
+def _shifted(findings: Mapping[str, Finding], inside: Box, axes: Mapping[str, int]) -> dict[str, Finding]:
+    """Findings with places in the scene of the case, which lies in a larger one at a box; axes : of places, by name."""
+    return {
+        name: found._replace(value=found.value - inside[axes[name]]) if name in axes else found
+        for name, found in findings.items()
+    }
+
+
+def _is_same_run(outcome: Run, run: Run) -> bool:
+    """Whether two outcomes are of the same run: the same work in the same steps, and the same bits."""
+    if (outcome.time_step, outcome.steps, outcome.work) != (run.time_step, run.steps, run.work):
+        return False
+    return outcome.motions.keys() == run.motions.keys() and all(
+        np.array_equal(history.velocity, run.motions[name].velocity)
+        and np.array_equal(history.displacement, run.motions[name].displacement)
+        for name, history in outcome.motions.items()
+    )

@@ -1,0 +1,237 @@
+"""A chart: every choice is run, compared with the reference, and placed by its error and cost."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dembound.accuracy.chart.choices import defaults, from_table
+from dembound.accuracy.chart.front import EQUAL, ROUNDING, Point, cheapest_within, front
+from dembound.accuracy.chart.record import Record, record_in
+from dembound.accuracy.chart.references import exact_of, reference_of
+from dembound.accuracy.choice import Choice, choices_of, digest
+from dembound.accuracy.reference import MonitorError, Reference, Wanted, errors
+from dembound.accuracy.runner import Run, Runner, Shown, measure
+from dembound.casefile import Case
+from dembound.casefile.chart import ReferenceName
+from dembound.casefile.messages import counted
+from dembound.errors import CaseError, DemboundError, RunError
+from dembound.kinds import kind_of
+from dembound.results.histories import Quantity
+from dembound.table import Box
+
+LEVELS = (0.01, 0.001)
+"""Errors within which the cheapest choice is named."""
+
+SHORT, AT_ONCE = 0.1, 25
+"""CPU time (s) in which a timed run is repeated, and how often at most; its cost is the median of these runs."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is charted.
+
+    named : changes of keys by the name of the choice; None: those of the case's [chart] table, by default `defaults`.
+    repeats, reference : as in the table [chart]; None: those of the table.
+    """
+
+    named: Mapping[str, Mapping[str, Any]] | None = None
+    repeats: int | None = None
+    reference: ReferenceName | None = None
+    wanted: Wanted = field(default_factory=Wanted)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A choice in the chart: its results and the errors of its monitors, the largest first; none after a failure."""
+
+    choice: Choice
+    outcome: Run
+    errors: Sequence[MonitorError] = ()
+
+    @property
+    def cpu(self) -> float:
+        """Median CPU time of stepping, s."""
+        return float(np.median(self.outcome.cpu))
+
+    @property
+    def wall(self) -> float:
+        """Median time of the whole run, s."""
+        return float(np.median(self.outcome.wall))
+
+    @property
+    def apart(self) -> float:
+        """Largest distance (m) of a monitor from where the reference recorded it."""
+        return max((error.apart for error in self.errors), default=0.0)
+
+
+@dataclass(frozen=True)
+class Charted:
+    """A chart.
+
+    Attributes
+    ----------
+    case, reference, quantity : of the chart; work_unit : of the kind of body.
+    lines : one for every choice. front : numbers of those on the Pareto front, the most accurate first.
+    left_out : a line for each choice that was not valid, and for what the errors leave out.
+    """
+
+    case: Case
+    reference: Reference
+    quantity: Quantity
+    work_unit: str
+    lines: Sequence[Line]
+    left_out: Sequence[str]
+    front: Sequence[int] = ()
+
+    def found(self, line: Line) -> str:
+        """The findings of a choice in words, as differences from those of the reference if it has them.
+
+        Those of the reference itself are its numbers.
+        """
+        is_own = any(line is self.lines[k] for k in self.reference.own)
+        wanted, found = {} if is_own else self.reference.findings, line.outcome.findings
+        missing = [name for name in wanted if name not in found]
+        parts = [f"no {', '.join(missing)}"] if missing else []
+        for name, (value, unit) in found.items():
+            number = f"{value:.5g}" if name not in wanted else f"{value - wanted[name]:+.2g}"
+            parts.append(f"{name} {number}{'' if unit == '1' else f' {unit}'}")
+        return ", ".join(parts)
+
+    @property
+    def judged(self) -> list[int]:
+        """Numbers of the choices that have an error and are not the reference."""
+        return [k for k, line in enumerate(self.lines) if line.errors and k not in self.reference.own]
+
+    def cheapest(self, level: float) -> int | None:
+        """Number of the cheapest choice with an RMS error of at most `level`; None if there is none."""
+        judged = self.judged
+        found = cheapest_within([_point(self.lines[k]) for k in judged], level)
+        return None if found is None else judged[found]
+
+    @property
+    def sentence(self) -> str:
+        """The cheapest choices within the `LEVELS`, in words."""
+        within: dict[str, list[str]] = {}
+        for level in LEVELS:
+            found = self.cheapest(level)
+            name = "none" if found is None else self._described(self.lines[found])
+            within.setdefault(name, []).append(f"within {100.0 * level:g} %")
+        parts = [f"cheapest {' and '.join(levels)}: {name}" for name, levels in within.items()]
+        least = self.lines[self.front[0]].errors[0].rms
+        if least > LEVELS[-1] and (best := self.cheapest(least * (1.0 + EQUAL))) is not None:
+            parts.append(f"most accurate: {self._described(self.lines[best])}")
+        own = [f"{line.choice.name} ({line.cpu:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
+        return "; ".join([*parts, *([f"the reference itself: {', '.join(own)}"] if own else [])])
+
+    def _described(self, line: Line) -> str:
+        """A choice with its error and cost."""
+        error = line.errors[0].rms
+        return f"{line.choice.name} ({100.0 * error if error > ROUNDING else 0:.2g} %, {line.cpu:.2g} s)"
+
+
+def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown) -> Charted:
+    """Run all choices of a case and compare them; the runs are recorded in ``chart.h5`` of the folder.
+
+    Every choice runs once, which also compiles, then `repeats` times in turn. A choice whose run fails is kept with its
+    failure. resume : runs that are already recorded are not repeated; otherwise an earlier chart is deleted.
+
+    Raises CaseError, before anything is written, if no choice is valid, the case lacks what is to be compared, or the
+    folder holds no chart; RunError if all runs fail.
+    """
+    _must_be_comparable(case, options)
+    named = options.named if options.named is not None else from_table(case) or defaults(case)
+    choices, left_out = choices_of(case, named)
+    if len(choices) == 1 and _wanted_reference(case, options) == "finest":
+        raise CaseError([f"--vary: {choices[0].name} is the only valid choice, which would be its own reference"])
+    runs = _Runs(record_in(folder, resume), shown)
+    outcomes = runs.all_of(choices, options.repeats or case.chart.repeats)
+    if all(outcome.failure for outcome in outcomes):
+        raise RunError("\n".join(f"{c.name}: {o.failure}" for c, o in zip(choices, outcomes, strict=True)))
+    reference = reference_of(case, choices, outcomes, _wanted_reference(case, options), runs.one)
+    lines = [_line(choice, outcome, reference, options) for choice, outcome in zip(choices, outcomes, strict=True)]
+    if not any(line.errors for line in lines):
+        raise RunError("\n".join(dict.fromkeys(f"{line.outcome.failure}" for line in lines)))
+    unit, lines_out = kind_of(case).work_unit, [*left_out, *reference.cautions]
+    charted = Charted(case, reference, options.wanted.quantity, unit, lines, lines_out)
+    if not (judged := charted.judged):
+        raise RunError(f"nothing is left to compare with the reference, {reference.sentence}, which is a choice itself")
+    return replace(charted, front=[judged[k] for k in front([_point(lines[k]) for k in judged])])
+
+
+def _must_be_comparable(case: Case, options: Options) -> None:
+    """Raise CaseError for a case without what the options compare."""
+    monitors, wanted = [monitor.name for monitor in case.monitor], options.wanted
+    if not monitors:
+        raise CaseError(["monitor: is missing; a chart compares the histories of monitors"], case.name)
+    if wanted.monitor is not None and wanted.monitor not in monitors:
+        raise CaseError([f"--monitor: is {wanted.monitor}, must be one of {', '.join(monitors)}"])
+    if wanted.quantity == "stress" and (kind_of(case).name != "bar" or wanted.component is not None):
+        raise CaseError(["--quantity: stress is that along a bar; disks do not have it, nor has it components"])
+    if _wanted_reference(case, options) == "exact":
+        exact_of(case)
+
+
+def _wanted_reference(case: Case, options: Options) -> ReferenceName | None:
+    """The reference given by the options or else by the case."""
+    return options.reference or case.chart.reference
+
+
+def _line(choice: Choice, outcome: Run, reference: Reference, options: Options) -> Line:
+    """A choice beside the reference; one that cannot be compared has failed."""
+    if outcome.failure:
+        return Line(choice, outcome)
+    try:
+        return Line(choice, outcome, errors(choice, outcome, reference, options.wanted))
+    except CaseError as error:
+        return Line(choice, replace(outcome, failure="; ".join(error.problems)))
+
+
+def _point(line: Line) -> Point:
+    return Point(line.errors[0].rms, line.outcome.cpu, line.outcome.work)
+
+
+class _Runs:
+    """Runs cases as far as the record does not have their results."""
+
+    def __init__(self, record: Record, shown: Shown) -> None:
+        self._record, self._shown = record, shown
+        self._runner = Runner(record, shown)
+
+    def all_of(self, choices: Sequence[Choice], repeats: int) -> list[Run]:
+        """The outcomes of choices, each with as many costs; in every round all choices run, one after the other."""
+        count = len(choices)
+        outcomes = [
+            self.one(f"{k} of {counted(count, 'choice')}, {choice.name}", choice.case)
+            for k, choice in enumerate(choices, start=1)
+        ]
+        for number in range(1, repeats + 1):
+            for k, (choice, outcome) in enumerate(zip(choices, outcomes, strict=True), start=1):
+                if not outcome.failure and len(outcome.cpu) < number:
+                    name = f"{k} of {counted(count, 'choice')}, timed run {number} of {repeats}"
+                    self._time(name, choice.case, outcome)
+        for outcome in outcomes:
+            del outcome.cpu[repeats:], outcome.wall[repeats:]
+        return outcomes
+
+    def one(self, name: str, case: Case, inside: Box | None = None) -> Run:
+        """The outcome of a case, without costs if it has to be run; inside : where its findings are looked for."""
+        try:
+            return self._runner.run(case, name, inside)
+        except DemboundError as error:
+            failed = Run(failure=str(error).splitlines()[0])
+            self._record.add(digest(case), failed)
+            return failed
+
+    def _time(self, name: str, case: Case, outcome: Run) -> None:
+        """Run a case again, and add its costs to its outcome."""
+        costs: list[tuple[float, float]] = []
+        with self._shown(name) as progress:
+            while not costs or (len(costs) < AT_ONCE and sum(cpu for cpu, _ in costs) < SHORT):
+                costs.append(measure(case, progress, watched=False)[1:])
+        cpu, wall = (float(np.median(each)) for each in zip(*costs, strict=True))
+        outcome.cpu.append(cpu)
+        outcome.wall.append(wall)
+        self._record.add_cost(digest(case), cpu, wall)

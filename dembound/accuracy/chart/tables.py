@@ -1,0 +1,118 @@
+"""The results of a chart in files: groups of ``chart.h5`` beside the runs, and ``chart.csv``."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dembound.accuracy.chart.record import write_motions
+from dembound.accuracy.chart.study import Charted, Line
+from dembound.accuracy.choice import digest
+from dembound.results.committed import changed_file
+from dembound.results.reader import replacing
+from dembound.version import __version__
+
+if TYPE_CHECKING:
+    import h5py
+
+RESULTS = ("choices", "reference")
+"""The groups with the results, which are written anew every time."""
+
+COLUMNS = (
+    *("choice", "on_front", "failure", "monitor", "component", "rms", "peak", "monitor_apart_m", "cpu_s", "cpu_min_s"),
+    *("cpu_max_s", "run_s", "work", "threads", "stepped", "steps", "time_step_s"),
+)
+"""Columns of every table; then those of findings, and one for every key that a choice changes."""
+
+
+def write_results(charted: Charted, path: Path) -> None:
+    """Write errors, front and reference into the record that has the runs of the chart."""
+    with changed_file(path) as file:
+        for name in RESULTS:
+            if name in file:
+                del file[name]
+        file.attrs.update(
+            {
+                "name": charted.case.name,
+                "title": charted.case.title,
+                "case": charted.case.text,
+                "version": __version__,
+                "quantity": charted.quantity,
+                "work_unit": charted.work_unit,
+                "sentence": charted.sentence,
+                "left_out": "\n".join(charted.left_out),
+            }
+        )
+        _write_reference(file.create_group("reference"), charted)
+        choices = file.create_group("choices", track_order=True)
+        for number, line in enumerate(charted.lines):
+            _write_line(choices.create_group(f"{number:04d}"), charted, number, line)
+
+
+def _write_reference(group: h5py.Group, charted: Charted) -> None:
+    """Write the name of the reference and its histories, of an exact solution at the monitors of the first choice."""
+    reference = charted.reference
+    own = np.array(reference.own, dtype=int)
+    group.attrs.update({"name": reference.name, "sentence": reference.sentence, "choices": own})
+    for name, value in reference.findings.items():
+        group.attrs[name] = value
+    line = next(line for line in charted.lines if not line.outcome.failure)
+    write_motions(group.create_group("gauges"), reference.motions(line.choice, line.outcome))
+
+
+def _write_line(group: h5py.Group, charted: Charted, number: int, line: Line) -> None:
+    """A choice: its name and changes, the digest of its run, and the errors of its monitors."""
+    group.attrs.update(
+        {
+            "name": line.choice.name,
+            "digest": digest(line.choice.case),
+            "changes": json.dumps(line.choice.changes),
+            "on_front": number in charted.front,
+            "failure": line.outcome.failure,
+            "found": charted.found(line),
+        }
+    )
+    if not line.errors:
+        return
+    group.attrs.update({"cpu": line.cpu, "wall": line.wall, "work": line.outcome.work})
+    group.create_dataset("monitor", data=[error.monitor for error in line.errors])
+    group.create_dataset("component", data=[error.component for error in line.errors])
+    for name, unit in (("rms", "1"), ("peak", "1"), ("apart", "m")):
+        group.create_dataset(name, data=np.array([getattr(e, name) for e in line.errors])).attrs["unit"] = unit
+
+
+def write_table(charted: Charted, path: Path) -> None:
+    """Write a row for every choice as CSV, SI units, errors as parts of one; completely or not at all."""
+    findings = sorted({name for line in charted.lines for name in line.outcome.findings})
+    keys = list(dict.fromkeys(key for line in charted.lines for key in line.choice.changes))
+    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow([*COLUMNS, *(part for name in findings for part in (name, f"{name} error")), *keys])
+        for number, line in enumerate(charted.lines):
+            changed = (line.choice.changes.get(key) for key in keys)
+            row = [line.choice.name, *_numbers(charted, number, line), *_found(charted, line, findings), *changed]
+            table.writerow(["" if value is None else value for value in row])
+
+
+def _numbers(charted: Charted, number: int, line: Line) -> list[Any]:
+    """The columns of a choice after its name."""
+    outcome = line.outcome
+    if not line.errors:
+        return [False, outcome.failure, *[None] * (len(COLUMNS) - 3)]
+    worst = line.errors[0]
+    error = worst.monitor, worst.component, worst.rms, worst.peak, worst.apart
+    costs = line.cpu, min(outcome.cpu), max(outcome.cpu), line.wall, outcome.work, outcome.threads
+    return [number in charted.front, "", *error, *costs, outcome.count, outcome.steps, outcome.time_step]
+
+
+def _found(charted: Charted, line: Line, names: list[str]) -> Iterator[float | None]:
+    """The findings of a choice, each with its difference from the reference's."""
+    for name in names:
+        found, wanted = line.outcome.findings.get(name), charted.reference.findings.get(name)
+        yield None if found is None else found.value
+        yield None if found is None or wanted is None else found.value - wanted

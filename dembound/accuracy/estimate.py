@@ -1,0 +1,222 @@
+"""The error of a run from its folder of results, to which the estimate is added."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dembound.accuracy.budget import Estimate
+from dembound.accuracy.cause import Causes
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.judges import judge_of
+from dembound.accuracy.repeat import Cracked, repeated
+from dembound.accuracy.runner import BUDGET, SHORT
+from dembound.casefile import Case
+from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.motion.clock import Clock
+from dembound.results.datasets import describe, write
+from dembound.results.estimates import FILE, KEY
+from dembound.results.histories import FREE_FIELD
+from dembound.results.json_files import write_json
+from dembound.results.named import Named
+from dembound.results.reader import history_of, open_record, replacing, require_run
+from dembound.results.summary_file import read_summary
+from dembound.running.recorded import recorded_case
+
+UNITS = {"velocity": "m/s", "displacement": "m", "stress": "Pa"}
+"""Units of the histories."""
+
+LEAST_SAMPLES = 8
+"""Fewest samples of a history whose error is estimated."""
+
+
+def estimate_results(
+    folder: Path, budget: float | None = None, second_seed: bool = False, repeat: bool = False
+) -> Estimate:
+    """Estimate the error of a complete run; writes ``estimate.h5`` and the entry ``error_estimate`` of its summary.
+
+    Parameters
+    ----------
+    folder : of the results. budget : share of the run's work that may be spent; None: see `causes_of`. second_seed :
+    whether a second run with another random packing is made, to find how much depends on it. repeat : whether a run
+    with cracks is repeated with a smaller time step, to find how much of them is one draw of many.
+
+    Raises CaseError for a run that is not complete, that has neither monitors nor many cracks, a budget that is none, a
+    second seed of a packing that has none, or a repetition without cracks, and RecordError for a record that cannot be
+    read.
+    """
+    clock = Clock(time.process_time)
+    with clock.with_compiling(), clock.of("estimate"):
+        found, summary = _estimated(folder, budget, second_seed, repeat)
+    found = replace(found, cpu_seconds=clock.seconds["estimate"])
+    _write(found, folder / FILE)
+    write_json(folder / "summary.json", summary | {KEY: found.summary()})
+    return found
+
+
+def _estimated(folder: Path, budget: float | None, second_seed: bool, repeat: bool) -> tuple[Estimate, dict[str, Any]]:
+    """The estimate, and the summary of the run."""
+    require_budget(budget)
+    record = folder / "run.h5"
+    with open_record(record) as file:
+        require_run(file)
+    summary = _summary(folder)
+    case, cracked = _until(recorded_case(record), summary), Cracked.of(record)
+    recorded, lack = _recorded(record, cracked.first)
+    one_draw = list(cracked.one_draw())
+    if lack and (second_seed or not (repeat or one_draw)):
+        raise CaseError([f"{record}: {lack}"])
+    work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
+    again = repeated(case, record, cracked) if repeat else None
+    said = Causes([], [], one_draw) if again is None else Causes([], [], again.lines(), again.cost)
+    causes = Causes([], [lack]) if lack else _causes(case, recorded, cracked.first, summary, work, budget, second_seed)
+    return Estimate(Named(recorded, "monitor"), causes + said, repeat=again), summary
+
+
+def _causes(
+    case: Case,
+    recorded: Motions,
+    until: float,
+    summary: Mapping[str, Any],
+    work: float,
+    budget: float | None,
+    second_seed: bool,
+) -> Causes:
+    """The causes of the error of a run up to its first break, at `until` (s); work : of the run."""
+    broken = [] if case.run.duration < until else [_broken(until)]
+    case = replace(case, run=case.run.model_copy(update={"duration": min(case.run.duration, until)}))
+    causes = causes_of(case, recorded, summary["time_step"], work, budget)
+    if second_seed:
+        causes += judge_of(case).of_another_seed(case, recorded, work)
+    causes += Causes([], broken, list(judge_of(case).notes(case, summary)))
+    return causes + Causes([], list(_at_rest(Estimate(recorded, causes))))
+
+
+def causes_of(case: Case, recorded: Motions, time_step: float, work: float, budget: float | None = None) -> Causes:
+    """The causes of the error of a run.
+
+    case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step (s),
+    work (in the unit of its kind) : of the run. budget : share of that work that may be spent; None: `BUDGET`, and
+    `SHORT` in any case.
+    """
+    most = max(SHORT, BUDGET * work) if budget is None else budget * work
+    return judge_of(case).causes(case, recorded, time_step, work, most)
+
+
+def require_budget(budget: float | None) -> None:
+    """Raise CaseError for a share of work that is none."""
+    if budget is not None and not 0.0 < budget < np.inf:
+        raise CaseError([f"--budget: is {budget:g}, must be above 0"])
+
+
+def estimate_if_asked(case: Case, folder: Path) -> str:
+    """Estimate the error of a complete run of a case with ``output.estimate``; returns why this is not possible.
+
+    Empty where it is, and for other cases: a run is complete without its estimate.
+    """
+    if case.output.estimate:
+        try:
+            found = estimate_results(folder)
+        except DemboundError as error:
+            return f"errors are not estimated: {'; '.join(str(error).splitlines())}"
+        if not found.recorded:
+            return f"errors are not estimated: {'; '.join(found.causes.missing)}"
+    return ""
+
+
+def _at_rest(found: Estimate) -> Iterator[str]:
+    """Monitors of which nothing is known, unless it is already said why."""
+    said = {line.split(":")[0] for line in found.causes.missing}
+    for name in found.recorded if found.causes.found else ():
+        if name not in said and not any(math.isfinite(found.total(name, each)) for each in found.quantities(name)):
+            yield f"{name}: does not move"
+
+
+def _summary(folder: Path) -> dict[str, Any]:
+    """The summary of a complete run."""
+    found = read_summary(folder)
+    numbers = found["duration"], found["time_step"], found["particle_steps_per_second"], found["seconds"]["step"]
+    if not all(isinstance(each, int | float) and each >= 0.0 for each in numbers):
+        raise RecordError([f"{folder / 'summary.json'}: is damaged, a duration or a number of steps is none"])
+    return found
+
+
+def _until(case: Case, summary: Mapping[str, Any]) -> Case:
+    """The case to the time at which its run has ended."""
+    return replace(case, run=case.run.model_copy(update={"duration": summary["duration"]}))
+
+
+def _broken(first: float) -> str:
+    """That nothing is known once bonds have broken, first at a time (s)."""
+    return f"motion after {first:.4g} s, when the first bond broke"
+
+
+def _recorded(record: Path, until: float) -> tuple[dict[str, History], str]:
+    """What the monitors have recorded up to a time (s); where that is nothing, or too little, why."""
+    found: dict[str, History] = {}
+    samples = []
+    with open_record(record) as file:
+        for name, group in file.get("histories", {}).items():
+            if name.endswith(FREE_FIELD):
+                continue
+            values = {}
+            for quantity in UNITS:
+                if quantity in group:
+                    times, motion = history_of(group, quantity)
+                    kept = times < until
+                    values[quantity] = motion.reshape(len(motion), -1)[kept][:, :2]
+            samples.append(int(np.count_nonzero(kept)) if values else 0)
+            if samples[-1] >= LEAST_SAMPLES:
+                place = np.atleast_1d(group.attrs["position"])
+                found[name] = History(np.array([*place, 0.0][:2]), times[kept], values)
+    return found, "" if found else _too_little(samples, until)
+
+
+def _too_little(samples: Sequence[int], until: float) -> str:
+    """Why histories of monitors, each with so many samples up to a time (s), are not enough."""
+    most = max(samples, default=0)
+    if not samples or (most == 0 and math.isinf(until)):
+        return "has no monitor whose error could be estimated"
+    needed = f"an estimate needs {LEAST_SAMPLES}"
+    if math.isfinite(until):
+        return f"the first bond broke at {until:.4g} s, after {most} samples of the monitors; {needed}"
+    return f"has {most} samples of its monitors (output.history_interval); {needed}"
+
+
+def _write(found: Estimate, path: Path) -> None:
+    """Write the histories of errors, those without that of the sides where it is known, and the cracks of a repeat."""
+    import h5py
+
+    with replacing(path) as part, h5py.File(part, "w") as file:
+        file.create_group("histories")
+        for name, recorded in found.recorded.items():
+            group = file.create_group(f"histories/{name}")
+            write(group, "time", recorded.time, "s")
+            for quantity in found.quantities(name):
+                _write_quantity(group, found, name, quantity)
+        if found.repeat is not None:
+            group = file.create_group("repeat")
+            write(group, "time", found.repeat.other.times, "s")
+            write(group, "position", found.repeat.other.places, "m")
+
+
+def _write_quantity(group: Any, found: Estimate, name: str, quantity: str) -> None:
+    """The errors of a quantity by cause, its band, and the corrected history."""
+    recorded, unit = found.recorded[name], UNITS[quantity]
+    inner = group.create_group(quantity)
+    describe(inner, {"total": found.total(name, quantity)})
+    for cause in found.causes.found:
+        error = cause.errors.get(name, {}).get(quantity)
+        if isinstance(error, np.ndarray):
+            write(inner, f"error of {cause.name}", error, unit)
+        elif error is not None:
+            describe(inner, {f"share of {cause.name}": error})
+    write(inner, "band", found.band(name, quantity), unit)
+    if (correction := found.correction(name, quantity)) is not None:
+        write(inner, "corrected", recorded.values[quantity] - correction, unit)

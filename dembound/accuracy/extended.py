@@ -1,0 +1,31 @@
+"""A scene enlarged until nothing returns from its artificial sides: the reference for what they reflect.
+
+Sides that stand in for the ground or rock beyond them (`Boundary.is_artificial`) move outwards by whole bricks, until
+no wave can have been there and back at any monitor within the run. The disks of the case keep their places in bricks,
+as all bricks are alike, and move like those of an endless scene. Driven sides, mirror planes and periodic sides stay
+where they are, and free, fixed and roller sides that are not `artificial`.
+
+Where waves enter through an artificial side it stays, too: farther away it would send another wave, as packings
+disperse, or the same too late. What it reflects is then in the reference as in the case, and the sentence gives it.
+"""
+
+from dembound.accuracy.judges import judge_of
+from dembound.accuracy.moved_sides import Extended
+from dembound.casefile import Case
+
+MOST = 8_000_000
+"""Particles of the largest scene that is made unless another limit is given; its run takes some 2 GB."""
+
+
+def extended(case: Case, most: int = MOST) -> Extended:
+    """The scene of a case enlarged so that nothing returns from artificial sides to its monitors within run.duration.
+
+    Without monitors nothing returns to any place of the scene. Its time step is that of the case. Bars are extended
+    beyond ends that are neither loaded nor driven.
+
+    most : largest number of particles or nodes.
+
+    Raises CaseError where no artificial side can move, where a hole reaches beyond a side that has to, and where more
+    than `most` particles are needed; also the errors of building the scene.
+    """
+    return judge_of(case).extended(case, most)

@@ -1,0 +1,98 @@
+"""The motion at one monitor, as a run records it, a solution gives it, or a file holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.results.resample import at_times
+
+QUIET = 0.01
+"""Monitors whose peak is below this share of the largest one do not count.
+
+Relative errors there are those of a small residual motion.
+"""
+
+
+@dataclass(frozen=True)
+class History:
+    """The motion at one monitor.
+
+    place : (2,) m, of its particle. time : (k,) s. values : quantity -> (k, c) in SI units: displacement and velocity
+    along x, y and, where it is known, of rotation; stress along a bar (k, 1).
+    """
+
+    place: np.ndarray
+    time: np.ndarray
+    values: Mapping[str, np.ndarray]
+
+    @classmethod
+    def of(
+        cls,
+        place: np.ndarray,
+        time: np.ndarray,
+        displacement: np.ndarray,
+        velocity: np.ndarray,
+        stress: np.ndarray | None = None,
+    ) -> History:
+        """A motion (k, c) m, rad and m/s, rad/s; stress : (k,) Pa, which only bars have."""
+        along = {} if stress is None else {"stress": stress[:, None]}
+        return cls(place, time, {"displacement": displacement, "velocity": velocity, **along})
+
+    @property
+    def displacement(self) -> np.ndarray:
+        """(k, c) m, rad."""
+        return self.values["displacement"]
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """(k, c) m/s, rad/s."""
+        return self.values["velocity"]
+
+    def component(self, quantity: str) -> int:
+        """The column, along x or y, with the largest value, whose error counts."""
+        return int(np.argmax(np.abs(self.values[quantity][:, :2]).max(axis=0, initial=0.0)))
+
+    def at(self, times: np.ndarray) -> History:
+        """The motion at other times (m,) s; before the first and after the last sample that of these."""
+        return History(
+            self.place, times, {name: at_times(self.time, each, times) for name, each in self.values.items()}
+        )
+
+    def until(self, end: float) -> History:
+        """The samples up to a time (s) and at it."""
+        return self._part(self.time <= end)
+
+    def before(self, end: float) -> History:
+        """The samples before a time (s)."""
+        return self._part(self.time < end)
+
+    def _part(self, kept: np.ndarray) -> History:
+        """The history with some of its samples, kept (k,) bool; itself if these are all."""
+        if kept.all():
+            return self
+        return History(self.place, self.time[kept], {name: each[kept] for name, each in self.values.items()})
+
+
+Motions = Mapping[str, History]
+"""Histories by the name of their monitor."""
+
+
+def loud(motions: Motions, quantity: str) -> list[str]:
+    """Monitors with a quantity that count, as it is not small there beside that at the loudest one."""
+    recorded = {name: each.values[quantity] for name, each in motions.items() if quantity in each.values}
+    return loud_of({name: float(np.abs(values).max(initial=0.0)) for name, values in recorded.items()})
+
+
+def loud_of(peaks: Mapping[str, float]) -> list[str]:
+    """Monitors whose largest value is at least `QUIET` of that of the loudest one."""
+    return [name for name, peak in peaks.items() if peak >= QUIET * max(peaks.values())]
+
+
+def along(values: np.ndarray, column: int) -> np.ndarray:
+    """Motion (k, 3) with these values (k,) in one column and zero elsewhere."""
+    motion = np.zeros((len(values), 3))
+    motion[:, column] = values
+    return motion

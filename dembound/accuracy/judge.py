@@ -1,0 +1,96 @@
+"""What is asked of every kind of body about the errors of its cases."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, ClassVar, Generic, TypeVar
+
+from dembound.accuracy.best import Best
+from dembound.accuracy.cause import Causes
+from dembound.accuracy.choice import Choice, Named
+from dembound.accuracy.history import Motions
+from dembound.accuracy.moved_sides import Extended
+from dembound.accuracy.reference import Exact, FinerRun
+from dembound.accuracy.runner import Run
+from dembound.casefile import Case
+from dembound.errors import CaseError
+from dembound.motion.scene import Scene
+
+C = TypeVar("C", bound=Case)
+S = TypeVar("S", bound=Scene)
+
+
+class Judge(ABC, Generic[C, S]):
+    """Errors of one kind of body: what causes them, what runs are compared with, which choices a case leaves open.
+
+    Attributes
+    ----------
+    places : findings of its runs that are places, each with its axis, 0 or 1.
+    first_break : its finding that is the time (s) of the first break.
+    """
+
+    places: ClassVar[Mapping[str, int]]
+    first_break: ClassVar[str]
+
+    @abstractmethod
+    def causes(self, case: C, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
+        """The causes of the error of a run.
+
+        case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step
+        (s), work (in the unit of its kind) : of the run. most : work that may be spent.
+        """
+
+    def of_another_seed(self, case: C, recorded: Motions, work: float) -> Causes:
+        """What the seed of a random packing adds to the motion of its monitors, from one more run of the same length.
+
+        case : to the end of the run. work : of the run. Raises CaseError for a case without a seed, and the errors of
+        runs.
+        """
+        raise no_seed(case)
+
+    def notes(self, case: C, summary: Mapping[str, Any]) -> Iterator[str]:
+        """Lines about how far the estimate of a run holds, given the summary of its results; by default none."""
+        yield from ()
+
+    @abstractmethod
+    def best(self, case: C, bound: float, kept: Sequence[str]) -> Best:
+        """The cheapest choice that keeps an error bound, or the one with the smallest error; kept : keys not changed.
+
+        Raises CaseError for cases whose errors are not known, that do not move at their monitors, and where no choice
+        keeps those values; the errors of building a scene and of runs.
+        """
+
+    @abstractmethod
+    def extended(self, case: C, most: int) -> Extended:
+        """The scene of a case enlarged to at most so many nodes, see `extended.extended`."""
+
+    @abstractmethod
+    def exact(self, case: C) -> Exact | None:
+        """The exact solution of a case, None if none is known; raises CaseError if the reasons are."""
+
+    def finer(self, case: C, choices: Sequence[Choice], outcomes: Sequence[Run]) -> FinerRun | None:
+        """A finer run than those of choices with these outcomes, with the ends of a case; by default there is none."""
+        return None
+
+    @abstractmethod
+    def chart_choices(self, case: C) -> Named:
+        """Choices for the chart of a case where neither the command nor the case gives any."""
+
+    def has_input_continuum(self, case: C) -> bool:
+        """Whether waves enter a scene that can be extended through a continuum, by default not."""
+        return False
+
+    def cautions(self, cases: Sequence[C]) -> tuple[str, ...]:
+        """What errors of some cases beside a run of one of them include besides errors, a line each."""
+        return ()
+
+    def proposals(self, scene: S) -> dict[str, str]:
+        """Lines for `dembound check` about cheaper cases, by name; by default none."""
+        return {}
+
+
+def no_seed(case: Case) -> CaseError:
+    """The error of a case without a random packing that is to be run with another seed."""
+    reason = "the case has no random packing, so that nothing depends on a seed"
+    return CaseError([f"--second-seed: {reason}"], case.name)

@@ -1,0 +1,1 @@
+"""Errors of bars, from their waves at each frequency."""

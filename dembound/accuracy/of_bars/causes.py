@@ -1,0 +1,124 @@
+"""The error of a bar: what its ends, its nodes and its steps add to the motion at its monitors.
+
+Up to the first change of its bonds a bar is linear, and its motion is known at every frequency, without a run:
+
+- own: the bar as it is stepped, with its own ends (chain.py).
+- endless: the same nodes and steps, but beyond an absorbing end the bar goes on, and the wave that enters there is the
+  one that the case gives.
+- exact time: the endless one, but with Δt = 0.
+- exact: rods without nodes (rods.py), whose absorbing ends take all. The stress of a node at an end is that of the
+  plane half a spacing inside, and is compared with the exact one there.
+
+Own less endless is the error of the ends, endless less exact time that of the time step, the rest that of the grid. So
+all ways of a wave, there and back, are included, and so are ends that are softer than the bar, and what is lost at
+interfaces between ranges.
+
+Whether the bar was linear is seen in the record itself: at a monitor whose record is not that of `own`, as a method has
+changed the bonds, nothing is said.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from dembound.accuracy.cause import GRID, SIDES, STEP, Cause, Causes
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_bars.motions import BarMotions
+from dembound.accuracy.of_bars.window import Window
+from dembound.bar.layer_echo import WIDEST
+from dembound.bar.scene import build_bar
+from dembound.casefile.bar import BarCase
+
+UNEXPLAINED = 1.0 / 3.0
+"""Largest difference of a record from the linear bar, over its estimated error, with which this is given."""
+
+SMALLEST = 1e-3
+"""RMS of this difference over that of the record below which it does not matter."""
+
+QUIET = 1e-6
+"""RMS of a record over the largest motion that sources make, below which it is rounding errors and far precursors."""
+
+HOW = "from the waves of the linear bar at each frequency"
+"""How its errors are found."""
+
+
+def causes_of_bar(case: BarCase, recorded: Motions, time_step: float) -> Causes:
+    """The causes of the errors of a bar, whose cost is 0, as nothing is run.
+
+    recorded : of the run, by monitor, up to the first break. time_step : s, of the run.
+
+    Raises the errors of building a scene.
+    """
+    if (refused := not_linear(case)) or not recorded:
+        return Causes([], refused)
+    times = {name: each.time for name, each in recorded.items()}
+    window = Window.up_to(max(float(time[-1]) for time in times.values()), time_step)
+    motions = BarMotions(case, build_bar(case), window, times)
+    own, exact = motions.own(), motions.exact()
+    lines = {name: _unknown(case, each, own[name], exact[name]) for name, each in recorded.items()}
+    known = [name for name, line in lines.items() if not line]
+    found = split(motions, own, exact, {name: recorded[name] for name in known})
+    missing = [f"{name}: {line}" for name, line in lines.items() if line]
+    return Causes(found if known else [], missing, echo_free=bool(motions.absorbing))
+
+
+def split(motions: BarMotions, own: Motions, exact: Motions, recorded: Motions) -> list[Cause]:
+    """What the grid, the time step and absorbing ends add, by the motions of the bar as it is stepped and of rods."""
+    step = motions.window.step
+    endless, exact_time = motions.endless(step), motions.endless(0.0)
+    found = [difference(GRID, exact_time, exact, recorded), difference(STEP, endless, exact_time, recorded)]
+    return [*found, difference(SIDES, own, endless, recorded)] if motions.absorbing else found
+
+
+def difference(cause: str, of: Motions, less: Motions, recorded: Motions) -> Cause:
+    """A cause that adds the difference of two motions to what is recorded."""
+    return Cause(cause, HOW, {name: _errors(own, of[name], less[name]) for name, own in recorded.items()})
+
+
+def not_linear(case: BarCase) -> list[str]:
+    """Why nothing can be estimated; empty if something can."""
+    bar = case.bar
+    if any(given.interface == "contact" for given in bar.range):
+        return ["bars with contacts, which open and close"]
+    if any(given.velocity for given in bar.range):
+        return ["bars whose ranges move at the start"]
+    if case.method.largest_horizon > WIDEST:
+        return [f"bars with a horizon of more than {WIDEST} spacings"]
+    return []
+
+
+def _unknown(case: BarCase, recorded: History, own: History, exact: History) -> str:
+    """Why nothing is known at a monitor: its record is that of no linear bar, or of rest; empty otherwise."""
+    worst, largest = 0.0, largest_motion(case, float(recorded.time[-1]))
+    for quantity, values in recorded.values.items():
+        seen = values[:, 0]
+        size = float(np.linalg.norm(seen))
+        if size <= QUIET * largest[quantity] * math.sqrt(len(seen)):
+            return "hardly moves"
+        rest = float(np.linalg.norm(seen - own.values[quantity][:, 0]))
+        error = float(np.linalg.norm(own.values[quantity] - exact.values[quantity]))
+        if rest > max(SMALLEST * size, UNEXPLAINED * error):
+            worst = max(worst, rest / size)
+    return (
+        f"its record differs by {100.0 * worst:.2g} % from that of a bar whose bonds stay as they are" if worst else ""
+    )
+
+
+def largest_motion(case: BarCase, last: float) -> dict[str, float]:
+    """By quantity the sum of the largest motions that the sources make, up to a time (s)."""
+    impedance = max(part.density * part.speed for part in case.bar.parts)
+    waves = [case.wave[name].peak() for driven in case.driving.values() for name in driven.values()]
+    loads = [abs(load.pressure) * case.wave[load.wave].peak() / impedance for load in case.load]
+    velocity = math.fsum([*waves, *loads])
+    return {"velocity": velocity, "displacement": velocity * last, "stress": velocity * impedance}
+
+
+def _errors(recorded: History, of: History, less: History) -> dict[str, np.ndarray]:
+    """Quantity -> error (k, c), along the bar."""
+    errors = {}
+    for quantity, values in recorded.values.items():
+        errors[quantity] = np.zeros_like(values, dtype=float)
+        errors[quantity][:, 0] = (of.values[quantity] - less.values[quantity])[:, 0]
+    return errors

@@ -1,0 +1,54 @@
+"""Errors of bars: their causes are known at every frequency, without a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+from dembound.accuracy.best import Best
+from dembound.accuracy.cause import Causes
+from dembound.accuracy.choice import Choice, Named
+from dembound.accuracy.history import Motions
+from dembound.accuracy.judge import Judge
+from dembound.accuracy.moved_sides import Extended
+from dembound.accuracy.of_bars.causes import causes_of_bar
+from dembound.accuracy.of_bars.chart_choices import bar_choices
+from dembound.accuracy.of_bars.extended import extended_bar
+from dembound.accuracy.of_bars.finer import Finer, finer
+from dembound.accuracy.of_bars.pulse import PulseInBar
+from dembound.accuracy.of_bars.search import best_of_bar
+from dembound.accuracy.runner import Run
+from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
+from dembound.bar.scene import BarScene
+from dembound.casefile.bar import BarCase
+
+
+class BarJudge(Judge[BarCase, BarScene]):
+    """Errors of bars."""
+
+    places: ClassVar[Mapping[str, int]] = {SPALL_PLACE: 0}
+    first_break = SPALL_TIME
+
+    def causes(self, case: BarCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
+        """Ends, nodes and steps, from the waves of the linear bar."""
+        return causes_of_bar(case, recorded, time_step)
+
+    def best(self, case: BarCase, bound: float, kept: Sequence[str]) -> Best:
+        """The cheapest nodes, steps and absorbing ends."""
+        return best_of_bar(case, bound, kept)
+
+    def extended(self, case: BarCase, most: int) -> Extended:
+        """The bar with more spacings beyond ends that are neither loaded nor driven."""
+        return extended_bar(case, most)
+
+    def exact(self, case: BarCase) -> PulseInBar | None:
+        """A pulse at the left end of a bar without attenuation."""
+        return PulseInBar.of(case)
+
+    def finer(self, case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Run]) -> Finer:
+        """Finite differences at Courant number 1."""
+        return finer(case, choices, outcomes)
+
+    def chart_choices(self, case: BarCase) -> Named:
+        """All methods with several spacings."""
+        return bar_choices(case)

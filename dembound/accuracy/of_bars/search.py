@@ -1,0 +1,193 @@
+"""The cheapest choice of nodes, steps and absorbing ends of a bar that keeps the error of all monitors within a bound.
+
+The motion of a linear bar is known without a run, as it is stepped and exactly (estimate/bars.py), for every choice:
+the error is their difference at each monitor. Choices are tried in the order of their predicted cost.
+
+Of a bar that may break the nodes and the method remain, as they are part of how it breaks; its error is that of the
+motion until bonds change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from dembound.accuracy.best import Best
+from dembound.accuracy.budget import expected
+from dembound.accuracy.cause import Cause
+from dembound.accuracy.choice import Choice
+from dembound.accuracy.end import ended_earlier
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_bars.causes import QUIET, difference, largest_motion, not_linear, split
+from dembound.accuracy.of_bars.exact import ExactMotion
+from dembound.accuracy.of_bars.floors import Floors, first_echo, is_regular
+from dembound.accuracy.of_bars.motions import BarMotions
+from dembound.accuracy.of_bars.options import BarOption, bar_options, may_break
+from dembound.accuracy.of_bars.window import Window
+from dembound.bar.scene import build_bar
+from dembound.casefile.bar import BarCase
+from dembound.errors import CaseError
+
+SAFETY = 1.05
+"""Expected errors are below the bound by this factor: they differ from true ones by up to 3 %
+(tests/unit/accuracy/of_bars/test_causes.py)."""
+
+COSTLIEST = 64.0
+"""Cost up to which choices are tried, over that of the given case: an eighth of the spacing."""
+
+PLACES = "places"
+"""Cause of errors: monitors at other nodes than in the given case."""
+
+ALONG = "; its nodes and method remain, as it may break, and the error is that before bonds change"
+"""What is said of a bar that may break."""
+
+
+def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Best:
+    """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
+
+    Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
+    keeps those values; the errors of building a scene.
+    """
+    if refused := not_linear(case):
+        raise CaseError([f"--error: nothing is known of {line}" for line in refused], case.name)
+    own = given_motion(case)
+    if not own.moves:
+        raise CaseError(["--error: nothing moves at the monitors"], case.name)
+    motions = affordable_motions(own, kept)
+    if not motions:
+        raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
+    best, tried = cheapest(motions, bound)
+    words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
+    choice = Choice.of(case, best.choice.case(case), words)
+    costs = best.choice.cost, own.choice.cost
+    found = Best(case, choice, best.error, best.by, bound, *costs, tried, SAFETY)
+    return found if may_break(case) else ended_earlier(found, best.recorded, best.recorded, best.causes, kept)
+
+
+def given_motion(case: BarCase) -> Motion:
+    """The motion of a case as it is; raises the errors of building its scene."""
+    exact = ExactMotion(build_bar(case))
+    return Motion(next(each for each in bar_options(case, ()) if not each.changes), exact)
+
+
+def affordable_motions(own: Motion, kept: Sequence[str]) -> list[Motion]:
+    """Motions of all choices for a case that cost at most `COSTLIEST` times as much as it does, the cheapest first."""
+    choices = sorted(bar_options(own.choice.scene.case, kept), key=lambda each: each.cost)
+    return [Motion(each, own.exact) for each in choices if each.cost <= COSTLIEST * own.choice.cost]
+
+
+def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
+    """The first whose error is below a bound, else the one with the smallest, and how many errors were computed.
+
+    Those whose errors are larger by what is known of others (bar_floors.py) are left out.
+    """
+    floors, found, left = Floors(), list[Motion](), list[Motion]()
+    for motion in motions:
+        if SAFETY * floors.of(motion.choice) > bound:
+            left.append(motion)
+            continue
+        motion.add_to(floors)
+        found.append(motion)
+        if SAFETY * motion.error <= bound:
+            return motion, len(found)
+    best = min(found, key=lambda each: each.error)
+    for motion in reversed(left):  # finer nodes first
+        if floors.of(motion.choice) < best.error:
+            motion.add_to(floors)
+            found.append(motion)
+            best = min(best, motion, key=lambda each: each.error)
+    return best, len(found)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The motion of a choice beside the exact one."""
+
+    choice: BarOption
+    exact: ExactMotion
+
+    def add_to(self, floors: Floors) -> None:
+        """Add the error to those by which others are excluded, where the rules for this hold."""
+        if is_regular(self.choice, self.exact.places):
+            counted, echo = self._surely_counted, first_echo(self.choice.scene)
+            floors.add(self.choice, self._error_of(counted), self._error_of(counted, echo))
+
+    @cached_property
+    def error(self) -> float:
+        """The error at the worst monitor."""
+        return self._error_of(self.recorded)
+
+    def _error_of(self, recorded: Motions, last: Mapping[str, float] | None = None) -> float:
+        """The error of what is recorded; last : s, by monitor, up to which it counts."""
+        own, exact = self._own, self._exact
+        if last is not None:
+            own = {
+                name: replace(
+                    each,
+                    values={
+                        q: np.where(each.time[:, None] <= last[name], values, exact[name].values[q])
+                        for q, values in each.values.items()
+                    },
+                )
+                for name, each in own.items()
+            }
+        return expected([difference("all", own, exact, recorded)], recorded).worst
+
+    @property
+    def _surely_counted(self) -> dict[str, History]:
+        """The part of what is recorded that counts for all choices."""
+        counted = self.exact.surely_counted(self._motions.window)
+        return {
+            name: replace(own, values={q: values for q, values in own.values.items() if q in counted[name]})
+            for name, own in self.recorded.items()
+        }
+
+    @property
+    def by(self) -> dict[str, float]:
+        """Shares of the error by cause at the worst monitor; some have opposite signs, as those of grid and steps."""
+        return expected(self.causes, self.recorded).by
+
+    @cached_property
+    def causes(self) -> list[Cause]:
+        """What ends, nodes, steps and other places of monitors add to the motion."""
+        at_nodes = self._motions.exact()
+        causes = split(self._motions, self._own, at_nodes, self.recorded)
+        return [*causes, difference(PLACES, at_nodes, self._exact, self.recorded)]
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything moves at a monitor, but for rounding errors."""
+        largest = largest_motion(self.choice.scene.case, self.choice.scene.case.run.duration)["velocity"]
+        return any(np.abs(own.velocity).max() > QUIET * largest for own in self._exact.values())
+
+    @cached_property
+    def _motions(self) -> BarMotions:
+        """The motions at all steps."""
+        scene, step, steps = self.choice.scene, self.choice.step, self.choice.steps
+        times = dict.fromkeys(self.exact.places, step * np.arange(steps + 1))
+        return BarMotions(scene.case, scene, Window.up_to(steps * step, step), times)
+
+    @cached_property
+    def _own(self) -> Motions:
+        return self._motions.own()
+
+    @cached_property
+    def _exact(self) -> Motions:
+        return self.exact.at(self._motions.window)
+
+    @cached_property
+    def recorded(self) -> dict[str, History]:
+        """The motion as a run records it; without the stress of end nodes, which is that half a spacing inside."""
+        ends = (0, self.choice.scene.count - 1)
+        at_ends = [name for name, node in self._motions.nodes.items() if node in ends]
+        return {
+            name: replace(
+                own,
+                place=np.array([self.exact.places[name], 0.0]),
+                values={q: values for q, values in own.values.items() if q != "stress" or name not in at_ends},
+            )
+            for name, own in self._own.items()
+        }

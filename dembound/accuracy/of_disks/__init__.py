@@ -1,0 +1,1 @@
+"""Errors of bonded disks: by formulas, by companions of larger disks, and beside exact motion."""

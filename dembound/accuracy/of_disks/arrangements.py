@@ -1,0 +1,113 @@
+"""What may stand in for the ground beyond a scene of disks: its own sides, dashpots, springs, a continuum."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from dembound.accuracy.choice import Choice, changed, is_valid
+from dembound.accuracy.of_disks.boxes import box_tables, boxes, continuum_beyond, may_be_boxed
+from dembound.boundaries.boundary import Boundary
+from dembound.casefile.disks import DiskCase
+from dembound.disks.beyond.settings import extents
+from dembound.disks.scene import DiskScene, build
+from dembound.table import Box
+
+CONTINUUM_SHARE = 0.3
+"""Part of the error asked for that the elements of a continuum may have; smaller ones cost more than they gain."""
+
+ROUNDING = 1e-9
+"""Part of a brick by which places may be beyond it."""
+
+
+def may_widen(arrangement: Choice) -> bool:
+    """Whether sides of a choice reflect and may be farther away: not where disks fill only a box of the ground."""
+    assert isinstance(arrangement.case, DiskCase)
+    reflecting = [side for side, table in _silent(arrangement.case).items() if not table.is_outside]
+    return bool(reflecting) and arrangement.case.ground.size is None
+
+
+def _silent(case: DiskCase) -> dict[str, Boundary]:
+    """The artificial sides through which no waves enter."""
+    return {side: table for side, table in case.boundary.items() if table.is_artificial and not table.waves}
+
+
+def arrangements(case: DiskCase, scene: DiskScene, bound: float) -> Iterator[Choice]:
+    """Choices of sides for a case, its own first; valid ones only. scene : of the case; bound : error asked for."""
+    silent = _silent(case)
+    yield Choice("sides as given", {}, case)
+    if case.ground.size is None and case.incident is None and silent:
+        yield from _dashpots(case, silent)
+    if case.incident is None:
+        yield from _continuum(case, scene, silent, bound)
+
+
+def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice]:
+    """Matched dashpots, alone and with springs towards what makes waves."""
+    if any(table.needs_column for table in silent.values()):
+        return  # the motion of the ground is not zero beyond them
+    kinds: dict[str, dict[str, Any]] = {"viscous": {}}
+    places = [0.5 * (low + high) for low, high in extents(case)]
+    if places:
+        kinds["viscoelastic"] = {"source": np.mean(places, axis=0).tolist()}
+    for kind, extra in kinds.items():
+        tables = {
+            side: {"type": kind, **extra} | ({"half_mass": True} if side in case.packing.regular_sides else {})
+            for side in silent
+        }
+        changes = {f"boundary.{side}": table for side, table in tables.items()}
+        if is_valid(case, changes, build):
+            yield Choice(f"{kind} sides", changes, changed(case, changes))
+
+
+def _continuum(case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float) -> Iterator[Choice]:
+    """A continuum beyond all artificial sides, or those without waves, and round boxes of disks."""
+    coarse = CONTINUUM_SHARE * bound
+    accuracies: dict[str, dict[str, Any]] = {"": {}} | (
+        {"coarse ": {"outside.accuracy": coarse}} if coarse > case.outside.accuracy else {}
+    )
+    artificial = {side: table for side, table in case.boundary.items() if table.is_artificial}
+    for name, accuracy in accuracies.items():
+        for sides in (artificial, silent):
+            beyond = {
+                f"boundary.{side}": continuum_beyond(table) for side, table in sides.items() if not table.is_outside
+            }
+            changes = {**beyond, **accuracy}
+            if changes and sides and is_valid(case, changes):
+                yield Choice(f"a {name}continuum beyond {' and '.join(sides)}", changes, changed(case, changes))
+                break
+        yield from _boxes(case, accuracy, name)
+
+
+def _boxes(case: DiskCase, accuracy: Mapping[str, Any], name: str) -> Iterator[Choice]:
+    """Boxes of disks of several sizes in a continuum."""
+    if not may_be_boxed(case):
+        return
+    wanted = changed(case, accuracy)
+    small = [candidate.box for candidate in boxes(build(wanted))]
+    for box in dict.fromkeys([*small, *(_with_monitors(case, each) for each in small)]):
+        tables = box_tables(case, box)
+        kept = {key: value for key, value in case.packing.given().items() if key != "bricks"}
+        changes = {"ground.size": tables.pop("ground")["size"], "packing": kept | tables.pop("packing"), **tables}
+        changes |= accuracy
+        if is_valid(case, changes):
+            yield Choice(f"a box of {_size(box)} in a {name}continuum", changes, changed(case, changes))
+
+
+def _with_monitors(case: DiskCase, box: Box) -> Box:
+    """The smallest box of whole bricks round another one that has all monitors and regions of loads inside."""
+    places = [monitor.position for monitor in case.monitor]
+    places += [corner for load in case.load if load.region for corner in (load.region[:2], load.region[2:])]
+    low, high = np.array(box[:2]), np.array(box[2:])
+    brick, margin = np.array(case.packing.brick_size), case.packing.radius
+    lower, upper = np.min([low, *np.subtract(places, margin)], axis=0), np.max([high, *np.add(places, margin)], axis=0)
+    low = np.maximum(low - brick * np.ceil((low - lower) / brick - ROUNDING), 0.0)
+    high = np.minimum(high + brick * np.ceil((upper - high) / brick - ROUNDING), case.size)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _size(box: Box) -> str:
+    """Width and height in words."""
+    return f"{box[2] - box[0]:g} m × {box[3] - box[1]:g} m"

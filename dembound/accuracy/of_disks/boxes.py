@@ -1,0 +1,188 @@
+"""The smallest box of disks round the holes and loads of a scene, with a continuum round it, for `dembound check`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.sides import SIDES
+from dembound.casefile.disks import DiskCase
+from dembound.disks import step_cost
+from dembound.disks.beyond.hollowed import BAND as FLOOR
+from dembound.disks.beyond.mesh import medium_of
+from dembound.disks.beyond.settings import expected_tops, extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.packing_errors import in_percent
+from dembound.disks.scene import DiskScene
+from dembound.errors import CaseError
+from dembound.outside import choice
+from dembound.outside.ram import GridSizes
+from dembound.table import Box
+
+WORTH = 0.8
+"""Part of a scene's cost above which a box is no gain."""
+
+NEARER = (1.0, 0.7, 0.5, 0.35, 0.25)
+"""Parts of the distance that elements as large as waves allow need from holes and loads; nearer ones are smaller."""
+
+BAND = 4.0
+"""Least distance of holes and loads from the sides of a box, in diameters: cracks near ties are not followed."""
+
+
+class BoxOfDisks(NamedTuple):
+    """A box: its rectangle (m), its disks and those of its free-field column, nodes, and nanoseconds of a step.
+
+    error : of velocities, expected of its elements.
+    """
+
+    box: Box
+    disks: int
+    nodes: int
+    cost: float
+    error: float
+
+
+def box_facts(scene: DiskScene) -> dict[str, str]:
+    """The cheapest box of disks in place of a scene, and its tables; none if it would gain little."""
+    best = cheapest_box(scene) if may_be_boxed(scene.case) else None
+    if best is None:
+        return {}
+    return {"smaller box": _in_words(scene, best), "its tables": _as_toml(box_tables(scene.case, best.box))}
+
+
+def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
+    """The keys of a case with disks in a box (m) only, by table; those of the packing that it keeps are left out."""
+    left, bottom, right, top = box
+    sides = SIDES if top < case.size[1] else SIDES[:3]
+    outside = {f"boundary.{side}": continuum_beyond(case.side(side)) for side in sides}
+    packing = {"size": [right - left, top - bottom], "origin": [left, bottom]}
+    return {"ground": {"size": list(case.size)}, "packing": packing, **outside}
+
+
+def continuum_beyond(table: Boundary) -> dict[str, Any]:
+    """The table of a side with a continuum beyond it, through which the waves of the given side enter."""
+    return {"type": "outside"} | {f"wave_{motion}": name for motion, name in table.waves.items()}
+
+
+def _as_toml(tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Tables of texts and places as lines of a case."""
+    lines = []
+    for table, keys in tables.items():
+        lines.append(f"[{table}]")
+        for key, value in keys.items():
+            shown = f'"{value}"' if isinstance(value, str) else "[" + ", ".join(f"{each:.10g}" for each in value) + "]"
+            lines.append(f"{key} = {shown}")
+    return "\n".join(lines)
+
+
+def _in_words(scene: DiskScene, best: BoxOfDisks) -> str:
+    """A box, what it holds, what it saves, and its error."""
+    left, bottom, right, top = best.box
+    share, error = best.cost / _cost(scene), in_percent(best.error)
+    return (
+        f"{right - left:.10g} m × {top - bottom:.10g} m of disks at ({left:.10g}, {bottom:.10g}) m in [ground], a "
+        f"continuum round them: {best.disks:,} disks and {best.nodes:,} nodes instead of {scene.count:,}, about "
+        f"{100.0 * share:.0f} % of the time of a step; expected error of velocities {error}"
+    )
+
+
+def cheapest_box(scene: DiskScene) -> BoxOfDisks | None:
+    """The cheapest box of disks in place of a scene that `may_be_boxed`; None if it would gain little."""
+    best = min(boxes(scene), key=lambda each: each.cost, default=None)
+    return None if best is None or best.cost > WORTH * _cost(scene) else best
+
+
+def _cost(scene: DiskScene) -> float:
+    """Nanoseconds of a step of a scene, but for the forces of a wave at an angle, which boxes have as well."""
+    return sum(cost for part, cost in step_cost.of_scene(scene).items() if part != "incident wave")
+
+
+def may_be_boxed(case: DiskCase) -> bool:
+    """Whether all that makes waves, but for those from below, is in one place, and the ground could go on beyond."""
+    plain = not any(case.periodic) and not case.motion.held and (case.static is None or case.static.stress is None)
+    beyond = all(
+        case.side(side).is_artificial and not case.side(side).is_mirror for side in ("left", "right", "bottom")
+    )
+    at_top = case.side("top").is_free or case.side("top").is_outside
+    from_below = not any(case.side(side).waves for side in ("left", "right", "top"))
+    return (
+        plain
+        and _ends_level(case)
+        and beyond
+        and at_top
+        and from_below
+        and bool(signals_of(case))
+        and any(True for _ in extents(case))
+    )
+
+
+def _ends_level(case: DiskCase) -> bool:
+    """Whether holes reach neither left nor right side, or leave a level floor there and nothing moves all ground."""
+    left, _, right, _ = case.packing.box
+    reached = {side for hole in case.hole for side in ("left", "right") if _reaches(hole.box, side, left, right)}
+    if not reached:
+        return True
+    wide = FLOOR * 2.0 * case.packing.radius
+    is_level = all(side in case.floors and case.floors[side].width >= wide for side in reached)
+    return is_level and not case.entering and not any(load.is_everywhere for load in case.load) and case.static is None
+
+
+def _reaches(hole: Box, side: str, left: float, right: float) -> bool:
+    """Whether the rectangle round a hole reaches the left or the right side, at these x, m."""
+    return hole[0] <= left if side == "left" else hole[2] >= right
+
+
+def boxes(scene: DiskScene) -> Iterator[BoxOfDisks]:
+    """Boxes of disks with elements of different sizes round them, in place of a scene that `may_be_boxed`."""
+    case, medium, diameter = scene.case, medium_of(scene.ground), scene.ground.brick.mean_diameter
+    order, accuracy = case.outside.order, case.outside.accuracy
+    side = choice.element_size(signals_of(case), medium, order, accuracy)
+    widest = max(side, least_element(case, diameter)) / choice.size_near(1.0, order, accuracy)
+    for part in NEARER:
+        box = _round(scene, max(part * widest, BAND * diameter))
+        if box[0] >= box[2] or box[1] >= box[3]:  # all that makes waves is on the continuum
+            continue
+        try:
+            yield _with_continuum(scene, box)
+        except CaseError:  # no mesh
+            continue
+
+
+def _round(scene: DiskScene, clearance: float) -> Box:
+    """The box of whole bricks (m) with a clearance (m) from holes and loads, up to the surface if it is near."""
+    case, brick = scene.case, np.array(scene.case.packing.brick_size)
+    lows, highs = (np.array(corners) for corners in zip(*extents(case), strict=True))
+    size, origin = np.array(case.size), np.array(case.packing.origin)
+    origin[1] = 0.0
+    least = least_element(case, scene.ground.brick.mean_diameter)
+    lowest = lows.min(axis=0) - clearance
+    lowest[1] = min([lowest[1], *(floor.height - least for floor in case.floors.values())])
+    low = origin + brick * np.floor((lowest - origin) / brick)
+    high = origin + brick * np.ceil((highs.max(axis=0) + clearance - origin) / brick)
+    low, high = np.maximum(low, 0.0), np.minimum(high, size)
+    if size[1] - high[1] < max(least, clearance):
+        high[1] = size[1]
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _with_continuum(scene: DiskScene, box: Box) -> BoxOfDisks:
+    """A box with its continuum and column."""
+    case, ground = scene.case, scene.ground
+    below = box[3] < case.size[1]
+    sides = SIDES if below else SIDES[:3]
+    settings = settings_of(case, medium_of(ground), ground.brick.mean_diameter, box, sides)
+    surface, tops = (case.size[1], None) if below else (None, expected_tops(case, box))
+    grid = GridSizes.of(mesh_of(settings, box, sides, surface=surface, tops=tops))
+    first = 0 if scene.seam is None else scene.seam.count
+    places = scene.assembly.positions[first:]
+    inside = int(np.count_nonzero(((places >= box[:2]) & (places <= box[2:])).all(axis=1)))
+    moved = any(table.waves for table in case.boundary.values()) or case.static is not None
+    column = moved * len(ground.brick.radii) * math.ceil(case.size[1] / case.packing.brick_size[1])
+    ties = int(2.0 * (box[2] - box[0] + box[3] - box[1]) / ground.brick.mean_diameter)
+    beyond = step_cost.of_continuum(grid.nodes, grid.nodes * grid.absorbing / grid.elements, ties)
+    cost = step_cost.of_disk(scene) * (inside + column) + sum(beyond.values())
+    error = choice.element_error(signals_of(case), medium_of(ground), settings.order, settings.element)
+    return BoxOfDisks(box, inside + column, grid.nodes, cost, error)

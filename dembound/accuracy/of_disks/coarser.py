@@ -1,0 +1,181 @@
+"""A case of disks with larger particles: the same ground, sides, loads, holes and monitors on a coarser lattice.
+
+What artificial sides do to a run, echoes, drift and waves along the surface, hardly depends on the particles as long as
+they resolve the waves. Their error is therefore found from two runs with larger ones, which cost a small share of the
+run itself: k times larger disks are k² times fewer, with steps k times longer.
+
+The coarser packing is always a square lattice. That of a random packing has its wave speeds along x, its density, and
+dashpots that reflect as much of plane waves along their normal as those of the case, and as stiff springs.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from dembound.accuracy.of_disks.equal_sides import equal_sides, with_whole_cells
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.ground import Ground
+from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.static import Static
+from dembound.disks.loads import forces_of
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.scene import DiskScene
+from dembound.laws import Moduli
+from dembound.packings.square import Square
+
+CELLS = 4
+"""Smallest number of particles across a hole."""
+
+TRIED = 60
+"""Numbers of columns that are tried for the one whose rows fit the height best."""
+
+
+def largest_diameter(case: DiskCase, shortest: float) -> float:
+    """Largest diameter (m) of disks: at most `shortest` (m), and `CELLS` across every hole and between sides."""
+    holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.hole]
+    across = [length / CELLS for length, periodic in zip(case.size, case.periodic, strict=True) if not periodic]
+    return min([shortest, *holes, *across])
+
+
+@dataclass(frozen=True)
+class Coarser:
+    """A case with larger particles.
+
+    weight : of what its sides add as whole cells to what they add as half cells. That is the reflection of a mass too
+    much, out of phase, which cells k times larger have k times; 0 where it need not be known.
+    """
+
+    case: DiskCase
+    weight: float
+
+    @property
+    def with_whole_cells(self) -> DiskCase:
+        """The case with whole cells at its sides."""
+        return with_whole_cells(self.case)
+
+
+def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float) -> Coarser:
+    """The case with a square lattice of about this diameter (m); scene, time_step (s) : of the case.
+
+    Places move with the sides, by less than half a diameter, as the scene then is whole cells wide and high. Nothing
+    but histories is recorded.
+
+    Raises the errors of building a scene.
+    """
+    columns, rows, cell = _cells(case.size, diameter)
+    packing = Square(pattern="A", radius=0.5 * cell, bricks=(columns, rows))
+    size = np.array(packing.extent)
+    sides = _Sides(size / case.size, size)
+    larger = replace(
+        case,
+        packing=packing,
+        ground=Ground(),
+        material=_material(case, scene.ground),
+        hole=tuple(hole.shifted(sides.moved(_middle(hole.box))) for hole in case.hole),
+        load=tuple(_load(load, scene, cell, sides) for load in case.load),
+        monitor=tuple(
+            monitor.model_copy(update={"position": sides.at(scene.monitored[monitor.name])}) for monitor in case.monitor
+        ),
+        static=_static(case, scene.ground.moduli),
+        run=_run(case),
+        output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
+        name=f"{case.name}_coarser",
+    )
+    boundary, weight = equal_sides(larger, scene, time_step)
+    return Coarser(replace(larger, boundary=boundary), weight)
+
+
+def _cells(size: tuple[float, float], diameter: float) -> tuple[int, int, float]:
+    """Columns, rows and width (m) of the cells, at most this diameter wide, whose rows fit the height best."""
+    fewest = math.ceil(size[0] / diameter - 1e-9)
+    most = max(fewest + 1, min(fewest + TRIED, int(1.15 * fewest)))
+    tried = [(columns, size[1] * columns / size[0]) for columns in range(fewest, most + 1)]
+    columns, rows = min(tried, key=lambda each: (round(abs(each[1] - round(each[1])) / each[1], 4), each[0]))
+    return columns, max(1, round(rows)), size[0] / columns
+
+
+def _middle(box: tuple[float, float, float, float]) -> np.ndarray:
+    return np.array([0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])])
+
+
+@dataclass(frozen=True)
+class _Sides:
+    """How places move with the sides.
+
+    stretch : of lengths along x and y. size : width and height (m) afterwards, which rounding must not exceed.
+    """
+
+    stretch: np.ndarray
+    size: np.ndarray
+
+    def moved(self, place: np.ndarray) -> tuple[float, float]:
+        """How far (m) a place moves."""
+        x, y = (place * (self.stretch - 1.0)).tolist()
+        return x, y
+
+    def at(self, place: np.ndarray) -> tuple[float, float]:
+        """Where (m) a place is afterwards."""
+        x, y = np.clip(place * self.stretch, 0.0, self.size).tolist()
+        return x, y
+
+
+def _run(case: DiskCase) -> Any:
+    """The ``[run]`` table: its own time step, to the same end, without files."""
+    ended = {"until": type(case.run).model_fields["until"].default}
+    return case.run.model_copy(update={"time_step": "auto", "checkpoint": 0.0, **ended})
+
+
+def _material(case: DiskCase, ground: PackedMaterial) -> Material:
+    """The material, by which the lattice has the wave speeds along x of the ground."""
+    if isinstance(case.packing, Square):
+        return case.material
+    tensor, density = ground.material_tensor, ground.density
+    p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
+    moduli = ground.moduli
+    ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
+    contacts = moduli.emod / (moduli.emod + moduli.pb_emod)
+    replaced = {"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
+    given = case.material.model_dump(exclude_unset=True, exclude=replaced)
+    given |= {
+        "p_wave_speed": p,
+        "contact_share": contacts,
+        "kratio": ratio,
+        "pb_kratio": ratio if case.material.fric > 0.0 else ratio * (1.0 - contacts),  # else bonds carry all shear
+        "s_wave_speed": None,
+    }
+    return Material.model_validate({key: value for key, value in given.items() if value is not None})
+
+
+def _static(case: DiskCase, moduli: Moduli) -> Static | None:
+    """The static stage; instead of a locked-in stress a given one under which the contacts carry that pressure."""
+    if case.static is None:
+        return None
+    update: dict[str, Any] = {"from_": None}
+    if (pressure := getattr(case.material, "locked_in", None)) is not None:
+        both = pressure * (moduli.emod + moduli.pb_emod) / moduli.emod
+        sxx, syy, sxy = case.static.stress or (0.0, 0.0, 0.0)
+        update["stress"] = (sxx - both, syy - both, sxy)
+    return case.static.model_copy(update=update)
+
+
+def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:
+    """A load with the same force in all, on the disks of a region at least one cell wide and high."""
+    if load.pressure is not None or load.is_everywhere:
+        return load
+    update: dict[str, Any] = {}
+    if load.acceleration is not None:
+        total = forces_of(load, scene)[1].sum(axis=0)
+        update |= {"acceleration": None, "force": (float(total[0]), float(total[1]))}
+    if load.position is not None:
+        (node,), _ = forces_of(load, scene)
+        return load.model_copy(update=update | {"position": sides.at(scene.positions[node])})
+    assert load.region is not None
+    box = np.array(load.region) * np.tile(sides.stretch, 2)
+    middle, half = 0.5 * (box[:2] + box[2:]), np.maximum(0.5 * (box[2:] - box[:2]), 0.5 * cell * (1.0 + 1e-9))
+    low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, sides.size)
+    return load.model_copy(update=update | {"region": (*low.tolist(), *high.tolist())})

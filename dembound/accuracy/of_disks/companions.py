@@ -1,0 +1,213 @@
+"""Runs with larger disks that show what sides do to the motion of the monitors: with far sides, and with others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.extended import bricks_needed, enlarged, movable_sides
+from dembound.accuracy.of_disks.pair import PairScenes, ratios, scenes_of_pair, sides_of_pair
+from dembound.accuracy.of_disks.places import middle_of_loads, middles_of_loads, patch_around, weights_at
+from dembound.accuracy.runner import Run, Runner, at_step
+from dembound.boundaries import normal_axis
+from dembound.boundaries.boundary import Boundary
+from dembound.casefile.disks import DiskCase
+from dembound.disks.contacts.breaks import BREAK_TIME
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.errors import CaseError
+
+QUANTITIES = ("velocity", "displacement")
+"""Quantities whose errors are bounded."""
+
+LESS = 0.9
+"""Step of all companions over that of the pair, so that it is stable with the springs and half cells of any sides."""
+
+
+@dataclass
+class Companions:
+    """Companions of a case of disks.
+
+    case, scene, time_step (s) : those given. most : particle-steps that the first two may take. runner : runs them.
+    """
+
+    case: DiskCase
+    scene: DiskScene
+    time_step: float
+    most: float
+    runner: Runner = field(default_factory=Runner)
+
+    @cached_property
+    def pair(self) -> PairScenes | None:
+        """The scenes with the case's own sides and with far ones; None where no side that reflects can move."""
+        if self.case.ground.size is not None or not sides_of_pair(self.case):
+            return None
+        return scenes_of_pair(self.case, self.scene, self.time_step, self.most)
+
+    @cached_property
+    def diameter(self) -> float:
+        """Largest diameter of their disks, m."""
+        ratio = ratios(self.case, self.scene)[-1] if self.pair is None else self.pair.ratio
+        return ratio * self.scene.ground.brick.mean_diameter
+
+    @cached_property
+    def step(self) -> float:
+        """Time step of all of them, s."""
+        if self.pair is not None:
+            return LESS * self.pair.step
+        return LESS * choose_step(self._lattice)[0]
+
+    @property
+    def far(self) -> Motions:
+        """The motion of the disks of all patches without what sides send back, until bonds break."""
+        return self._until_break(self._far.motions)
+
+    @property
+    def first_break(self) -> float:
+        """Time (s) at which the first bond breaks there, infinite without one."""
+        return self._far.finding(BREAK_TIME)
+
+    def _until_break(self, motions: Motions) -> Motions:
+        """The histories before the first bond breaks with far sides."""
+        return {name: each.before(self.first_break) for name, each in motions.items()}
+
+    @cached_property
+    def _far(self) -> Run:
+        """The run with far sides."""
+        return self._measured(self._own if self.pair is None else enlarged(build(self._own), self.pair.bricks)[0])
+
+    @cached_property
+    def _lattice(self) -> DiskScene:
+        """The scene of the companion of the given case."""
+        return build(coarser(self.case, self.scene, self.time_step, self.diameter).case)
+
+    @cached_property
+    def _patches(self) -> dict[str, np.ndarray]:
+        """By monitor, the places (k, 2) m of the disks round it in that scene."""
+        return {name: patch_around(self._lattice, place) for name, place in self._places(self.scene).items()}
+
+    @cached_property
+    def _own(self) -> DiskCase:
+        """The companion of the given case, with monitors at the disks of all patches."""
+        case = self._lattice.case
+        monitors = {monitor.name: monitor for monitor in case.monitor}
+        return replace(
+            case,
+            monitor=tuple(
+                monitors[name].model_copy(update={"name": _named(name, k), "position": tuple(place)})
+                for name, patch in self._patches.items()
+                for k, place in enumerate(patch.tolist())
+            ),
+        )
+
+    @cached_property
+    def _needed(self) -> dict[str, int]:
+        """Bricks of the companion's disks beyond each side that may move, with which nothing returns."""
+        return needed_by(build(self._own))
+
+    def recorded(self, scene: DiskScene) -> dict[str, History]:
+        """That motion, at the places of the monitors in a scene, seen from the loads."""
+        time = next(iter(self.far.values())).time
+        motion = self._motion(self.far, self._places(scene))
+        return {name: History(scene.monitored[name], time, values) for name, values in motion.items()}
+
+    def moved(self, scene: DiskScene) -> list[dict[str, dict[str, np.ndarray]]]:
+        """How that motion differs at the places of a scene's monitors from that at those given, (k, 2).
+
+        By monitor and quantity, seen from each load in turn, as loads may be elsewhere, too; else from the ground.
+        """
+        both = (middles_of_loads(each) for each in (scene, self.scene))
+        loads = [there - given for (there, _), (given, _) in zip(*both, strict=True)] or [np.zeros(2)]
+        given = self._motion(self.far, self._places(self.scene))
+        found = []
+        for load in loads:
+            places = {
+                name: place + scene.monitored[name] - self.scene.monitored[name] - load
+                for name, place in self._places(self.scene).items()
+            }
+            motion = self._motion(self.far, places)
+            found.append({name: {q: motion[name][q] - given[name][q] for q in QUANTITIES} for name in given})
+        return found
+
+    def _places(self, scene: DiskScene) -> dict[str, np.ndarray]:
+        """Where (2,) m in the lattice of the companion the monitors of a scene are, seen from the middle of loads."""
+        seen, own = (middle_of_loads(each) for each in (scene, self._lattice))
+        stretch = np.array(self._lattice.case.size) / self.case.size
+        names = [monitor.name for monitor in self.case.monitor]
+        if seen is None or own is None:
+            return {name: scene.monitored[name] * stretch for name in names}
+        return {name: own + scene.monitored[name] - seen for name in names}
+
+    def _motion(self, motions: Motions, places: Mapping[str, np.ndarray]) -> dict[str, dict[str, np.ndarray]]:
+        """Motion (k, 2) along x and y at places (2,) m near the monitors, by monitor and quantity."""
+        found: dict[str, dict[str, np.ndarray]] = {}
+        for name, patch in self._patches.items():
+            weights = weights_at(patch, places[name])
+            disks = [motions[_named(name, k)] for k in range(len(patch))]
+            found[name] = {
+                q: sum(
+                    (w * history.values[q][:, :2] for w, history in zip(weights, disks, strict=True)),
+                    np.zeros((len(disks[0].time), 2)),
+                )
+                for q in QUANTITIES
+            }
+        return found
+
+    def of_sides(
+        self, case: DiskCase, scene: DiskScene, time_step: float, wider: float
+    ) -> dict[str, dict[str, np.ndarray | float]]:
+        """What sides add to the motion of a scene's monitors, by monitor and quantity, (k, 2) at those times.
+
+        wider : how much farther away than in the case they are, over the scene's length across them.
+        """
+        given = coarser(case, scene, time_step, self.diameter)
+        own = self._with_sides(given.case.boundary, scene, wider)
+        whole = self._with_sides(given.with_whole_cells.boundary, scene, wider) if given.weight > 0.0 else own
+        far = self._motion(self.far, self._places(scene))
+        return {
+            name: {q: own[name][q] - far[name][q] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES}
+            for name in far
+        }
+
+    def _with_sides(
+        self, sides: Mapping[str, Boundary], scene: DiskScene, wider: float
+    ) -> dict[str, dict[str, np.ndarray]]:
+        """The motion at the monitors of a scene with other sides of the companion, so much farther away."""
+        own = build(replace(self._own, boundary=sides))
+        return self._motion(self._run(self.wider(own, self._needed, wider) if wider else own.case), self._places(scene))
+
+    def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
+        """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
+        bricks = {side: min(count, self._bricks(scene, side, wider)) for side, count in needed.items()}
+        return enlarged(scene, bricks)[0]
+
+    def _bricks(self, scene: DiskScene, side: str, wider: float) -> int:
+        """Bricks by which a side moves."""
+        return math.ceil(wider * scene.case.packing.copies[normal_axis(side)] - 1e-9)
+
+    def _run(self, case: DiskCase) -> Motions:
+        """The motion of the monitors of a companion, until bonds break with far sides."""
+        return self._until_break(self._measured(case).motions)
+
+    def _measured(self, case: DiskCase) -> Run:
+        """The run of a companion."""
+        return self.runner.run(at_step(case, self.step))
+
+
+def _named(monitor: str, number: int) -> str:
+    """The name of a monitor of a patch."""
+    return f"{monitor}.{number}"
+
+
+def needed_by(scene: DiskScene) -> dict[str, int]:
+    """By side that may move, the bricks beyond it with which nothing returns; none where no side may."""
+    try:
+        return bricks_needed(scene, movable_sides(scene.case))
+    except CaseError:
+        return {}

@@ -1,0 +1,66 @@
+"""The exact plane wave through a block of disks, which charts compare their choices with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from dembound.accuracy.history import History, Motions, along
+from dembound.accuracy.reference import Exact
+from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
+from dembound.casefile import Case
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import LAWS
+from dembound.disks.scene import build
+
+
+@dataclass(frozen=True)
+class PlaneWave(Exact):
+    """A plane wave that enters at one side of a block of disks and leaves at the opposite one.
+
+    It runs with the homogenised speed of the packing of each choice; whatever a choice has on the opposite side, the
+    wave of the solution leaves without reflection.
+    """
+
+    side: str
+    motion: Motion
+    sentence: str = "exact plane wave at the homogenised speed, leaving without reflection"
+
+    @classmethod
+    def of(cls, case: DiskCase) -> PlaneWave | None:
+        """The solution of a case; None if it is another problem."""
+        if case.hole or case.load or case.static or len(case.driving) != 1:
+            return None
+        ((side, waves),) = case.driving.items()
+        far = case.side(OPPOSITE[side])
+        if len(waves) != 1 or not far.factors or far.waves or LAWS[case.material.law].has_history:
+            return None
+        ((motion, _),) = waves.items()
+        return cls(side, motion) if all(_keeps_plane(case, side, motion)) else None
+
+    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
+        """The wave at the monitors' particles, at the same times."""
+        assert isinstance(case, DiskCase)
+        scene, axis = build(case), normal_axis(self.side)
+        speed = scene.ground.wave_speeds(axis)[0 if self.motion == "p" else 1]
+        start = float(scene.positions[scene.edges[self.side].nodes, axis].mean())
+        wave, column = case.wave[case.driving[self.side][self.motion]], axis_of_motion(self.side, self.motion)
+        found = {}
+        for name, history in recorded.items():
+            late = history.time - abs(float(history.place[axis]) - start) / speed
+            moved, moving = (along(motion(late), column) for motion in (wave.displacement, wave.velocity))
+            found[name] = History.of(history.place, history.time, moved, moving)
+        return found
+
+
+def _keeps_plane(case: DiskCase, side: str, motion: Motion) -> Iterator[bool]:
+    """Whether a plane wave stays plane, for each of the two sides along which it runs.
+
+    Free sides do so on a lattice only. Those of random packings are softer, also with rows of equal disks along them:
+    they slow the wave in a strip 20 disks high by up to 2 %.
+    """
+    across = 1 - normal_axis(side)
+    held = motion == "p" and "xy"[across] in case.motion.held
+    for lateral in ("bottom", "top") if across == 1 else ("left", "right"):
+        is_even = case.side(lateral).is_free and not case.packing.packed_under_stress
+        yield case.side(lateral).is_periodic or (held and is_even)

@@ -1,0 +1,178 @@
+"""What exact problems of cases have in common."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping
+from typing import ClassVar, Self
+
+import numpy as np
+
+from dembound.accuracy.history import History
+from dembound.boundaries.sides import SIDES
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.messages import numbered
+from dembound.casefile.types import LAWS
+from dembound.disks.scene import DiskScene
+from dembound.errors import CaseError
+from dembound.exact.solid import Solid
+from dembound.holes import Circle
+from dembound.table import Box
+
+ISOTROPY = 1e-6
+"""Relative difference of C11 − C12 and 2 C66 up to which a medium is treated as isotropic."""
+
+SAMPLES = 2000
+"""Number of times between which jumps of a wave are looked for."""
+
+JUMP = 0.01
+"""Jump over the largest value above which a wave is refused at once.
+
+Solutions do not converge with such a jump, which takes a minute to detect; with a jump of a tenth of it, as at the end
+of a measured record, Lamb's converges.
+"""
+
+BEGINNING = 1e-9
+"""Share of a run after which it has begun: a wave that jumps at t = 0 is continuous from there on."""
+
+CONTINUOUS = "the solution needs a continuous wave"
+ROUGH = f"is so rough that the solution does not converge; {CONTINUOUS}"
+
+
+class Problem(ABC):
+    """A problem with an exact solution, which a case may be."""
+
+    name: ClassVar[str]
+    """By which it is chosen."""
+    sentence: ClassVar[str]
+    """The solution in words."""
+
+    @property
+    @abstractmethod
+    def until(self) -> dict[str, float]:
+        """Time (s) up to which the solution is that of the case, of each monitor; infinite if it always is."""
+
+    @classmethod
+    @abstractmethod
+    def concerns(cls, case: DiskCase) -> bool:
+        """Whether a case has the loads of this problem."""
+
+    @classmethod
+    @abstractmethod
+    def of(cls, scene: DiskScene) -> Self:
+        """The problem that a scene is; raises CaseError, with the reasons, if it is none."""
+
+    @abstractmethod
+    def motions(self, times: np.ndarray) -> dict[str, History]:
+        """Motion of all monitors by name at times (k,) s; raises CaseError where no solution is found."""
+
+
+def solid_of(scene: DiskScene) -> Solid:
+    """The homogenised medium of a scene; raises CaseError if it is not isotropic."""
+    tensor = scene.ground.material_tensor
+    if abs(tensor[0, 0] - tensor[0, 1] - 2.0 * tensor[3, 3]) > ISOTROPY * tensor[0, 0]:
+        raise CaseError(["material: makes an anisotropic medium, which has no such solution; see kratio and fric"])
+    p_speed, s_speed = (float(np.sqrt(tensor[k, k] / scene.ground.density)) for k in (0, 3))
+    return Solid(scene.ground.density, p_speed, s_speed)
+
+
+def law_problems(case: DiskCase) -> Iterator[str]:
+    """That a case has a law other than that of a linear solid."""
+    if LAWS[case.material.law].has_history:
+        name = case.material.law
+        yield f'material.law: is "{name}", must have no history, as "elastic"; the solution is that of a linear solid'
+
+
+def has_pressure(case: DiskCase) -> bool:
+    """Whether a pressure that follows a wave acts in a hole of the case."""
+    return any(load.pressure is not None and load.wave is not None for load in case.load)
+
+
+def motion_problems(case: DiskCase) -> Iterator[str]:
+    """Held motions, and steady loads that no static stage has balanced, which move the body as well."""
+    if case.motion.held:
+        yield f"motion.held: is {list(case.motion.held)}, must be empty"
+    for place, load in numbered("load", case.load):
+        if load.wave is None and case.static is None:
+            yield f"{place}: is steady, and begins with the run; the solution is that of waves alone, add [static]"
+
+
+def places_of(scene: DiskScene) -> dict[str, np.ndarray]:
+    """Places (2,) m of the case's monitors, without those of a free-field column."""
+    return {monitor.name: scene.monitored[monitor.name] for monitor in scene.case.monitor}
+
+
+def surface_of(scene: DiskScene) -> float | None:
+    """Height (m) of the free surface; None if the ground goes on above."""
+    if scene.outside is not None:
+        surface = scene.outside.free_surface
+        return None if surface is None else surface[0]
+    top = scene.case.side("top")
+    return scene.case.size[1] if top.is_free and not top.is_artificial else None
+
+
+def hole_of(scene: DiskScene) -> Circle:
+    """The one hole of a scene; raises CaseError unless it is one circle, in linear rock that goes on around it."""
+    case = scene.case
+    problems = [*law_problems(case), *motion_problems(case)]
+    if len(case.hole) != 1 or not isinstance(case.hole[0], Circle):
+        problems.append("hole: the solution is that of one circle")
+    for side in SIDES:
+        table = case.side(side)
+        surface = side == "top" and surface_of(scene) is not None
+        if not (table.is_artificial or table.is_outside or surface):
+            problems.append(f'boundary.{side}.type: is "{table.type}", must be a side beyond which the rock goes on')
+    for place, each in numbered("hole", case.hole):
+        reached = [
+            side for side, is_beyond in zip(SIDES, _beyond(each.box, case.packing.box), strict=True) if is_beyond
+        ]
+        problems += [f"{place}: reaches boundary.{side}; the solution is that of a closed circle" for side in reached]
+    if problems:
+        raise CaseError(problems)
+    hole = case.hole[0]
+    assert isinstance(hole, Circle)
+    return hole
+
+
+def _beyond(inner: Box, outer: Box) -> tuple[bool, bool, bool, bool]:
+    """Whether a rectangle reaches the left, right, bottom and top of another one."""
+    return inner[0] <= outer[0], inner[2] >= outer[2], inner[1] <= outer[1], inner[3] >= outer[3]
+
+
+def echoes(
+    places: Mapping[str, np.ndarray], hole: Circle, surface: float | None, speed: float, begin: float
+) -> dict[str, float]:
+    """When (s) waves that leave a hole's wall at a time come back from the free surface at each of places (2,) m."""
+    if surface is None:
+        return dict.fromkeys(places, float("inf"))
+    (x, y), found = hole.centre, {}
+    for name, place in places.items():
+        path = float(np.hypot(place[0] - x, 2.0 * surface - place[1] - y)) - hole.radius
+        found[name] = begin + path / speed
+    return found
+
+
+def must_be_continuous(name: str, velocity: Callable[[np.ndarray], np.ndarray], begin: float, end: float) -> None:
+    """Raise CaseError if the wave of a name jumps between two times, s."""
+    when, step = _largest_jump(velocity, begin, end)
+    if step > JUMP:
+        raise CaseError([f"wave.{name}: has a jump at {when:.3g} s; {CONTINUOUS}"])
+
+
+def _largest_jump(velocity: Callable[[np.ndarray], np.ndarray], begin: float, end: float) -> tuple[float, float]:
+    """Time (s) of the largest jump of a wave between two times (s), and its size over the largest velocity.
+
+    Every interval between samples is halved repeatedly, and the half with the larger change is kept. The change of a
+    continuous wave decreases with the width, that of a jump does not. Two opposite jumps between two samples are not
+    detected.
+    """
+    times = np.linspace(begin, max(begin, end), SAMPLES)
+    low, high = times[:-1], times[1:]
+    largest = np.abs(velocity(times)).max()
+    for _ in range(30):  # to 1e-9 of an interval
+        middle = 0.5 * (low + high)
+        before, after = (np.abs(velocity(middle) - velocity(edge)) for edge in (low, high))
+        low, high = np.where(before > after, low, middle), np.where(before > after, middle, high)
+    steps = np.abs(velocity(high) - velocity(low))
+    k = int(steps.argmax())
+    return float(high[k]), float(steps[k] / largest) if largest > 0.0 else 0.0

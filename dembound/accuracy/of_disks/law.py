@@ -1,0 +1,182 @@
+"""The elastic law in place of one with a history, on lattices where nothing opens, slides or breaks.
+
+Whether it does is found with a companion of larger disks under the elastic law, whose load factor is the multiple of
+these waves up to which it holds. In two dimensions the stress under a point force falls as 1/r, and that at a sharp
+corner more slowly, so that the largest stress between disks grows at most as 1/D: with disks smaller by a factor
+contacts and bonds are at most so many times nearer to their limits. At rest this does not hold beside a hole, where
+stress at rest is higher the smaller the disks are; nor on random packings, whose contacts are all loaded differently.
+
+A law whose contacts follow the motion (`geometry = "updated"`) differs from the elastic one all the same, if a body has
+come to rest under a stress p: the stress turns with the disks. S waves then come earlier or later by p/(2ρc_s²) of
+their time, and motion near a load differs by p/ρc_p² or so (docs/error_bound.md).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from dembound.accuracy.cause import Cause
+from dembound.accuracy.delays import error_of_delay
+from dembound.accuracy.differences import keeps
+from dembound.accuracy.history import Motions
+from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.pair import ratios
+from dembound.accuracy.runner import Runner, at_step
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.material import HISTORY_KEYS, STRENGTH_KEYS
+from dembound.casefile.types import LAWS
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.sources import sources_of
+from dembound.disks.stability import choose_step
+from dembound.disks.stepping.load_factor import LOAD_FACTOR
+from dembound.errors import CaseError, DemboundError
+from dembound.kinds import with_changes
+from dembound.motion.kind import Plan
+from dembound.motion.paths import Source
+from dembound.packings.square import Square
+from dembound.running import plan
+from dembound.table import EVERYWHERE
+
+RESERVE = 2.0
+"""By how much the elastic law must hold with disks of another size: a region of a load as wide as a disk contains one
+row of them, or two."""
+
+NEAR_LOAD = 1.3
+"""Largest part of p/ρc_p² by which velocities and displacements in rock near a load were measured to differ, apart from
+what comes later; at a surface both together were too small by a factor of 1.3."""
+
+EQUAL = 1e-9
+"""Relative difference of diameters that count as equal."""
+
+
+@dataclass(frozen=True)
+class ElasticTwin:
+    """A case under the elastic law.
+
+    planned : its plan. factor : up to how many times the waves it holds with disks of `diameter` (m); infinite if under
+    any. stress : Pa, at rest, that would turn with the disks.
+    """
+
+    case: DiskCase
+    planned: Plan
+    factor: float
+    diameter: float
+    stress: float
+
+    def holds(self, diameter: float) -> bool:
+        """Whether the law holds with disks of a diameter (m), with a reserve if none of that size have been run."""
+        if math.isclose(diameter, self.diameter, rel_tol=EQUAL):
+            return self.factor > 1.0
+        return self.factor * min(1.0, diameter / self.diameter) > RESERVE
+
+    def causes(self, scene: DiskScene, recorded: Motions) -> list[Cause]:
+        """The error by the law, if there is a stress at rest. scene : of a choice; recorded : its motion."""
+        if self.stress == 0.0:
+            return []
+        ground, sources = scene.ground, sources_of(scene.case, scene.ground)
+        p, s = (np.nanmin([ground.wave_speeds(axis)[kind] for axis in (0, 1)]) for kind in (0, 1))
+        near, slower = NEAR_LOAD * self.stress / (ground.density * p**2), self.stress / (2.0 * ground.density * s**2)
+        errors: dict[str, dict[str, np.ndarray | float]] = {}
+        for name, own in recorded.items():
+            path = max((_way(each, own.place, scene.case.size) for each in sources), default=0.0)
+            delay = partial(np.full_like, fill_value=slower * path / s)
+            parts = error_of_delay(own.time, own.values["velocity"], delay)
+            late = Cause("", "", {name: dict(zip(("velocity", "displacement"), parts, strict=True))})
+            errors[name] = {quantity: near + late.share(name, quantity, own) for quantity in late.errors[name]}
+        return [Cause("law", "by the stress at rest, which does not turn with the disks", errors)]
+
+    @property
+    def words(self) -> str:
+        """The law in words."""
+        if math.isinf(self.factor):
+            return "the elastic law, which always holds"
+        size = f"with disks of {self.diameter:.4g} m"
+        return f"the elastic law, which holds up to {self.factor:.3g} times these waves {size}"
+
+
+def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str], runner: Runner) -> ElasticTwin | None:
+    """The case under the elastic law if this holds with its own disks; None if not, or if it is not known.
+
+    planned : of the case. most : particle-steps that the companion should take. kept : keys that do not change.
+    """
+    if not _may_be_elastic(case):
+        return None
+    given = {key: value for key, value in case.material.given().items() if key not in HISTORY_KEYS}
+    strong = {"material": given | {"law": "elastic"}, "output.load_factor": True}
+    weak = {key: value for key, value in given.items() if key not in (*STRENGTH_KEYS, "pb_fa")} | {"law": "elastic"}
+    try:
+        watched = with_changes(case, strong)
+        twins = [with_changes(case, {"material": weak} | change) for change in _without_stage(case)]
+    except CaseError:  # a load that never ends, without a body at rest under it; local damping
+        return None
+    assert isinstance(watched, DiskCase)
+    twin = next((each for each in twins if keeps(case, each, kept)), None)
+    if not isinstance(twin, DiskCase):
+        return None
+    try:
+        factor, diameter = _factor(watched, planned, most, runner)
+    except DemboundError:  # no companion can run
+        return None
+    found = ElasticTwin(twin, plan(twin), factor, diameter, _turning_stress(case))
+    return found if found.holds(_diameter(planned)) else None
+
+
+def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
+    """The way (m) of waves from a source to a place; through the scene if they enter on all sides."""
+    return math.hypot(*size) if source.box == EVERYWHERE else float(source.distance(place[None])[0])
+
+
+def _may_be_elastic(case: DiskCase) -> bool:
+    """Whether the law has a history, of whose limits something is known with disks of other sizes."""
+    if not LAWS[case.material.law].has_history or not case.material.elastic_start:
+        return False
+    pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
+    return isinstance(case.packing, Square) and not (case.static is not None and (case.hole or pushed))
+
+
+def _without_stage(case: DiskCase) -> list[dict[str, None]]:
+    """Changes that leave out a static stage, if that is possible, and none.
+
+    A given stress does nothing to the motion of an elastic body about its rest; steady loads have to be balanced.
+    """
+    is_steady = any(load.wave is None for load in case.load)
+    return [{}] if case.static is None or is_steady else [{"static": None}, {}]
+
+
+def _turning_stress(case: DiskCase) -> float:
+    """The largest stress (Pa) at rest that contacts turn with them, of loads on the edges and of the weight."""
+    if case.static is None or case.material.geometry == "reference":
+        return 0.0
+    weight = np.zeros(2)
+    for load in case.load:
+        if load.wave is None and load.acceleration is not None:
+            weight += np.abs(load.acceleration)
+    given = max(map(abs, case.static.stress or (0.0,)))
+    return float(given + case.material.density * (weight @ case.size))
+
+
+def _diameter(planned: Plan) -> float:
+    """Diameter (m) of the disks of a plan."""
+    assert isinstance(planned.scene, DiskScene)
+    return planned.scene.ground.brick.mean_diameter
+
+
+def _factor(case: DiskCase, planned: Plan, most: float, runner: Runner) -> tuple[float, float]:
+    """The load factor, and the diameter (m) of the disks with which it was found: as small as can be afforded."""
+    own, scene = _diameter(planned), planned.scene
+    assert isinstance(scene, DiskScene)
+    quiet = replace(case, output=case.output.model_copy(update={"snapshots": 0}))
+    for ratio in (1.0, *ratios(case, scene)):
+        if ratio > 1.0:
+            larger = coarser(case, scene, planned.time_step, ratio * own).case
+            quiet = replace(larger, output=larger.output.model_copy(update={"load_factor": True}))
+        built = build(quiet)
+        step = choose_step(built)[0]
+        if built.disk_count * case.run.duration / step <= most:
+            break
+    return runner.run(at_step(quiet, step)).finding(LOAD_FACTOR), built.ground.brick.mean_diameter

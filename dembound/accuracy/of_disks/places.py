@@ -1,0 +1,81 @@
+"""Places between disks and of loads: motion between the disks of a lattice, and where loads start waves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dembound.casefile.disks.load import Load
+from dembound.disks.loads import forces_of
+from dembound.disks.scene import DiskScene
+from dembound.nearest import nearest
+
+NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
+"""Columns and rows of a patch, counted from its middle."""
+
+FARTHEST = 2.0
+"""Cells from the middle of a patch up to which its polynomials are followed: one beyond its disks."""
+
+
+def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
+    """Places (9, 2) m of the patch of disks whose middle is nearest to a place (2,) m, in the order of `NINE`.
+
+    Only the nearest disk (1, 2) where no nine stand together around it, such as in bodies two disks wide.
+    """
+    first = 0 if scene.seam is None else scene.seam.count
+    disks = scene.positions[first : scene.disk_count]
+    cell = scene.ground.brick.mean_diameter
+    own = disks[nearest(disks, place[None])[0]]
+    cells = np.rint((disks - own) / cell).astype(int)
+    present = {(int(x), int(y)) for x, y in cells[(np.abs(cells) <= 2).all(axis=1)]}
+    middles = [shift for shift in NINE if all((int(x), int(y)) in present for x, y in NINE + shift)]
+    if not middles:
+        return np.asarray(own[None])
+    middle = middles[nearest(own + cell * np.array(middles), place[None])[0]]
+    return np.asarray(own + cell * (middle + NINE))
+
+
+def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Weights of the motion of the disks of a patch (9, 2) m in that at a place (2,) m: exact for quadratic motion.
+
+    Lagrange's polynomials through three places along x, times those along y. Beyond `FARTHEST` they are those there, as
+    in a continuum beyond the disks.
+    """
+    if len(patch) == 1:
+        return np.ones(1)
+    away = np.clip((place - patch[4]) / (patch[-1] - patch[4]), -FARTHEST, FARTHEST)
+    x, y = ((-s * (1.0 - s) / 2.0, 1.0 - s * s, s * (1.0 + s) / 2.0) for s in away)
+    return np.outer(x, y).ravel()
+
+
+def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
+    """The middle (2,) m of the places where loads start waves, by force; None if waves enter through sides."""
+    found = middles_of_loads(scene)
+    return np.average([place for place, _ in found], axis=0, weights=[size for _, size in found]) if found else None
+
+
+def middles_of_loads(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
+    """The middle (2,) m of each load that starts waves, and its force (N); none if they enter through sides.
+
+    A load without a wave starts them by its sudden beginning, but not if a static stage comes before.
+    """
+    case = scene.case
+    if case.driving and not any(load.wave for load in case.load):
+        return []
+    found: list[tuple[np.ndarray, float]] = []
+    for load in case.load:
+        if load.wave is None and case.static is not None:
+            continue
+        if load.pressure is not None:
+            left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)
+            middle = np.array([0.5 * (left + right), 0.5 * (bottom + top)])
+            found.append((middle, abs(load.pressure) * (right - left + top - bottom)))
+        elif not load.is_everywhere:
+            found.append(middle_of_forces(load, scene))
+    return found
+
+
+def middle_of_forces(load: Load, scene: DiskScene) -> tuple[np.ndarray, float]:
+    """The middle (2,) m of the disks on which a load acts, by force, and the sum of these forces, N."""
+    nodes, forces = forces_of(load, scene)
+    strength = np.hypot(*forces[:, :2].T)
+    return np.average(scene.positions[nodes], axis=0, weights=strength), float(strength.sum())

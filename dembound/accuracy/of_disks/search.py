@@ -1,0 +1,265 @@
+"""The cheapest choice of disks and sides that keeps the error of all monitors within a bound.
+
+Choices are tried in the order of their predicted cost. None of them is run: what their sides send back is found with
+companions of larger disks, the rest by formulas.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import count
+
+import numpy as np
+
+from dembound.accuracy.best import Best
+from dembound.accuracy.budget import Expected, expected
+from dembound.accuracy.cause import SIDES, Cause
+from dembound.accuracy.choice import Choice
+from dembound.accuracy.end import ended_earlier
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.expected import of_ground, of_sides
+from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
+from dembound.accuracy.of_disks.options import (
+    FACTORS,
+    DiskOption,
+    cost_of,
+    disk_options,
+    may_change_diameter,
+    with_diameter,
+)
+from dembound.accuracy.of_disks.pair import sides_of_pair
+from dembound.accuracy.runner import BUDGET, SHORT, Runner
+from dembound.casefile.disks import DiskCase
+from dembound.disks.scene import DiskScene
+from dembound.errors import CaseError, DemboundError
+from dembound.motion.kind import Plan
+from dembound.motion.silence import monitored
+from dembound.running import plan
+
+SAFETY = 1.4
+"""Expected errors are below the bound by this factor: above 0.2 % true ones are at most 1.18 times these, below it they
+were up to 2.2 times (docs/error_bound.md)."""
+
+COSTLIEST = 64.0
+"""Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
+
+
+def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
+    """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
+
+    Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
+    the companions.
+    """
+    _require_known(case)
+    planned = plan(case)
+    assert isinstance(planned.scene, DiskScene)
+    most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
+    runner = Runner()
+    twin = elastic_twin(case, planned, most, kept, runner)
+    if twin is None:
+        return _best(case, planned, bound, kept, most, runner)
+    found = _best(twin.case, twin.planned, bound, kept, most, runner, twin)
+    own_cost = found.own_cost * planned.steps / twin.planned.steps  # steps of the given law cost as much: nothing opens
+    choice = Choice.of(case, found.case, f"{twin.words}; {found.words}")
+    found = replace(found, given=case, choice=choice, own_cost=own_cost)
+    if found.holds or twin.stress == 0.0:
+        return found
+    other = _best(case, planned, bound, kept, most, runner)
+    other = replace(other, cost=other.cost * own_cost / other.own_cost, own_cost=own_cost)
+    return min(found, other, key=lambda each: each.error)
+
+
+def _best(
+    case: DiskCase,
+    planned: Plan,
+    bound: float,
+    kept: Sequence[str],
+    most: float,
+    runner: Runner,
+    twin: ElasticTwin | None = None,
+) -> Best:
+    """The best choice under the law of a case, planned; twin : the same, if it is not that of the given case."""
+    companions = Companions(case, planned.scene, planned.time_step, most, runner)  # type: ignore[arg-type]
+    moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
+    if not _is_reached(planned) or not any(map(np.any, moved)):
+        raise CaseError(["--error: nothing moves at the monitors"], case.name)
+    search = _Search(companions, bound, kept, cost_of(planned), twin)
+    best = search.best()
+    words, error, cost = best.option.words, best.error, best.option.cost
+    breaks = companions.first_break
+    if breaks < case.run.duration:
+        words += f"; the error is that before bonds break, after about {breaks:.3g} s"
+    choice = Choice.of(case, best.option.case, words)
+    found = Best(case, choice, error.worst, error.by, bound, cost, search.own_cost, search.tried, SAFETY)
+    if breaks < case.run.duration:
+        return found
+    return ended_earlier(found, best.recorded, best.motion, best.causes, kept)
+
+
+def _require_known(case: DiskCase) -> None:
+    """Raise CaseError where errors, or the body itself, depend on what is not known for other disks and sides."""
+    problems = []
+    if case.static is not None and case.static.from_ is not None:
+        problems.append("static.from: is the body of the given disks and sides; must be left out with --error")
+    if not case.driving and case.incident is None:
+        reason = "starts waves everywhere, so that their delay by the disks is not known; --error needs a place"
+        problems += [
+            f"load.{load.name}: {reason}" for load in case.load if load.is_everywhere and load.wave is not None
+        ]
+    if problems:
+        raise CaseError(problems, case.name)
+
+
+def _is_reached(planned: Plan) -> bool:
+    """Whether the fastest waves come to any monitor within the run."""
+    scene, duration = planned.scene, planned.scene.case.run.duration
+    front, places = planned.kind.front(scene, planned.time_step), monitored(scene)
+    return any(
+        float(source.distance(places).min()) <= front.reach(duration - source.start)
+        for source in planned.kind.sources(scene)
+    )
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A choice with its error; recorded : the motion without it, by monitor; causes : of the error."""
+
+    option: DiskOption
+    recorded: Motions
+    causes: list[Cause]
+
+    @cached_property
+    def error(self) -> Expected:
+        """The error of all causes."""
+        return expected(self.causes, self.recorded)
+
+    @property
+    def motion(self) -> dict[str, History]:
+        """The motion with what the sides add to it."""
+        sides = [cause.errors for cause in self.causes if cause.name == SIDES]
+        return {
+            name: replace(own, values={q: own.values[q] + sum(errors[name][q] for errors in sides) for q in own.values})
+            for name, own in self.recorded.items()
+        }
+
+
+@dataclass
+class _Search:
+    """The search for a choice.
+
+    twin : the case, if its law is not that given. of_sides : by arrangement and distance the largest error of its
+    sides alone. of_disks : by factor of the diameter the error of its disks alone.
+    """
+
+    companions: Companions
+    bound: float
+    kept: Sequence[str]
+    own_cost: float
+    twin: ElasticTwin | None
+    tried: int = 0
+    of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
+    of_disks: dict[float, float] = field(default_factory=dict)
+
+    def best(self) -> _Found:
+        """The cheapest choice that keeps the bound, or the one with the smallest error."""
+        found: list[_Found] = []
+        left: list[DiskOption] = []
+        for option in self._by_cost():
+            if not self._keeps(self.of_sides.get(_sides(option), 0.0)):
+                left.append(option)
+                continue
+            found += self._with_error(option)
+            if found and self._keeps(found[-1].error.worst):
+                return found[-1]
+        return self._most_accurate(found, left)
+
+    def _most_accurate(self, found: list[_Found], left: list[DiskOption]) -> _Found:
+        """The choice with the smallest error of those found and those left out, as none keeps the bound.
+
+        These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
+        below the smallest one found.
+        """
+        for factor, error in self.of_disks.items():
+            if not self._keeps(error):
+                left += [each for each in self._of(factor) if each.cost <= COSTLIEST * self.own_cost]
+        while left:
+            left.sort(key=self._alone)
+            if found and self._alone(left[0]) >= min(each.error.worst for each in found):
+                break
+            found += self._with_error(left.pop(0))
+        if not found:
+            raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
+        return min(found, key=lambda each: each.error.worst)
+
+    def _alone(self, option: DiskOption) -> float:
+        """The larger one of the errors that sides and disks of a choice are known to have alone."""
+        return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(option.factor, 0.0))
+
+    def _keeps(self, error: float) -> bool:
+        """Whether an error is within the bound, with its reserve."""
+        return SAFETY * error <= self.bound
+
+    def _by_cost(self) -> Iterator[DiskOption]:
+        """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
+        factors = list(FACTORS) if may_change_diameter(self.companions.case, self.kept) else [1.0]
+        number, least = count(), 0.0
+        waiting: list[tuple[float, int, DiskOption | float]] = [(0.0, next(number), factors.pop(0))]
+        while waiting:
+            cost, _, item = heapq.heappop(waiting)
+            if cost > COSTLIEST * self.own_cost:
+                return
+            if isinstance(item, DiskOption):
+                yield item
+                continue
+            made = self._of(item) if self._are_small_enough(item) else []
+            for each in made:
+                heapq.heappush(waiting, (each.cost, next(number), each))
+            if made:
+                least = min(each.cost for each in made)
+            if factors:
+                heapq.heappush(waiting, (least, next(number), factors.pop(0)))
+
+    def _of(self, factor: float) -> list[DiskOption]:
+        """Choices with disks of one diameter."""
+        plain = self._with_diameter(factor)
+        return [] if plain is None else list(disk_options(self.companions, plain, factor, self.bound, self.kept))
+
+    def _with_diameter(self, factor: float) -> Plan | None:
+        """The case with disks of another diameter, planned; None if it may not have them."""
+        own = self.companions.scene.ground.brick.mean_diameter
+        may_be = self.twin is None or self.twin.holds(factor * own)
+        return with_diameter(self.companions, factor) if may_be else None
+
+    def _are_small_enough(self, factor: float) -> bool:
+        """Whether the error of disks of one diameter leaves some of the bound to sides."""
+        plain = self._with_diameter(factor)
+        if plain is None:
+            return False
+        assert isinstance(plain.scene, DiskScene)
+        disks, _ = of_ground(self.companions, plain.scene, plain.time_step)
+        self.of_disks[factor] = expected(disks, self.companions.recorded(plain.scene)).worst
+        return self._keeps(self.of_disks[factor])
+
+    def _with_error(self, option: DiskOption) -> list[_Found]:
+        """A choice with its error; nothing if a companion of it cannot run."""
+        scene, step = option.scene, option.planned.time_step
+        recorded = self.companions.recorded(scene)
+        self.tried += 1
+        try:
+            disks, others = of_ground(self.companions, scene, step)
+            sides = [of_sides(self.companions, scene, step, option.wider)] if sides_of_pair(scene.case) else []
+        except DemboundError:
+            return []
+        alone = expected(sides, recorded).worst
+        self.of_sides[_sides(option)] = max(alone, self.of_sides.get(_sides(option), 0.0))
+        law = [] if self.twin is None else self.twin.causes(scene, recorded)
+        return [_Found(option, recorded, [*disks, *others, *sides, *law])]
+
+
+def _sides(option: DiskOption) -> tuple[str, float]:
+    """What the sides of a choice are, and how much farther away."""
+    return option.arrangement.name, option.wider

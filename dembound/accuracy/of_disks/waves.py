@@ -1,0 +1,70 @@
+"""How late plane waves come on the disks of a packing, by the exact dispersion of the square lattice of its material.
+
+P waves along an axis of the lattice are those of a row of masses, c(q) = c(1 − (qD)²/24). S waves also turn the disks:
+along an axis they are a little faster the shorter they are, along the diagonal slower. A random packing is taken to
+disperse like the lattice of the same material and mean diameter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dembound.accuracy.delays import Delay
+from dembound.boundaries import Motion
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.wave_front import plane_wave_frequencies
+from dembound.packings.square import Square
+
+LONG, SHORT, PHASES = 1e-3, 0.3, 1000
+"""Wave numbers, in radians per disk, of long waves and of those by which directions are compared; number of them."""
+
+Direction = tuple[float, float]
+
+AXES: Sequence[Direction] = ((1.0, 0.0), (0.0, 1.0))
+"""Directions along the axes x and y."""
+
+DIAGONAL: Direction = (math.sqrt(0.5), math.sqrt(0.5))
+
+
+def delay_of(
+    ground: PackedMaterial, motion: Motion, directions: Sequence[Direction], path: float, speed: float, step: float
+) -> Delay:
+    """Delay (s) of waves of given angular frequencies (rad/s) over a path (m), nan above those of the shortest wave.
+
+    directions : unit vectors, of which that with the largest delay is taken. speed : of long waves, m/s. step : of the
+    run, s; 0 for waves that are not stepped in time.
+    """
+    lattice = replace(ground, brick=Square(bricks=(1, 1), radius=0.5 * ground.brick.mean_diameter).pack(1.0))
+    phase = np.concatenate([[LONG, SHORT], np.linspace(LONG, math.pi, PHASES)[1:]])
+    frequency, slowness = max(
+        (_slowness(lattice, motion, direction, phase, step) for direction in directions),
+        key=lambda found: abs(found[1][1] - 1.0),
+    )
+    frequency, slowness = np.delete(frequency, 1), np.delete(slowness, 1)
+    rising = np.concatenate([[True], np.diff(np.maximum.accumulate(frequency)) > 0.0])
+    # the packing's own long waves have another speed than the lattice's, and as many disks in a wave
+    scale = speed / (frequency[0] / phase[0] * ground.brick.mean_diameter)
+
+    def delay(omega: np.ndarray) -> np.ndarray:
+        found = np.interp(omega, scale * frequency[rising], slowness[rising], right=np.nan)
+        return np.asarray(path / speed * (found - 1.0))
+
+    return delay
+
+
+def _slowness(
+    lattice: PackedMaterial, motion: Motion, direction: Direction, phase: np.ndarray, step: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Angular frequencies (k,) rad/s of plane waves, and their slowness over that of long ones."""
+    found = plane_wave_frequencies(lattice, np.array(direction), phase)
+    moving = sum(axis not in lattice.held for axis in (0, 1))
+    frequency = found[:, 1 if motion == "p" and moving == 2 else 0]
+    if step > 0.0:
+        sine = 0.5 * step * frequency
+        frequency = np.where(sine < 1.0, 2.0 / step * np.arcsin(np.minimum(sine, 1.0)), np.nan)
+    slowness = phase / frequency
+    return frequency, slowness / slowness[0]

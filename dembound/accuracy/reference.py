@@ -1,0 +1,144 @@
+"""Errors of choices: the histories of their monitors beside those of a reference."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+from dembound.accuracy.choice import Choice
+from dembound.accuracy.history import History, Motions, loud_of
+from dembound.accuracy.runner import Run
+from dembound.casefile import Case
+from dembound.errors import CaseError
+from dembound.results.compare import distance, on_common_clock, relative_errors
+from dembound.results.histories import Quantity
+from dembound.results.reader import COMPONENTS
+
+Component = Literal["x", "y"]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is compared: a quantity, its component (None: the largest in the reference), a monitor (None: all)."""
+
+    quantity: Quantity = "velocity"
+    component: Component | None = None
+    monitor: str | None = None
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What errors are measured against.
+
+    name : "exact", "extended", "finer" or "finest"; sentence : it in words. motions : histories for a choice and its
+    run. until : s, time up to which histories are compared. findings : its numbers by name. own : numbers of the
+    choices that are the reference itself. cautions : what these errors do not include, in words.
+    """
+
+    name: str
+    sentence: str
+    motions: Callable[[Choice, Run], Motions]
+    until: float = math.inf
+    findings: Mapping[str, float] = field(default_factory=dict)
+    own: Sequence[int] = ()
+    cautions: Sequence[str] = ()
+
+
+class Exact(ABC):
+    """An exact solution of a case.
+
+    Attributes
+    ----------
+    sentence : the solution in words, for pictures.
+    until : s, time up to which it is valid. findings : exact numbers by name, see `Kind.findings`.
+    """
+
+    sentence: str
+    until: float = math.inf
+    findings: Mapping[str, float] = {}
+
+    @abstractmethod
+    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
+        """The exact motion at the recorded positions; case : that of the choice they were recorded for."""
+
+
+class FinerRun(Protocol):
+    """A run with a finer grid than those of all choices: its case, and its spacing, m."""
+
+    @property
+    def case(self) -> Case:
+        """The case that is run."""
+
+    @property
+    def spacing(self) -> float:
+        """Distance of its nodes, m."""
+
+    def motions(self, run: Run, choice: Run) -> dict[str, History]:
+        """Histories at the monitors of a choice; run : of this case, or of that with ends farther away."""
+
+
+@dataclass(frozen=True)
+class MonitorError:
+    """The error at one monitor.
+
+    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared,
+    0 if it is of rounding only.
+    """
+
+    monitor: str
+    component: str
+    rms: float
+    peak: float
+    apart: float
+
+
+def errors(choice: Choice, outcome: Run, reference: Reference, wanted: Wanted) -> list[MonitorError]:
+    """The errors of a choice at all monitors that are not quiet in the reference, the largest RMS first.
+
+    Raises CaseError for a monitor that does not exist and if the reference does not move until histories end.
+    """
+    recorded, expected = (
+        {name: history.until(reference.until) for name, history in each.items()}
+        for each in (outcome.motions, reference.motions(choice, outcome))
+    )
+    names = _monitors(recorded, expected, wanted)
+    series = {name: expected[name].values[wanted.quantity] for name in names}
+    columns = {name: _column(values, wanted) for name, values in series.items()}
+    peaks = {name: float(np.abs(values[:, columns[name]]).max(initial=0.0)) for name, values in series.items()}
+    if not max(peaks.values()) > 0.0:
+        raise CaseError([f"monitor: the {wanted.quantity} is zero in the reference ({reference.sentence})"])
+    found = [_error(name, recorded[name], expected[name], columns[name], wanted) for name in loud_of(peaks)]
+    return sorted(found, key=lambda error: -error.rms)
+
+
+def _monitors(found: Motions, expected: Motions, wanted: Wanted) -> list[str]:
+    """The names of the monitors to compare."""
+    names = [name for name in found if name in expected]
+    if wanted.monitor is not None and wanted.monitor not in names:
+        raise CaseError([f"--monitor: is {wanted.monitor}, must be one of {', '.join(names)}"])
+    return names if wanted.monitor is None else [wanted.monitor]
+
+
+def _column(values: np.ndarray, wanted: Wanted) -> int:
+    """The column to compare of values (k, c)."""
+    if values.shape[1] == 1:
+        return 0
+    if wanted.component is not None:
+        return COMPONENTS.index(wanted.component)
+    return int(np.argmax(np.abs(values[:, :2]).max(axis=0, initial=0.0)))
+
+
+def _error(name: str, found: History, expected: History, column: int, wanted: Wanted) -> MonitorError:
+    """The error at a monitor, at the times of the history with fewer samples, so that the finer one is interpolated."""
+    mine, theirs = ((history.time, history.values[wanted.quantity][:, column]) for history in (found, expected))
+    if len(theirs[0]) > len(mine[0]):
+        right, left = on_common_clock(*theirs, *mine)
+    else:
+        left, right = on_common_clock(*mine, *theirs)
+    rms, peak = relative_errors(left, right)
+    apart = distance(found.place, expected.place)
+    component = "stress" if wanted.quantity == "stress" else COMPONENTS[column]
+    return MonitorError(name, component, rms, peak, apart)

@@ -1,0 +1,183 @@
+"""Runs of choices and of companions: what they cost, and what their monitors record.
+
+A companion is a run beside that of a case, with other sides, disks or seeds, that shows what these do. No files of
+results are written.
+"""
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+
+from dembound.accuracy.choice import AnyCase, digest
+from dembound.accuracy.history import History, Motions
+from dembound.casefile import Case
+from dembound.motion.clock import Clock
+from dembound.motion.kind import Finding, Plan
+from dembound.motion.simulation import Simulation
+from dembound.motion.trackers import Records
+from dembound.running import Progress, Reports, plan, simulation_of
+from dembound.table import Box
+
+STEP_AND_END = ("time_step", "safety", "courant", "until", "silent_level", "silent_for")
+"""Keys of ``[run]`` that a companion with a given step and duration does not have."""
+
+BUDGET, SHORT = 0.1, 5e7
+"""Share of the work of a run that its estimate may take by default, and work that it may take in any case.
+
+That is the work of less than a second: short runs have fine companions, too.
+"""
+
+
+@dataclass
+class Run:
+    """The results of a run; where a case is run several times, of the first run except for the costs.
+
+    Attributes
+    ----------
+    failure : why it has no results; empty otherwise.
+    time_step, step_limit (s), steps : of the run. count : number of nodes that are stepped.
+    work : in the unit of its kind of body. threads : of the steps.
+    motions, findings : by name.
+    cpu, wall : s, of every timed run: CPU time of all threads while stepping, and time of the whole run.
+    """
+
+    failure: str = ""
+    time_step: float = 0.0
+    step_limit: float = 0.0
+    steps: int = 0
+    count: int = 0
+    work: int = 0
+    threads: int = 1
+    motions: Motions = field(default_factory=dict)
+    findings: Mapping[str, Finding] = field(default_factory=dict)
+    cpu: list[float] = field(default_factory=list)
+    wall: list[float] = field(default_factory=list)
+
+    def finding(self, name: str) -> float:
+        """A number that the run has found, such as the time (s) of its first break; infinite if it has not."""
+        found = self.findings.get(name)
+        return math.inf if found is None else found.value
+
+
+class Kept(Protocol):
+    """Runs by the digest of their case."""
+
+    def get(self, key: str) -> Run | None:
+        """The run of the case with this digest; None if there is none."""
+
+    def add(self, key: str, run: Run) -> None:
+        """Keep the run of a case."""
+
+
+class InMemory:
+    """Runs that are kept as long as this object."""
+
+    def __init__(self) -> None:
+        self._runs: dict[str, Run] = {}
+
+    def get(self, key: str) -> Run | None:
+        """The run of the case with this digest; None if there is none."""
+        return self._runs.get(key)
+
+    def add(self, key: str, run: Run) -> None:
+        """Keep the run of a case."""
+        self._runs[key] = run
+
+
+Shown = Callable[[str], AbstractContextManager[Progress]]
+"""Returns the progress of a run, given its name."""
+
+
+class Runner:
+    """Runs cases, each once.
+
+    Attributes
+    ----------
+    work : of all runs that it has made, in the unit of their kind of body.
+    """
+
+    def __init__(self, kept: Kept | None = None, shown: Shown = lambda name: nullcontext(Progress())) -> None:
+        self.work = 0
+        self._kept, self._shown = kept or InMemory(), shown
+
+    def run(self, case: Case, name: str = "", inside: Box | None = None) -> Run:
+        """The run of a case, without costs unless they are kept; name, inside : see `Shown` and `measure`.
+
+        Raises the errors of `measure`.
+        """
+        key = digest(case)
+        if (found := self._kept.get(key)) is None:
+            with self._shown(name) as progress:
+                found, _, _ = measure(case, progress, inside=inside)
+            self._kept.add(key, found)
+            self.work += found.work
+        return found
+
+
+def at_step(case: AnyCase, step: float) -> AnyCase:
+    """The case with a given time step, s."""
+    return replace(case, run=case.run.model_copy(update={"time_step": step}))
+
+
+def measure(
+    case: Case, progress: Progress, watched: bool = True, inside: Box | None = None
+) -> tuple[Run, float, float]:
+    """Run a case; returns its results without costs, CPU time while stepping and time of the whole run, s.
+
+    The whole run is building, settling and stepping, without files and pictures. Times do not include compiling.
+    watched : whether the energy ledger detects runs that gain energy; it interrupts the stepping a few hundred times,
+    which takes longer than all steps of a short bar. inside : the part of the scene in which findings are looked for.
+
+    Raises the errors of `running.plan` and of runs.
+    """
+    wall, cpu = Clock(), Clock(time.process_time)
+    with wall.with_compiling(), wall.of("whole"):
+        planned = plan(case)
+        beginning = planned.kind.begin(planned.stepped, planned.time_step, progress.settling)
+        simulation, ledger = simulation_of(planned, beginning, cpu)
+        records = Records()
+        simulation.track(records, *([ledger] if watched else []), Reports(progress, planned.steps))
+        simulation.track(*planned.kind.trackers(simulation))
+        with cpu.with_compiling():
+            simulation.run(planned.steps)
+    return _run_of(planned, simulation, records, inside), cpu.seconds["step"], wall.seconds["whole"]
+
+
+def _run_of(planned: Plan, simulation: Simulation, records: Records, inside: Box | None) -> Run:
+    """The results of a run that is over."""
+    scene, kind = planned.scene, planned.kind
+    return Run(
+        time_step=planned.time_step,
+        step_limit=planned.step_limit,
+        steps=planned.steps,
+        count=simulation.scene.count,
+        work=kind.work(simulation),
+        threads=simulation.scene.threads,
+        motions=_motions(planned, records),
+        findings=kind.findings(scene, simulation, inside),
+    )
+
+
+def _motions(planned: Plan, records: Records) -> dict[str, History]:
+    """The records of the monitors, at the interval of the case's histories."""
+    scene, step = planned.scene, planned.time_step
+    stride = max(1, round(scene.case.output.history_interval / step))
+    record = np.concatenate(records.records)[::stride]
+    times = stride * step * np.arange(len(record))
+    motion = planned.stepped.observed(record, times)
+    return {
+        name: History.of(
+            place,
+            times,
+            motion[:, index, :3],
+            motion[:, index, 3:6],
+            motion[:, index, 6] if motion.shape[2] > 6 else None,
+        )
+        for index, (name, place) in enumerate(scene.monitored.items())
+        if name in scene.places  # without the twins in a free-field column
+    }

@@ -1,0 +1,163 @@
+"""What a side sends back of the waves that reach it, on the packing of a case: measured without a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dembound.boundaries import normal_axis
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
+from dembound.disks.beyond.frequencies import frequencies_of
+from dembound.disks.matching import factors_in, homogenised_beta
+from dembound.disks.reflection.arrivals import Arrival, arrivals_of
+from dembound.disks.reflection.bricks import BrickInRow, end_of, end_scene
+from dembound.disks.reflection.continuum_end import ContinuumEnd, beside_elements
+from dembound.disks.reflection.meter import End, Meter, Reflections
+from dembound.disks.reflection.smeared import by_smeared_supports
+from dembound.disks.scene import DiskScene, build, with_boundaries
+from dembound.disks.stability import choose_step
+from dembound.errors import CaseError
+from dembound.schemas import with_changes
+
+__all__ = ["Arrival", "Measured", "Reflections", "measure_side", "measured_sides"]
+
+Report = Callable[[float], None]
+
+ANGLES = (0.0, 10.0, 15.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 75.0, 80.0, 85.0)
+"""Angles (degrees) at which reflections are computed by default."""
+
+FREQUENCIES = 12
+"""Number of frequencies by default."""
+
+ROUNDING = 1e-9
+"""Relative difference of factors β up to which they are the same."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Reflections of a side of a case.
+
+    side, type : of the side. found : the reflections. matched : the same with matched factors; None for sides without
+    factors, or with these. continuum : the same, with the number of nodes, if the side and all that absorb were of type
+    "outside"; None where they cannot be, and beside a body that is periodic and narrow only for the angle 0. arrivals :
+    what reaches the side. gaps : Hz, the lowest at which copies of the brick send waves of a type back by themselves,
+    c/2L for bricks of length L along the normal.
+    """
+
+    side: str
+    type: str
+    found: Reflections
+    matched: Reflections | None
+    continuum: tuple[int, Reflections] | None
+    arrivals: list[Arrival]
+    gaps: dict[str, float]
+
+
+def measured_sides(case: DiskCase) -> list[str]:
+    """The sides that represent the medium beyond; raises CaseError if there are none."""
+    sides = [side for side, table in case.boundary.items() if table.is_artificial or table.is_outside]
+    if not sides:
+        raise CaseError(["boundary: has no side that absorbs; choose another one with --side"])
+    return sides
+
+
+def measure_side(
+    case: DiskCase,
+    side: str,
+    angles: Sequence[float] = ANGLES,
+    frequencies: int | Sequence[float] = FREQUENCIES,
+    report: Report | None = None,
+    *,
+    quick: bool = False,
+) -> Measured:
+    """Measure what a side of a case sends back.
+
+    angles : degrees from the normal, below 90. frequencies : Hz, or how many of those of the case. report : receives
+    every frequency (Hz) before it is computed. quick : instead of disks by the equivalent continuum, without an outside
+    beside it, see smeared.py.
+
+    Raises CaseError for a periodic side, for a quick answer about an outside, and for angles and frequencies that are
+    none.
+    """
+    problems = [f"--angle: is {a:g}, must be at least 0 and below 90 (degrees)" for a in angles if not 0.0 <= a < 90.0]
+    if not isinstance(frequencies, int):
+        problems += [f"--frequency: is {f:g}, must be above 0 (Hz)" for f in frequencies if not 0.0 < f < np.inf]
+    if problems:
+        raise CaseError(problems)
+    whole = build(case)
+    ground, table = whole.ground, case.side(side)
+    chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.array(frequencies)
+    arrivals = arrivals_of(case, side, ground)
+    if table.is_outside and quick:
+        raise CaseError([f"--quick: is not possible for side {side}, of type outside; leave it out"])
+    axis, speeds = normal_axis(side), ground.wave_speeds(normal_axis(side))
+    gaps = {kind: 0.5 * speed / float(ground.brick.size[axis]) for kind, speed in zip("ps", speeds, strict=True)}
+    if table.is_outside:
+        (found,) = _of_continuum(whole, side, choose_step(whole)[0], chosen, angles, report)
+        return Measured(side, table.type, found, None, None, arrivals, gaps)
+    if table.is_periodic:
+        raise CaseError([f"--side: is {side}, which is periodic; must be a side at which the body ends"])
+    scene = end_scene(case, side)
+    own = factors_in(scene, side)
+    best = {motion: homogenised_beta(scene, side, motion) for motion in own}  # nan where the motion is held
+    unmatched = any(abs(beta - best[motion]) > ROUNDING * best[motion] for motion, beta in own.items())
+    scenes = [scene, *([_matched(scene, side)] if unmatched else [])]
+    if quick:
+        found, *others = (by_smeared_supports(each, side, chosen, angles) for each in scenes)
+        return Measured(side, table.type, found, others[0] if unmatched else None, None, arrivals, {})
+    step, row, other = choose_step(whole)[0], BrickInRow(ground, side), _as_continuum(case, side)
+    ends: list[End] = [end_of(each, row) for each in scenes]
+    at_once = other is not None and not _is_narrow(other) and beside_elements(ground, side, other.continua[0]) is ground
+    if other is not None and at_once:
+        ends.append(ContinuumEnd(other.continua[0], row))
+    found, *others = Meter(row, step, *ends).measure(chosen, angles, report=report)
+    if other is not None and not at_once:
+        others += _of_continuum(other, side, step, chosen, angles, report)
+    continuum = None if other is None else (other.continua[0].count, others[-1])
+    return Measured(side, table.type, found, others[0] if unmatched else None, continuum, arrivals, gaps)
+
+
+def _of_continuum(
+    scene: DiskScene,
+    side: str,
+    time_step: float,
+    frequencies: np.ndarray,
+    angles: Sequence[float],
+    report: Report | None,
+) -> list[Reflections]:
+    """Reflections by the continuum of a scene, beside a narrow body along the normal alone."""
+    chosen = [0.0] if _is_narrow(scene) else angles
+    return beyond(scene, side, time_step).measure(frequencies, chosen, report=report)
+
+
+def _is_narrow(scene: DiskScene) -> bool:
+    """Whether ties have the mean motion of elements, which passes on waves along the normal only."""
+    assert scene.outside is not None
+    return any(scene.outside.wall.mean)
+
+
+def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:
+    """A meter of the continuum of a scene beyond a side, at time steps of a run, s."""
+    assert scene.outside is not None
+    row = BrickInRow(beside_elements(scene.ground, side, scene.outside), side)
+    return Meter(row, time_step, ContinuumEnd(scene.outside, row))
+
+
+def _matched(scene: DiskScene, side: str) -> DiskScene:
+    """The same scene with matched factors of the dashpots of a side."""
+    factors = {f"beta_{motion}": "matched" for motion in scene.case.side(side).factors}
+    table = scene.case.side(side).model_copy(update=factors)
+    return with_boundaries(scene, replace(scene.case, boundary={**scene.case.boundary, side: table}))
+
+
+def _as_continuum(case: DiskCase, side: str) -> DiskScene | None:
+    """The case with a continuum beyond this side and all that absorb; None where there can be none."""
+    absorbing = {side, *(name for name, table in case.boundary.items() if table.is_artificial)}
+    changes = {f"boundary.{name}": {"type": "outside"} for name in absorbing}
+    try:
+        return build(as_kind(with_changes(case, changes), DiskCase, "is no case of disks"))
+    except CaseError:
+        return None

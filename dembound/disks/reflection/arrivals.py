@@ -1,0 +1,94 @@
+"""What reaches a side in a case: its waves and forces, and the angles at which they arrive."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import get_args
+
+import numpy as np
+
+from dembound.boundaries import Motion, axis_of_motion, normal_axis
+from dembound.casefile.disks import DiskCase
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.reflection.bricks import is_outwards
+from dembound.disks.reflection.meter import Kind, Reflections
+from dembound.disks.sources import place_of
+
+PLACES = 200
+"""Places along a side at which waves of a source arrive."""
+
+FLATTEST = 85.0
+"""Largest angle (degrees) from the normal that counts: flatter waves run along the side rather than reach it."""
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """Waves that reach a side.
+
+    name : in words. kinds : their types. angles : (k,) degrees, shares : (k,) of their energy, 1 in all.
+    """
+
+    name: str
+    kinds: tuple[Kind, ...]
+    angles: np.ndarray
+    shares: np.ndarray
+
+    def sent_back(self, found: Reflections) -> float:
+        """Share of the energy that the side sends back: means over types and frequencies; nan if nothing is known."""
+        each = []
+        for kind in self.kinds:
+            if kind not in found.kinds or not np.isfinite(found.total(kind)).any():
+                continue
+            by_angle = np.nanmean(found.total(kind), axis=0)
+            known = np.isfinite(by_angle)
+            each.append(float(self.shares @ np.interp(self.angles, found.angles[known], by_angle[known])))
+        return float(np.mean(each)) if each else math.nan
+
+
+def arrivals_of(case: DiskCase, side: str, ground: PackedMaterial) -> list[Arrival]:
+    """What reaches a side: the waves of driven sides that run towards it or along its normal, of loads and of holes.
+
+    Without any of these all directions, as in a diffuse motion.
+    """
+    found = [*_plane(case, side), *_spreading(case, side)]
+    if not found:
+        angles = np.linspace(0.0, FLATTEST, PLACES)
+        shares = np.cos(np.radians(angles))
+        found = [Arrival("waves from all directions", ("p", "s"), angles, shares / shares.sum())]
+    return found
+
+
+def _plane(case: DiskCase, side: str) -> Iterator[Arrival]:
+    """Plane waves: of driven sides along its normal, and the one that comes at an angle."""
+    for driven, waves in case.driving.items():
+        if normal_axis(driven) != normal_axis(side):
+            continue
+        for motion, name in waves.items():
+            if "xy"[axis_of_motion(driven, motion)] not in case.motion.held:
+                yield Arrival(f"wave {name} along the normal", (motion,), np.zeros(1), np.ones(1))
+    if case.incident is not None:
+        angle = abs(case.incident.angle) if normal_axis(side) == 1 else 90.0 - abs(case.incident.angle)
+        kind: Kind = "p" if case.incident.type == "p" else "s"
+        name = f"wave {case.incident.wave} at {angle:g}°"
+        yield Arrival(name, (kind,), np.array([min(angle, FLATTEST)]), np.ones(1))
+
+
+def _spreading(case: DiskCase, side: str) -> Iterator[Arrival]:
+    """Waves that spread from loads and holes, by the angles at which they reach places along the side."""
+    boxes = {f"load {load.name}": place_of(case, load) for load in case.load if not load.is_everywhere}
+    boxes |= {f"hole {number}": hole.box for number, hole in enumerate(case.hole, start=1)}
+    for name, box in boxes.items():
+        axis = normal_axis(side)
+        centre = np.array([0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])])
+        away = case.size[axis] - centre[axis] if is_outwards(side) > 0 else centre[axis]
+        along = np.linspace(0.0, case.size[1 - axis], PLACES) - centre[1 - axis]
+        if away <= 0.0:
+            continue
+        angles = np.degrees(np.arctan2(np.abs(along), away))
+        shares = np.cos(np.radians(angles)) / np.hypot(along, away)  # of waves that spread in the plane
+        near = angles <= FLATTEST
+        if near.any():
+            kinds: tuple[Kind, ...] = get_args(Motion)
+            yield Arrival(f"waves from {name}", kinds, angles[near], shares[near] / shares[near].sum())

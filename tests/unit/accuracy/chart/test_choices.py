@@ -1,0 +1,164 @@
+"""The choices of a chart: those of the table [chart], and those of a case and a command that give none."""
+
+import pytest
+
+from dembound.accuracy.chart.choices import defaults, from_table
+from dembound.accuracy.choice import choices_of
+from dembound.accuracy.of_disks import chart_choices
+from dembound.disks.matching import homogenised_beta
+from dembound.disks.scene import build
+from dembound.errors import CaseError
+from dembound.kinds import load, with_changes
+from dembound.shipped import folder, names
+
+
+def test_the_table_gives_choices(bar) -> None:
+    case = bar(
+        {
+            "chart": {
+                "vary": {"run.safety": [0.5, 0.9]},
+                "choice": [{"name": "free", "set": {"boundary.right": {"type": "free"}}}],
+            }
+        }
+    )
+    assert from_table(case) == {
+        "safety 0.5": {"run.safety": 0.5},
+        "safety 0.9": {"run.safety": 0.9},
+        "free": {"boundary.right": {"type": "free"}},
+    }
+    assert from_table(bar()) == {}
+
+
+def test_two_choices_of_the_table_cannot_have_one_name(bar) -> None:
+    twice = [{"name": "free", "set": {}}, {"name": "free", "set": {"run.safety": 0.5}}]
+    with pytest.raises(CaseError, match=r"chart.choice: two choices have the name free"):
+        from_table(bar({"chart": {"choice": twice}}))
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_shipped_case_has_some(name: str, monkeypatch) -> None:
+    monkeypatch.setattr(chart_choices, "_matched_factors", lambda case: iter(()))  # they need the packing
+    case = load(folder() / f"{name}.toml")
+    choices, _ = choices_of(case, defaults(case))
+    assert len(choices) >= 4
+
+
+def test_of_disks_one_thing_changes_at_a_time(bar) -> None:
+    found = defaults(bar({"boundary.right.beta_p": 0.8}))
+    assert found == {
+        "as in the case": {},
+        "radius 0.5 m": {"packing.radius": 0.5},  # ×1.25 and ×1.5 do not divide 10 m × 1 m
+        "safety 0.45": {"run.safety": 0.45},
+        "right, matched β": {"boundary.right.beta_p": "matched"},
+        "right viscoelastic": {"boundary.right": {"type": "viscoelastic", "distance": 5.0, "beta_p": 0.8}},
+        "right free": {"boundary.right": {"type": "free"}},
+    }
+
+
+def test_matched_factors_are_a_choice_where_others_are_given(bar) -> None:
+    packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
+    own = bar({"packing": packing, "motion.held": ["y", "rotation"], "boundary.right": {"type": "viscous"}})
+    beta = homogenised_beta(build(own), "right", "p")
+    assert 0.5 < beta < 0.95
+    other = with_changes(own, {"boundary.right.beta_p": 1.0, "boundary.left.beta_p": 1.0})
+    # not the left side, where the wave enters; y is held
+    assert defaults(other)["right, matched β"] == {"boundary.right.beta_p": "matched"}
+    for near in (own, with_changes(own, {"boundary.right.beta_p": 1.005 * beta})):
+        assert not any("matched" in name for name in defaults(near))
+
+
+def test_rows_of_frames_are_coarsened_with_the_disks(monkeypatch) -> None:
+    monkeypatch.setattr(chart_choices, "_matched_factors", lambda case: iter(()))
+    case = load(folder() / "zhou2018" / "long_bar_c.toml")
+    (changes,) = (changes for changes in defaults(case).values() if changes.get("packing.radius") == 0.3125)
+    assert changes["packing.edge_radius"] == 1.25 * case.packing.edge_radius
+
+
+TUNNEL = {
+    "packing": {"pattern": "A", "size": [120.0, 100.0], "radius": 0.5},
+    "motion.held": [],
+    "boundary": {
+        "left": {"type": "free_field"},
+        "right": {"type": "free_field"},
+        "bottom": {"type": "viscous_input", "wave_s": "pulse", "half_mass": True},
+    },
+    "hole": [{"name": "tunnel", "type": "circle", "centre": [60.0, 50.0], "radius": 8.0}],
+    "monitor": [{"name": "crown", "position": [60.0, 58.5]}],
+}
+OUTSIDE = {"type": "outside"}
+
+
+def test_waves_from_below_enter_through_the_continuum_where_the_sides_have_one(bar) -> None:
+    case = bar(TUNNEL)
+    through = {"boundary.bottom": {"type": "outside", "wave_s": "pulse"}}
+    around = {"boundary.left": OUTSIDE, "boundary.right": OUTSIDE, **through}
+    assert defaults(case)["left, right and bottom outside"] == around
+    periodic = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right")}
+    assert defaults(bar(TUNNEL | periodic))["bottom outside"] == through
+    found = list(defaults(with_changes(case, around)))  # other sides would need another base
+    assert not any("viscous" in name or "free" in name or name.endswith("bottom outside") for name in found)
+
+
+def test_a_box_round_holes_is_a_choice_where_it_saves_much(bar) -> None:
+    case = bar(TUNNEL)
+    (changes,) = (changes for name, changes in defaults(case).items() if name.startswith("box"))
+    (left, bottom), (wide, high) = changes["packing"]["origin"], changes["packing"]["size"]
+    assert changes["ground.size"] == [120.0, 100.0]
+    assert (left + 0.5 * wide, bottom + 0.5 * high) == (60.0, 50.0)
+    assert 16.0 < wide < 60.0
+    sides = {side: changes[f"boundary.{side}"] for side in ("left", "right", "top")}
+    assert sides == dict.fromkeys(sides, OUTSIDE)
+    assert changes["boundary.bottom"] == {"type": "outside", "wave_s": "pulse"}
+    bricks = bar({**TUNNEL, "packing": {"pattern": "A", "bricks": [120, 100], "radius": 0.5}})
+    assert defaults(bricks)[f"box of {wide:g} m × {high:g} m, outside"]["packing"] == changes["packing"]
+    assert not any(name.startswith("box") for name in defaults(with_changes(case, changes)))  # it is one
+    far = {"name": "far", "position": [0.5, 99.5]}  # in the layer that absorbs
+    assert not any(name.startswith("box") for name in defaults(with_changes(case, {"monitor": [far]})))
+
+
+def test_of_bars_all_methods_with_all_spacings(spalling) -> None:
+    case = spalling({"run": {"duration": 1.5e-3, "time_step": 1e-6}})
+    found = defaults(case)
+    assert next(iter(found.items())) == ("as in the case", {})
+    others = list(found.values())[1:]
+    assert {changes["bar.spacing"] for changes in others} == {0.025, 0.03125, 0.05}
+    types = [changes["method"]["type"] for changes in others if changes["bar.spacing"] == 0.05]
+    assert types == ["finite_difference", "finite_difference", "peridynamics", "switch", "patch"]
+    assert [changes["run"] for changes in others[:2]] == [
+        {"duration": 1.5e-3, "courant": 1.0},
+        {"duration": 1.5e-3},  # automatic
+    ]
+
+
+@pytest.mark.parametrize("step", [{"safety": 0.5}, {"courant": 0.3}, {"time_step": 1e-6}, {"time_step": "auto"}])
+def test_all_choices_are_valid_whatever_step_the_bar_has(spalling, step) -> None:
+    case = spalling({"run": {"duration": 1.5e-3, **step}})
+    choices, left_out = choices_of(case, defaults(case))
+    assert not left_out
+    steps = {(choice.case.run.courant, choice.case.run.time_step, choice.case.run.safety) for choice in choices[1:]}
+    assert steps == {(1.0, "auto", 0.9), (None, "auto", step.get("safety", 0.9))}
+
+
+def test_the_case_itself_counts_once(spalling) -> None:
+    method = {"type": "peridynamics", "horizon": 2, "corrected_ends": True}
+    case = spalling({"method": method, "run": {"duration": 1.5e-3}})
+    choices, _ = choices_of(case, defaults(case))
+    assert choices[0].name == "as in the case"
+    assert len([choice for choice in choices if choice.case.method == case.method]) == 3  # one for each spacing
+
+
+def test_methods_have_the_keys_of_the_case(spalling) -> None:
+    case = spalling({"method": {"type": "switch", "horizon": 5, "trigger": 0.8, "corrected_ends": True}})
+    methods = {changes["method"]["type"]: changes["method"] for changes in list(defaults(case).values())[1:]}
+    assert methods == {
+        "finite_difference": {"type": "finite_difference"},
+        "peridynamics": {"type": "peridynamics", "horizon": 5, "corrected_ends": True},
+        "switch": {"type": "switch", "horizon": 5, "trigger": 0.8, "corrected_ends": True},
+        "patch": {"type": "patch", "horizon": 5, "trigger": 0.8},
+    }
+
+
+def test_methods_that_wait_for_a_break_are_for_bars_that_can_break(spalling) -> None:
+    case = with_changes(spalling(), {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1e3}})
+    types = {changes["method"]["type"] for changes in list(defaults(case).values())[1:]}
+    assert types == {"finite_difference", "peridynamics"}

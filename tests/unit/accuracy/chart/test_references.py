@@ -1,0 +1,169 @@
+"""Which exact solutions cases have, and for how long they are valid."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dembound.accuracy.chart.references import exact_of
+from dembound.accuracy.choice import choices_of
+from dembound.accuracy.history import History
+from dembound.accuracy.of_bars.pulse import PulseInBar
+from dembound.accuracy.of_disks.exact.continuum import Continuum
+from dembound.accuracy.of_disks.exact.plane_wave import PlaneWave
+from dembound.disks.scene import build
+from dembound.errors import CaseError
+from dembound.kinds import load, with_changes
+from dembound.shipped import folder
+
+ECHO = (75.0 * (1.0 + 3**0.5) - 20.0) / (1000.0 / 2**0.5) + (math.hypot(0.5, 150.5) - 20.0) / 1000.0
+"""When (s) the SV wave of `cases/oblique.toml` has met the wall of the hole, and the P wave that leaves there has come
+back from the surface at the monitor below it, on the disk's place half a metre beside the axis."""
+
+EVEN = {"boundary.left": {"type": "viscous_input", "wave_p": "pulse"}}
+
+
+def test_a_bar_that_spalls_has_one_until_then(spalling) -> None:
+    # s = 8/12, rise and fall 0.2 ms: d = ½·1000·0.2e-3·s from the free end, at rise + (L + d)/c
+    found = exact_of(spalling())
+    assert isinstance(found, PulseInBar)
+    assert found.findings["spall place"] == pytest.approx(1.0 - 0.2 / 3.0)
+    assert found.until == found.findings["spall time"] == pytest.approx(0.2e-3 + (1.0 + 0.2 / 3.0) / 1000.0)
+
+
+def test_a_bar_that_holds_has_one_for_ever(spalling) -> None:
+    assert exact_of(spalling({"bar.strength": 13e6})).until == math.inf
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"bar.attenuation": 0.1},
+        {"load.1.side": "right"},
+        {"load.1.pressure": -12e6},
+        {"boundary.right": {"type": "viscous"}},
+        {"boundary.left": {"type": "viscous"}},
+        {"wave.hit": {"type": "cosine", "amplitude": 1.0, "period": 4e-4}},
+        {"wave.hit.fall": 9e-4},
+    ],
+)
+def test_other_bars_have_none(spalling, changes) -> None:
+    with pytest.raises(CaseError, match="no exact solution"):
+        exact_of(spalling(changes))
+
+
+@pytest.mark.parametrize(("end", "echo"), [("free", 1.0), ("fixed", -1.0), ("viscous", 0.0), ("matched_layer", 0.0)])
+def test_the_far_end_of_a_bar_reflects(spalling, end: str, echo: float) -> None:
+    case = spalling({"bar.strength": 1e9, "boundary.right": {"type": end}})
+    time = np.array([0.7e-3, 1.7e-3])  # 0.5 m from the load: the crest of 0.2 ms, and its echo
+    at = History.of(np.array([0.5, 0.0]), time, np.zeros((2, 3)), np.zeros((2, 3)), np.zeros(2))
+    crest = 12e6 / (2500.0 * 1000.0)
+    found = exact_of(case).motions(case, {"gauge": at})["gauge"]
+    assert found.velocity[:, 0] == pytest.approx([crest, echo * crest])
+    assert found.stress == pytest.approx([-12e6, echo * 12e6])
+
+
+def test_a_plane_wave_that_leaves_has_one(bar) -> None:
+    found = exact_of(bar(EVEN))
+    assert isinstance(found, PlaneWave)
+    assert (found.side, found.motion) == ("left", "p")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"motion.held": []},
+        {"boundary.right": {"type": "free"}},
+        {"boundary.top": {"type": "fixed"}},
+        {"hole": [{"name": "h", "type": "circle", "centre": [8.0, 0.5], "radius": 0.3}]},
+        {"material.law": "linearpbond"},
+        {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, "motion.held": []},
+    ],
+)
+def test_waves_that_do_not_stay_plane_or_do_not_leave_have_none(bar, changes) -> None:
+    with pytest.raises(CaseError, match="no exact solution"):
+        exact_of(bar({**EVEN, **changes}))
+
+
+def test_s_waves_have_one_between_periodic_sides(bar) -> None:
+    sides = {f"boundary.{side}": {"type": "periodic"} for side in ("bottom", "top")}
+    wave = {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, "motion.held": []}
+    assert exact_of(bar({**wave, **sides})).motion == "s"
+
+
+@pytest.mark.parametrize(
+    ("name", "problem", "until"),
+    [
+        ("zhou2018/lamb_viscous", "lamb", math.inf),
+        ("charts/blast", "cavity", math.inf),
+        ("charts/cavity", "scattering", math.inf),
+        ("charts/garvin", "garvin", math.inf),
+        ("oblique", "scattering", pytest.approx(ECHO)),
+    ],
+)
+def test_problems_of_a_continuum_have_one(name, problem, until) -> None:
+    found = exact_of(load(folder() / f"{name}.toml"))
+    assert isinstance(found, Continuum)
+    assert (found.name, found.until) == (problem, until)
+
+
+def test_its_motion_is_that_of_each_choice_at_the_monitors_of_the_choice() -> None:
+    """The same hole and monitors in a larger box, and a monitor elsewhere."""
+    case = load(folder() / "charts" / "blast.toml")
+    larger, other = (
+        with_changes(case, next(each.set for each in case.chart.choice if each.name == name))
+        for name in ("outside, 80 m, disks of 0.5 m", "outside, 40 m, disks of 1 m")
+    )
+    solution = exact_of(case)
+    still = History.of(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
+    here, there, elsewhere = (
+        solution.motions(each, {name: replace(still, place=place) for name, place in build(each).monitored.items()})
+        for each in (case, larger, other)
+    )
+    np.testing.assert_allclose(there["side"].position - here["side"].position, [20.0, 20.0])
+    size = np.abs(here["side"].velocity).max()
+    np.testing.assert_allclose(there["side"].velocity, here["side"].velocity, atol=1e-6 * size)
+    # 12.25 m and 12.5 m from the axis: the crest decays with the root of the distance, as a cylindrical wave
+    radii = [float(np.hypot(*(gauges["side"].position - 20.0))) for gauges in (here, elsewhere)]
+    crests = [np.hypot(*gauges["side"].velocity[:, :2].T).max() for gauges in (here, elsewhere)]
+    assert radii[1] > radii[0]
+    assert crests[1] < crests[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "reason"),
+    [
+        ("cavity", {"boundary.left": {"type": "viscous"}}, 'boundary.left.type: is "viscous", but the wave of'),
+        ("cavity", {"boundary.top": {"type": "viscoelastic", "distance": 20.0}}, "boundary.top.type: is"),
+        ("cavity", {"incident.type": "s"}, "incident.type: "),
+        ("blast", {"load.blast.hole": "shaft"}, "load[1, blast].hole: "),
+    ],
+)
+def test_choices_that_do_not_apply_are_left_out_by_name(name, changes, reason) -> None:
+    case = load(folder() / "charts" / f"{name}.toml")
+    choices, left_out = choices_of(case, {"as it is": {}, "of another kind": changes})
+    assert [choice.name for choice in choices] == ["as it is"]
+    (line,) = left_out
+    assert line.startswith(f"of another kind: left out, {reason}")
+
+
+def test_sides_of_a_choice_that_end_the_rock_are_its_error() -> None:
+    """The exact motion beside free and fixed sides, whose top is no free surface either, is that of endless rock."""
+    case = load(folder() / "charts" / "blast.toml")
+    ended = {f"boundary.{side}": {"type": "fixed"} for side in ("left", "right", "bottom")}
+    still = History.of(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
+    beside, alone = (
+        exact_of(case).motions(each, dict.fromkeys(("side", "between", "diagonal"), still))
+        for each in (with_changes(case, ended | {"boundary.top": {"type": "free"}}), case)
+    )
+    for name, gauge in alone.items():
+        np.testing.assert_array_equal(beside[name].velocity, gauge.velocity)
+
+
+def test_a_choice_of_another_problem_has_none() -> None:
+    """A quarter beside mirror planes: the solution is that of a hole with rock on all sides."""
+    case = load(folder() / "charts" / "blast.toml")
+    quarter = with_changes(case, {"boundary.left": {"type": "symmetry"}})
+    with pytest.raises(CaseError, match=r'boundary\.left\.type: is "symmetry", must be a side beyond'):
+        exact_of(case).motions(quarter, {})

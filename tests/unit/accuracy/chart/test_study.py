@@ -1,0 +1,344 @@
+"""A whole chart: choices run, compared, recorded and resumed."""
+
+import csv
+from contextlib import contextmanager
+from dataclasses import replace
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.accuracy import runner
+from dembound.accuracy.chart import references as reference
+from dembound.accuracy.chart import study
+from dembound.accuracy.chart.study import Options, chart
+from dembound.accuracy.chart.tables import COLUMNS, write_results, write_table
+from dembound.accuracy.choice import Choice, choices_of, combinations
+from dembound.accuracy.reference import Reference, Wanted
+from dembound.accuracy.runner import Run
+from dembound.errors import CaseError, RunError
+from dembound.motion.kind import Finding
+from dembound.results.structure import run_of
+from dembound.running import Progress
+
+SPACINGS = {"bar.spacing": [0.05, 0.025]}
+
+
+class Log:
+    """Names of the runs of a chart."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    @contextmanager
+    def __call__(self, name: str):
+        self.names.append(name)
+        yield Progress()
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch) -> None:
+    """Short runs are timed once."""
+    monkeypatch.setattr(study, "AT_ONCE", 1)
+
+
+@pytest.fixture
+def charted(tmp_path):
+    """Charts a case in a folder, and logs the runs."""
+
+    def make(case, vary=SPACINGS, resume=False, repeats=2, **options):
+        log = Log()
+        options = Options(named=combinations(case, vary) if vary else None, repeats=repeats, **options)
+        return chart(case, options, tmp_path / "chart", resume, log), log.names
+
+    return make
+
+
+def test_runs_compile_first_and_are_timed_in_turn(charted, spalling) -> None:
+    found, runs = charted(spalling())
+    assert runs == [
+        "1 of 2 choices, spacing 0.05 m",
+        "2 of 2 choices, spacing 0.025 m",
+        *(f"{k} of 2 choices, timed run {n} of 2" for n in (1, 2) for k in (1, 2)),
+    ]
+    assert [len(line.outcome.cpu) for line in found.lines] == [2, 2]
+    assert all(0.0 < line.cpu < line.wall for line in found.lines)
+    assert found.lines[1].outcome.work > 3.9 * found.lines[0].outcome.work  # twice the bonds in twice the steps
+    assert found.lines[1].errors[0].rms < found.lines[0].errors[0].rms
+    assert found.reference.name == "exact"
+
+
+def test_a_chart_is_resumed_where_it_ended(charted, spalling, tmp_path) -> None:
+    first, _ = charted(spalling(), {"bar.spacing": [0.05]}, repeats=1)
+    second, runs = charted(spalling(), resume=True)
+    assert runs == [
+        "2 of 2 choices, spacing 0.025 m",
+        "2 of 2 choices, timed run 1 of 2",
+        "1 of 2 choices, timed run 2 of 2",
+        "2 of 2 choices, timed run 2 of 2",
+    ]
+    assert second.lines[0].errors == first.lines[0].errors
+    assert second.lines[0].outcome.cpu[0] == first.lines[0].outcome.cpu[0]
+    assert charted(spalling(), resume=True)[1] == []
+    assert len(charted(spalling({"run.duration": 1.4e-3}), resume=True)[1]) == 6  # other results
+    assert len(charted(spalling())[1]) == 6  # anew
+
+
+def test_a_choice_that_fails_is_kept_with_its_reason(charted, spalling) -> None:
+    found, _ = charted(spalling(), {"run.courant": [0.5, 3.0]}, repeats=1)
+    good, bad = found.lines
+    assert (good.outcome.failure, bad.errors) == ("", ())
+    assert bad.outcome.failure.startswith("run.courant: is 3, must not be above")
+    assert found.front == [0]
+
+
+def test_reasons_against_a_comparison_are_one_line(bar) -> None:
+    def motions(*_):
+        raise CaseError(["hole: is no circle", "motion.held: must be empty"])
+
+    line = study._line(Choice("odd", {}, bar()), Run(), Reference("exact", "exact", motions), Options())
+    assert (line.outcome.failure, line.errors) == ("hole: is no circle; motion.held: must be empty", ())
+
+
+def test_nothing_but_failures_is_a_failure(charted, spalling) -> None:
+    with pytest.raises(RunError, match=r"courant 3: run\.courant"):
+        charted(spalling(), {"run.courant": [3.0]})
+
+
+def test_the_finest_choice_is_the_reference_of_disks_without_a_solution(charted, bar) -> None:
+    case = bar({"run.duration": 0.02, "motion.held": []})
+    found, _ = charted(case, {"packing.radius": [0.25, 0.5]}, repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finest", (0,))
+    assert found.reference.sentence == "the finest run, radius 0.25 m"
+    assert found.judged == found.front == [1]
+    assert found.lines[0].errors[0].rms == 0.0
+    assert found.sentence.endswith(f"the reference itself: radius 0.25 m ({found.lines[0].cpu:.2g} s)")
+
+
+def test_a_choice_that_is_the_reference_run_again_is_not_its_cheapest(charted, bar) -> None:
+    case = bar({"run.duration": 0.02, "motion.held": []})
+    found, _ = charted(case, {"run.safety": [0.45, 0.9], "output.snapshots": [0, 2]}, repeats=1)
+    assert found.reference.own == (0, 1)  # the number of snapshots changes no run
+    assert found.judged == [2, 3]
+    assert found.cheapest(1.0) in (2, 3)
+
+
+@pytest.mark.parametrize(
+    ("costs", "named"),
+    [
+        ((1.0, 1.0), "boundary.right viscous (10 %, 1 s)"),
+        ((1.0, 0.8), "boundary.right viscous (10 %, 1 s)"),  # within the noise of CPU times the works decide: equal
+        ((1.0, 0.4), "boundary.right free (10 %, 0.4 s)"),
+    ],
+)
+def test_of_equally_accurate_choices_the_cheaper_or_else_the_first_is_named(charted, bar, costs, named) -> None:
+    sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}]}
+    found, _ = charted(bar({"run.duration": 0.01}), sides, repeats=1, reference="exact")
+    assert found.lines[0].outcome.work == found.lines[1].outcome.work
+    lines = [
+        replace(line, outcome=replace(line.outcome, cpu=[cost]), errors=[replace(line.errors[0], rms=rms)])
+        for line, cost, rms in zip(found.lines, costs, (0.1001, 0.1), strict=True)
+    ]
+    equal = replace(found, lines=lines, front=[1, 0])  # the second is more accurate by a thousandth
+    assert equal.sentence.endswith(f"most accurate: {named}")
+
+
+FADING = {"bar.attenuation": 0.1, "bar.strength": 1e9, "method": {"type": "finite_difference"}, "load.1.nodes": 1}
+"""A bar for which no exact solution is known."""
+
+
+def test_a_finer_run_is_the_reference_of_bars_without_a_solution(charted, spalling) -> None:
+    found, runs = charted(spalling(FADING), {"bar.spacing": [0.05, 0.025], "run.courant": [0.9, 1.0]}, repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finer", ())
+    # 20 and 40 cells: 160 are a multiple of both, and four times as many as the finest
+    assert found.reference.sentence == (
+        "finite differences at Courant number 1 and a spacing of 0.00625 m, finer than all choices"
+    )
+    assert runs.count("finer reference") == 1
+    assert found.judged == [0, 1, 2, 3]
+    assert all(error.apart == 0.0 for line in found.lines for error in line.errors)
+    errors = {line.choice.name: line.errors[0].rms for line in found.lines}
+    # without attenuation no error would be left at ν = 1; with it 0.04 %, and 16 % at ν = 0.9
+    assert errors["spacing 0.025 m, courant 1"] < 0.05 * errors["spacing 0.025 m, courant 0.9"]
+
+
+def test_the_finer_run_is_of_bars(charted, bar) -> None:
+    with pytest.raises(CaseError, match="finer is for bars"):
+        charted(bar(), {"run.safety": [0.45, 0.9]}, repeats=1, reference="finer")
+
+
+def test_the_finest_choice_takes_its_place_where_it_fails(charted, spalling, monkeypatch) -> None:
+    def impossible(*_):
+        raise CaseError(["bar.spacing: is too small"])
+
+    monkeypatch.setattr(reference, "finer", impossible)
+    found, _ = charted(spalling(FADING), repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finest", (1,))
+    (line,) = found.left_out
+    assert line == "the reference is the finest choice, as a finer run is not possible: bar.spacing: is too small"
+
+
+def test_spalls_are_compared_with_the_closed_form(charted, spalling) -> None:
+    found, _ = charted(spalling(), repeats=1)
+    place, time = (found.lines[1].outcome.findings[name].value for name in ("spall place", "spall time"))
+    assert found.found(found.lines[1]) == (
+        f"spall place {place - (1.0 - 0.2 / 3.0):+.2g} m, spall time {time - found.reference.until:+.2g} s"
+    )
+    assert found.found(charted(spalling({"load.1.pressure": 9e6}), repeats=1)[0].lines[0]).startswith("spall place")
+
+
+SPALLING_DISKS = {
+    "material.law": "linearpbond",
+    "material.contact_share": 0.0,
+    "material.pb_ten": 0.4e6,
+    "motion.held": ["y", "rotation"],
+    "boundary.right": {"type": "free"},
+    "run.duration": 0.05,
+}
+"""A bar whose bonds break when the pulse comes back from its free end."""
+
+
+def test_histories_are_compared_up_to_the_first_broken_bond(charted, bar) -> None:
+    laws = {"material.elastic_start": [True, False], "run.safety": [0.9, 0.3]}
+    found, _ = charted(bar(SPALLING_DISKS), laws, repeats=1)
+    time = found.lines[found.reference.own[0]].outcome.findings["break time"].value
+    assert found.reference.until == time < 0.05
+    assert found.reference.sentence.endswith(f", up to its first break at {1e3 * time:.4g} ms")
+    assert "break time +" in found.found(found.lines[0]) or "break time -" in found.found(found.lines[0])
+    assert found.found(found.lines[found.reference.own[0]]).startswith(f"break time {time:.5g} s, break x ")
+
+    whole, _ = charted(bar(SPALLING_DISKS | {"chart.until": "end"}), laws, repeats=1)
+    assert (whole.reference.until, "break" in whole.reference.sentence) == (np.inf, False)
+    # the pieces fly on at speeds of their own
+    assert whole.lines[0].errors[0].rms > 3.0 * found.lines[0].errors[0].rms
+
+
+def test_random_packings_are_realisations(charted, bar) -> None:
+    packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
+    case = bar({"packing": packing, "run.duration": 0.004})
+    found, _ = charted(case, {"packing.seed": [1, 2]}, repeats=1, reference="finest")
+    assert found.left_out == [reference.REALISATIONS]
+    same = charted(case, {"packing.size": [[9.0, 3.0], [12.0, 3.0]]}, repeats=1, reference="finest")[0]
+    assert not same.left_out  # the same brick, more of them
+    assert not charted(bar(), {"packing.radius": [0.25, 0.5]}, repeats=1, reference="finest")[0].left_out
+
+
+def test_breaks_beyond_the_scene_of_the_case_are_no_end_of_the_comparison(bar, monkeypatch, tmp_path) -> None:
+    # a pulse from the left that would tear the free end of the longer bar: at the case's own end it goes on
+    case = bar({**SPALLING_DISKS, "boundary.right": {"type": "viscous"}, "run.duration": 0.03})
+    sides = {"boundary.right": [{"type": "viscous"}, {"type": "viscous", "beta_p": 0.5}]}
+    boxes = []
+    measured = runner.measure
+    monkeypatch.setattr(runner, "measure", lambda *a, inside=None, **k: boxes.append(inside) or measured(*a, **k))
+    found = chart(case, Options(combinations(case, sides), 1, "extended"), tmp_path / "chart", False, Log())
+    assert boxes.count((0.0, 0.0, 10.0, 1.0)) == 1  # the extended scene grows to the right
+    assert found.reference.name == "extended"
+
+
+def test_an_extended_scene_lets_waves_in_through_the_continuum_of_a_choice(bar, tmp_path) -> None:
+    """Dashpots that waves enter through stay in it: what they return would count against the continuum."""
+    base = {"type": "viscous_input", "wave_s": "pulse", "half_mass": True}
+    field = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": base}
+    hole = {"name": "tunnel", "type": "circle", "centre": [10.0, 5.0], "radius": 2.0}
+    changes = {"packing.size": [20.0, 10.0], "motion.held": [], "hole": [hole], "boundary": field, "run.duration": 0.04}
+    case = bar({**changes, "monitor": [{"name": "crown", "position": [10.0, 7.5]}]})
+    beyond = {"boundary.left": {"type": "outside"}, "boundary.right": {"type": "outside"}}
+    named = {"field": {}, "beyond": {**beyond, "boundary.bottom": {"type": "outside", "wave_s": "pulse"}}}
+    found = chart(case, Options(named, 1), tmp_path / "chart", False, Log())
+    assert "before a continuum" in found.reference.sentence
+    by_field, by_continuum = (line.errors[0].rms for line in found.lines)
+    assert by_continuum < 0.2 * by_field
+
+
+def test_boxes_elsewhere_have_the_same_bricks(bar) -> None:
+    packing = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+    case = bar({"packing": packing | {"size": [10.0, 10.0]}, "motion.held": []})
+    box = {"ground.size": [10.0, 10.0], "packing": packing | {"size": [5.0, 5.0], "origin": [0.0, 5.0]}}
+    sides = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "bottom")}
+    choices, _ = choices_of(case, {"all": {}, "box": box | sides, "other": {"packing.seed": 7}})
+    assert reference._of_random_packings(choices[:2]) == ()
+    assert len(reference._of_random_packings(choices)) == 1
+
+
+def test_places_in_an_extended_scene_are_those_in_the_case() -> None:
+    found = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
+    shifted = reference._shifted(found, (200.0, 2.0, 240.0, 22.0))
+    assert {name: value for name, (value, _) in shifted.items()} == {"break time": 0.1, "break x": 3.0, "break y": 3.0}
+    assert reference._shifted({"spall place": Finding(1.5, "m")}, (1.0, 0.0, 2.0, 0.0))["spall place"].value == 0.5
+
+
+def test_a_law_that_does_not_break_is_described_so(bar, tmp_path) -> None:
+    unbreakable = {"density": 2500.0, "p_wave_speed": 1000.0, "contact_share": 0.0}
+    case = bar(SPALLING_DISKS)
+    options = {"law": {"material": unbreakable}, "own": {"run.safety": 0.4}}
+    found = chart(case, Options(named=options, repeats=1), tmp_path, False, Log())
+    assert found.found(found.lines[0]) == "no break time, break x, break y"
+
+
+def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:
+    # the pulse of 10 m meets the end while it is still driven: nothing returns from an end far away
+    sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}], "packing.radius": [0.25, 0.5]}
+    case = bar({"run.duration": 0.02, "motion.held": []})  # so that there is no exact solution
+    found, runs = charted(case, sides, repeats=1)
+    assert found.reference.name == "extended"
+    assert "extended scene" in runs
+    errors = {line.choice.name: line.errors[0] for line in found.lines}
+    assert errors["boundary.right viscous, radius 0.25 m"].rms < 0.5 * errors["boundary.right free, radius 0.25 m"].rms
+    assert errors["boundary.right free, radius 0.25 m"].apart == 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "options", "said"),
+    [
+        ({"monitor": []}, {}, "monitor: is missing"),
+        ({}, {"wanted": Wanted(monitor="nowhere")}, "--monitor: is nowhere, must be one of gauge"),
+        ({"bar.attenuation": 0.1}, {"reference": "exact"}, "no exact solution"),
+        ({}, {"reference": "extended"}, "--reference: no side has to be moved"),
+    ],
+)
+def test_what_cannot_be_compared_is_bad_input(charted, spalling, changes, options, said) -> None:
+    with pytest.raises(CaseError, match=said):
+        charted(spalling(changes), repeats=1, **options)
+
+
+def test_stress_is_of_bars(charted, bar) -> None:
+    with pytest.raises(CaseError, match="stress is that along a bar"):
+        charted(bar(), {"run.safety": [0.5]}, wanted=Wanted("stress"))
+
+
+def test_folders_of_something_else_are_not_deleted(charted, spalling, tmp_path) -> None:
+    (tmp_path / "chart").mkdir()
+    (tmp_path / "chart" / "thesis.tex").touch()
+    with pytest.raises(CaseError, match="holds no chart"):
+        charted(spalling())
+    assert (tmp_path / "chart" / "thesis.tex").exists()
+
+
+def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:
+    found, _ = charted(spalling(), {"bar.spacing": [0.05, 0.025], "run.courant": [0.9, 3.0]}, repeats=1)
+    path = tmp_path / "chart" / "chart.h5"
+    write_results(found, path)
+    write_results(found, path)  # again, as of a chart that is resumed
+    write_table(found, tmp_path / "chart.csv")
+
+    with (tmp_path / "chart.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["choice"] for row in rows] == [line.choice.name for line in found.lines]
+    assert float(rows[0]["rms"]) == found.lines[0].errors[0].rms
+    assert rows[1]["failure"].startswith("run.courant: is 3")
+    assert [row["bar.spacing"] for row in rows] == ["0.05", "0.05", "0.025", "0.025"]
+    assert float(rows[0]["spall place error"]) == pytest.approx(float(rows[0]["spall place"]) - 1.0 + 0.2 / 3.0)
+    assert set(COLUMNS) < set(rows[0])
+    with h5py.File(path) as file:
+        assert [group.attrs["name"] for group in file["choices"].values()] == [row["choice"] for row in rows]
+        run = file["runs"][run_of(file["choices/0000"])]
+        gauge, motion = run["gauges/gauge"], found.lines[0].outcome.motions["gauge"]
+        np.testing.assert_array_equal(gauge["velocity"][:], motion.velocity)
+        assert file["reference"].attrs["spall place"] == pytest.approx(1.0 - 0.2 / 3.0)
+        assert file.attrs["sentence"] == found.sentence
+
+
+def test_a_choice_is_not_compared_with_itself(charted, spalling, tmp_path) -> None:
+    with pytest.raises(CaseError, match="is the only valid choice, which would be its own reference"):
+        charted(spalling(), {"bar.spacing": [0.05]}, reference="finest")
+    assert not (tmp_path / "chart").exists()

@@ -1,0 +1,114 @@
+"""The exact curves beside cases with a hole under a plane wave that comes at an angle."""
+
+import math
+
+import numpy as np
+import pytest
+
+from dembound.accuracy.of_disks.exact import exact_motions
+from dembound.disks.scene import build
+from dembound.errors import CaseError
+from dembound.exact import PlaneWave, Solid, scattered_motion
+from dembound.kinds import loads, with_changes
+
+CASE = """
+[ground]
+size = [100.0, 120.0]
+[packing]
+pattern = "A"
+size = [20.0, 20.0]
+origin = [40.0, 40.0]
+radius = 0.5
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+fric = 0.5
+[outside]
+element = 10.0
+[boundary.left]
+type = "outside"
+[boundary.right]
+type = "outside"
+[boundary.bottom]
+type = "outside"
+[boundary.top]
+type = "outside"
+[incident]
+type = "sv"
+angle = 30.0
+wave = "pulse"
+point = [50.0, 20.0]
+[wave.pulse]
+type = "cosine"
+amplitude = 0.5
+period = 0.05
+[[hole]]
+name = "tunnel"
+type = "circle"
+centre = [50.0, 50.0]
+radius = 5.0
+[[monitor]]
+name = "left"
+position = [44.5, 50.5]
+[[monitor]]
+name = "above"
+position = [50.5, 56.5]
+[run]
+duration = 0.3
+"""
+
+SOLID = Solid(2500.0, 1000.0, 1000.0 / math.sqrt(2.0))
+
+
+@pytest.mark.parametrize(("kind", "angle"), [("sv", 30.0), ("p", -20.0)])
+def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, angle) -> None:
+    """Direction, polarisation, and the delay from the point to the hole."""
+    case = with_changes(loads(CASE), {"incident.type": kind, "incident.angle": angle})
+    problem, motions = exact_motions(build(case))
+    assert problem.name == "scattering"
+    speed = SOLID.p_wave_speed if kind == "p" else SOLID.s_wave_speed
+    delay = 30.0 * math.cos(math.radians(angle)) / speed
+    wave = PlaneWave(kind, math.radians(90.0 - angle), case.wave["pulse"].velocity)
+    for name, place in (("left", [-5.5, 0.5]), ("above", [0.5, 6.5])):
+        motion = motions[name]
+        # what the surface sends back needs 120 m − 20 m up and 120 m − 57 m down, at 1000 m/s or less
+        early = motion.time < (100.0 + 60.0) * math.cos(math.radians(angle)) / 1000.0
+        expected = scattered_motion(motion.time[early] - delay, np.array([place]), wave, 5.0, SOLID)
+        assert np.abs(expected.velocity).max() > 0.3
+        for found, moved in ((motion.displacement, expected.displacement), (motion.velocity, expected.velocity)):
+            size = np.abs(moved).max()
+            np.testing.assert_allclose(found[early, :2], moved[0].T, rtol=0.0, atol=1e-4 * size)
+
+
+def test_what_the_surface_sends_back_is_part_of_it_until_the_holes_echo() -> None:
+    """A P wave straight up, of 0.05 s: at the surface, far beside the hole, it is there twice."""
+    far = {"name": "far", "position": [250.5, 119.5]}
+    changes = {"incident.type": "p", "incident.angle": 0.0, "outside.margin": 20, "monitor": [far]}
+    case = with_changes(loads(CASE), changes)
+    problem, motions = exact_motions(build(case))
+    # the wave meets the wall 25 m above the point, and what the hole scatters returns from its image above the surface
+    echo = (25.0 + math.hypot(200.5, 240.0 - 50.0 - 119.5) - 5.0) / 1000.0
+    assert problem.until["far"] == pytest.approx(echo, rel=1e-9)
+    motion = motions["far"]
+    assert 0.2 < motion.time[-1] <= echo
+    velocity, early = case.wave["pulse"].velocity, motion.time < 0.2
+    twice = velocity(motion.time - 0.0995) + velocity(motion.time - 0.1005)
+    np.testing.assert_allclose(motion.velocity[early, 1], twice[early], rtol=0.0, atol=1e-4)
+    np.testing.assert_allclose(motion.velocity[early, 0], 0.0, rtol=0.0, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (
+            {"hole": [{"name": "tunnel", "type": "rectangle", "corners": [48.0, 48.0, 52.0, 52.0]}]},
+            "that of one circle",
+        ),
+        ({"material.fric": 0.0, "incident.angle": 10.0}, "anisotropic"),
+        ({"load": [{"name": "blow", "force": [1.0, 0.0], "position": [45.5, 45.5], "wave": "pulse"}]}, "alone"),
+        ({"wave.pulse": {"type": "constant", "amplitude": 1.0}}, r"wave\.pulse: has a jump at"),
+    ],
+)
+def test_other_problems_are_refused(changes, message) -> None:
+    with pytest.raises(CaseError, match=message):
+        exact_motions(build(with_changes(loads(CASE), changes)))

@@ -1,0 +1,92 @@
+"""What disks at other places do to what monitors record, beside the exact plane wave in a bar."""
+
+import numpy as np
+import pytest
+from small_cases import PUSHED, small
+
+from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.expected import of_ground
+from dembound.accuracy.of_disks.places import middles_of_loads
+from dembound.casefile.disks import DiskCase
+from dembound.disks.scene import DiskScene
+from dembound.kinds import with_changes
+from dembound.running import plan
+
+LENGTH, SPEED = 30.0, 1000.0
+
+BAR = PUSHED | {
+    "packing": {"pattern": "A", "size": [LENGTH, 1.5], "radius": 0.25},
+    "boundary": {"left": {"type": "velocity", "wave_p": "push"}},
+    "motion": {"held": ["y", "rotation"]},
+    "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.03}},
+    "monitor": [{"name": "near", "position": [3.75, 0.75]}, {"name": "back", "position": [24.75, 0.75]}],
+    "run": {"duration": 0.063},
+}
+"""A wave of 60 disks, which returns from the free end, and at the end not yet from the driven one."""
+
+
+@pytest.fixture(scope="module")
+def given() -> Companions:
+    case = small(BAR)
+    assert isinstance(case, DiskCase)
+    planned = plan(case)
+    return Companions(case, planned.scene, planned.time_step, 0.0)  # type: ignore[arg-type]
+
+
+def exact(scene: DiskScene, name: str, time: np.ndarray) -> np.ndarray:
+    """Velocity at the disk of a monitor: of the wave from the first disk, and of what the free end sends back."""
+    first, place = float(scene.positions[:, 0].min()), float(scene.monitored[name][0])
+    wave = scene.case.wave["push"]
+    return np.sum([wave.velocity(time - way / SPEED) for way in (place - first, 2 * LENGTH - place - first)], axis=0)
+
+
+def test_other_places_change_the_motion_as_they_do_in_an_exact_wave(given: Companions) -> None:
+    """Disks of 1.5 m: waves start 0.5 m farther in, and one monitor is 0.5 m away, so that ways there and back differ.
+
+    The companion's disks, here as small as those given, delay what is compared by (qD)²/24 = 5e-4 of at most 60 m, q =
+    2π/30 m: 0.03 m, which changes motion by q times that, 0.6 %. Between disks the polynomial has (qD)³/16 = 7e-5 of
+    the motion, 7e-4 of a change that is q times 0.5 m of it. Half a per cent comes from the end of the record within a
+    wave.
+    """
+    planned = plan(with_changes(given.case, {"packing.radius": 0.75}))
+    scene = planned.scene
+    assert isinstance(scene, DiskScene)
+    places = next(cause for cause in of_ground(given, scene, planned.time_step)[0] if cause.name == "places")
+
+    for name, own in given.recorded(scene).items():
+        expected = exact(scene, name, own.time) - exact(given.scene, name, own.time)
+        assert np.linalg.norm(expected) > 0.03 * np.linalg.norm(own.values["velocity"][:, 0])
+        difference = np.asarray(places.errors[name]["velocity"])[:, 0] - expected
+        assert np.linalg.norm(difference) < 0.03 * np.linalg.norm(expected)
+
+
+def test_the_given_scene_has_no_other_places(given: Companions) -> None:
+    places = next(cause for cause in of_ground(given, given.scene, given.time_step)[0] if cause.name == "places")
+    for errors in places.errors.values():
+        np.testing.assert_allclose(np.asarray(errors["velocity"]), 0.0, atol=1e-12)
+
+
+def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_more() -> None:
+    """Disks of 1 m in place of 0.5 m: the left force is 0.25 m to the right, the right one as far to the left.
+
+    Seen from their middle the monitor moves 0.25 m to the right, seen from the left one not, from the right one 0.5 m.
+    """
+    regions = {"a": [0.6, 0.0, 1.9, 2.0], "b": [8.1, 0.0, 9.4, 2.0]}
+    loads = [{"name": name, "force": [1e5, 0.0], "region": box, "wave": "push"} for name, box in regions.items()]
+    tables = {"packing.size": [10.0, 4.0], "boundary": {}, "load": loads}
+    case = small(PUSHED, changes=tables | {"monitor": [{"name": "m", "position": [5.25, 1.75]}]})
+    assert isinstance(case, DiskCase)
+    given = plan(case)
+    companions = Companions(case, given.scene, given.time_step, 0.0)  # type: ignore[arg-type]
+    planned = plan(with_changes(case, {"packing.radius": 0.5, "monitor.m.position": [5.5, 1.5]}))
+    scene = planned.scene
+    assert isinstance(scene, DiskScene)
+    both = (middles_of_loads(each) for each in (scene, given.scene))
+    np.testing.assert_allclose([a[0] - b[0] for (a, _), (b, _) in zip(*both, strict=True)], [0.25, -0.25], atol=1e-9)
+
+    left, right = (moved["m"]["velocity"] for moved in companions.moved(scene))
+    places = next(cause for cause in of_ground(companions, scene, planned.time_step)[0] if cause.name == "places")
+
+    assert np.linalg.norm(right - left) > 0.3 * np.linalg.norm(right)
+    larger = max((left, right), key=lambda each: float(np.linalg.norm(each)))
+    np.testing.assert_allclose(np.asarray(places.errors["m"]["velocity"]), larger, atol=1e-9 * np.abs(larger).max())

@@ -1,0 +1,232 @@
+"""The elastic law in place of one with a history, where the body remains elastic."""
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from small_cases import PUSHED, small
+
+from dembound.accuracy.advise import choose
+from dembound.accuracy.best import Best
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
+from dembound.accuracy.runner import SHORT, Runner, measure
+from dembound.casefile.disks import DiskCase
+from dembound.kinds import with_changes
+from dembound.motion.paths import Source
+from dembound.running import Progress, plan
+from dembound.table import EVERYWHERE
+
+CONFINED: dict[str, Any] = PUSHED | {
+    "packing": {"pattern": "A", "size": [20.0, 12.0], "radius": 0.25},
+    "material": PUSHED["material"] | {"law": "linearpbond", "fric": 0.5, "pb_ten": 2e6, "pb_coh": 2e6},
+    "static": {"stress": [-1e6, -1e6, 0.0]},
+    "boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom", "top")},
+    "wave": {"push": {"type": "cosine", "amplitude": 1.0, "period": 0.02}},
+    "load": [{"name": "hit", "force": [0.0, 1e6], "region": [9.0, 5.0, 11.0, 7.0], "wave": "push"}],
+    "monitor": [{"name": "beside", "position": [14.75, 6.25]}],
+    "run": {"duration": 0.035},
+}
+"""A body under a stress at rest, in which a force sends S waves sideways."""
+
+
+ON_THE_GROUND = {"boundary": {"bottom": {"type": "roller"}, "left": {"type": "roller"}, "right": {"type": "roller"}}}
+
+
+def confined(changes: dict[str, Any] | None = None) -> DiskCase:
+    case = small(CONFINED, changes=changes)
+    assert isinstance(case, DiskCase)
+    return case
+
+
+def twin_of(case: DiskCase, most: float = SHORT, kept: tuple[str, ...] = ()) -> ElasticTwin | None:
+    return elastic_twin(case, plan(case), most, kept, Runner())
+
+
+@cache
+def own_twin() -> ElasticTwin:
+    found = twin_of(confined())
+    assert found is not None
+    return found
+
+
+def test_the_elastic_law_replaces_another_that_is_never_needed() -> None:
+    twin = own_twin()
+    assert twin.case.material.law == "elastic"
+    assert twin.case.material.pb_ten is None
+    assert twin.case.load == confined().load
+    assert twin.case.static is None  # whose stress does nothing to the motion of an elastic body
+    assert twin.diameter == 0.5  # that of the case itself, which costs little
+    assert 1.0 < twin.factor < 20.0
+
+
+def test_larger_waves_leave_it_at_the_load_factor() -> None:
+    for share, remains in ((0.9, True), (1.1, False)):
+        found = twin_of(confined({"wave.push.amplitude": share * own_twin().factor}))
+        assert (found is not None) is remains
+
+
+def test_with_larger_disks_more_is_needed() -> None:
+    few = 2000.0  # particle-steps, less than the largest disks take that resolve the wave
+    larger = twin_of(confined({"wave.push.amplitude": 0.1}), most=few)
+    assert larger is not None
+    assert larger.diameter == pytest.approx(4.0 / 3.0)
+    amplitude = 0.1 * larger.factor * 0.5 / larger.diameter / RESERVE
+    assert twin_of(confined({"wave.push.amplitude": 0.95 * amplitude}), most=few) is not None
+    assert twin_of(confined({"wave.push.amplitude": 1.05 * amplitude}), most=few) is None
+
+
+@pytest.mark.parametrize(
+    ("factor", "diameter", "holds"),
+    [(1.1, 1.0, True), (0.9, 1.0, False), (1.1, 2.0, False), (2.1, 2.0, True), (3.9, 0.5, False), (4.1, 0.5, True)],
+)
+def test_smaller_disks_are_nearer_to_the_limits(factor: float, diameter: float, holds: bool) -> None:
+    twin = ElasticTwin(own_twin().case, own_twin().planned, factor, 1.0, 0.0)
+    assert twin.holds(diameter) is holds
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"material": CONFINED["material"] | {"law": "elastic", "pb_ten": None, "pb_coh": None}},
+        {"material.elastic_start": False},
+        {"material.damp": 0.1},
+        {"hole": [{"name": "h", "type": "circle", "centre": [5.0, 5.0], "radius": 2.0}]},
+        {"load": [CONFINED["load"][0] | {"name": "steady", "wave": None}, *CONFINED["load"]], "static": ON_THE_GROUND},
+    ],
+)
+def test_where_it_is_not_known_the_law_remains(changes: dict[str, Any]) -> None:
+    assert twin_of(confined(_without_none(changes))) is None
+
+
+def _without_none(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_none(each) for key, each in value.items() if each is not None}
+    return [_without_none(each) for each in value] if isinstance(value, list) else value
+
+
+def test_a_kept_law_remains() -> None:
+    assert twin_of(confined(), kept=("material.law",)) is None
+    assert twin_of(confined(), kept=("material",)) is None
+    assert twin_of(confined(), kept=("material.pb_ten",)) is None
+    assert twin_of(confined(), kept=("material.law", "material.pb_ten")) is None
+    assert twin_of(confined(), kept=("packing", "material.density")) is not None
+    for kept in ("static", "static.stress"):
+        settled = twin_of(confined(), kept=(kept,))
+        assert settled is not None
+        assert settled.case.static == confined().static
+
+
+def test_without_the_stress_at_rest_an_elastic_body_moves_alike() -> None:
+    fixed = {"run.time_step": 0.9 * plan(own_twin().case).time_step}
+    settled = with_changes(own_twin().case, {"static": CONFINED["static"], **fixed})
+    without = with_changes(own_twin().case, fixed)
+    one, other = (measure(case, Progress())[0].motions["beside"].velocity for case in (settled, without))
+    np.testing.assert_allclose(one, other, atol=1e-9 * float(np.abs(other).max()))
+
+
+def test_the_law_remains_where_no_companion_can_run() -> None:
+    """Of disks of 1 m none is left between a hole of 1.2 m and others, that a pressure could push."""
+    blast = {"name": "blast", "pressure": 1e5, "hole": "h", "wave": "push"}
+    hole = {"name": "h", "type": "circle", "centre": [10.0, 6.0], "radius": 0.6}
+    tables = {key: value for key, value in CONFINED.items() if key != "static"} | {"load": [blast], "hole": [hole]}
+    tables["material"] = CONFINED["material"] | {"contact_share": 0.0}
+    case = small(tables)
+    assert isinstance(case, DiskCase)
+    own, few = twin_of(case), twin_of(case, most=1.0)
+    assert own is not None
+    assert few is None or few.diameter < 0.6
+
+
+def test_a_wave_on_all_sides_runs_through_the_scene() -> None:
+    size = (3.0, 4.0)
+    everywhere, there = Source(EVERYWHERE, 0.0, 1.0, 500.0), np.array([1.0, 1.0])
+    assert _way(everywhere, there, size) == 5.0
+    assert _way(Source((2.0, 1.0, 2.0, 1.0), 0.0, 1.0, 500.0), there, size) == 1.0
+
+
+def test_bonds_of_any_strength_always_hold() -> None:
+    material = PUSHED["material"] | {"law": "linearpbond", "contact_share": 0.0}
+    tables = {key: value for key, value in CONFINED.items() if key != "static"} | {"material": material}
+    case = small(tables)
+    assert isinstance(case, DiskCase)
+    found = twin_of(case)
+    assert found is not None
+    assert math.isinf(found.factor)
+    assert found.words == "the elastic law, which always holds"
+    assert found.stress == 0.0
+
+
+def _recorded(gauges: Motions) -> dict[str, History]:
+    return {
+        name: History(each.position, each.time, {q: each.values[q][:, :2] for q in ("velocity", "displacement")})  # type: ignore[arg-type]
+        for name, each in gauges.items()
+    }
+
+
+def test_the_stress_at_rest_that_turns_with_the_disks_is_counted() -> None:
+    """Without the elastic start a law whose contacts follow the motion differs by that, and is not below a third."""
+    twin = own_twin()
+    fixed = {"run.time_step": 0.9 * plan(confined()).time_step}
+    full = confined({**fixed, "material.elastic_start": False})
+    elastic = small_with(twin.case, fixed)
+    own, other = (_recorded(measure(case, Progress())[0].motions)["beside"] for case in (elastic, full))
+    scene = plan(elastic).scene
+    (cause,) = twin.causes(scene, {"beside": own})  # type: ignore[arg-type]
+    for quantity in ("velocity", "displacement"):
+        difference = own.values[quantity] - other.values[quantity]
+        true = float(np.linalg.norm(difference) / np.linalg.norm(own.values[quantity]))
+        expected = cause.errors["beside"][quantity]
+        assert isinstance(expected, float)
+        assert 0.3 < true / expected < 1.0
+    assert ElasticTwin(twin.case, twin.planned, 2.0, 0.5, 0.0).causes(scene, {"beside": own}) == []  # type: ignore[arg-type]
+
+
+def small_with(case: DiskCase, changes: dict[str, Any]) -> DiskCase:
+    found = with_changes(case, changes)
+    assert isinstance(found, DiskCase)
+    return found
+
+
+def test_what_turns_is_the_given_stress_and_the_weight() -> None:
+    """1 MPa; 2,500 kg/m³ under 10 m/s² over 12 m."""
+    assert own_twin().stress == 1e6
+    weight = {"name": "weight", "acceleration": [0.0, -10.0]}
+    changes = {"load": [*CONFINED["load"], weight], "static": ON_THE_GROUND, "material.contact_share": 0.0}
+    heavy = twin_of(confined(changes))
+    assert heavy is not None
+    assert heavy.stress == pytest.approx(2500.0 * 10.0 * 12.0)
+    assert heavy.case.static is not None  # balances the weight
+    still = twin_of(confined({"material.geometry": "reference"}))
+    assert still is not None
+    assert still.stress == 0.0
+
+
+@cache
+def chosen() -> Best:
+    return choose(confined(), 0.1)
+
+
+def test_the_choice_is_one_under_the_elastic_law() -> None:
+    choice = chosen()
+    assert choice.holds
+    assert isinstance(choice.case, DiskCase)
+    assert choice.case.material.law == "elastic"
+    assert "the elastic law, which holds up to" in choice.words
+    assert any(line.startswith("material = ") for line in choice.choice.toml)
+    assert choice.given == confined()
+
+
+def test_the_given_law_is_chosen_where_what_turns_is_too_much() -> None:
+    """Under 10 MPa the elastic law has an error of 1.3 p/ρc_p² = 0.5 % or more; costs are those while nothing opens."""
+    case = confined({"static.stress": [-1e7, -1e7, 0.0], "run.duration": 0.02})
+    found = choose(case, 0.003, ["boundary", "packing.radius"])
+    assert isinstance(found.case, DiskCase)
+    assert found.case.material.law == "linearpbond"
+    assert found.case.static is not None
+    other = choose(case, 0.5, ["boundary", "packing.radius"])
+    assert isinstance(other.case, DiskCase)
+    assert other.case.material.law == "elastic"
+    assert found.own_cost == other.own_cost

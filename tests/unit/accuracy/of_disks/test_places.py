@@ -1,0 +1,79 @@
+"""Motion between the disks of a lattice, and where loads start waves."""
+
+import numpy as np
+import pytest
+from small_cases import PUSHED, small
+
+from dembound.accuracy.of_disks.places import NINE, middle_of_loads, patch_around, weights_at
+from dembound.disks.scene import DiskScene, build
+
+HOLE = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.0, 6.0, 1.0]}
+
+
+def lattice(**changes: object) -> DiskScene:
+    """Disks of 0.5 m in 10 m × 2.5 m, the first at 0.25 m."""
+    return build(small(PUSHED, changes=changes))  # type: ignore[arg-type]
+
+
+def test_quadratic_motion_is_found_at_any_place() -> None:
+    """Products of parabolas along x and along y are what Lagrange's polynomials through nine places are made of."""
+    patch = 0.5 * NINE + [3.25, 1.25]
+
+    def motion(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.asarray((1.0 - 2.0 * x + 0.5 * x**2) * (3.0 + y - 0.25 * y**2))
+
+    for place in ([3.25, 1.25], [3.4, 1.1], [3.75, 0.9], [2.6, 1.9]):
+        found = weights_at(patch, np.array(place)) @ motion(*patch.T)
+        assert found == pytest.approx(float(motion(*np.array(place))), rel=1e-12)
+    assert weights_at(patch[:1], np.array([9.0, 9.0])) == pytest.approx([1.0])
+    assert weights_at(patch, np.array([9.0, 1.3])) == pytest.approx(weights_at(patch, np.array([4.25, 1.3])))
+
+
+@pytest.mark.parametrize(
+    ("place", "middle"),
+    [((3.3, 1.3), (3.25, 1.25)), ((9.9, 2.4), (9.25, 1.75)), ((0.2, 1.2), (0.75, 1.25))],
+    ids=["inside", "in a corner", "at a side"],
+)
+def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], middle: tuple[float, float]) -> None:
+    np.testing.assert_allclose(patch_around(lattice(), np.array(place)), 0.5 * NINE + middle, atol=1e-12)
+
+
+def test_a_patch_has_no_disks_that_a_hole_has_taken() -> None:
+    scene = lattice(hole=[HOLE])
+    patch = patch_around(scene, np.array([5.0, 1.2]))
+    assert patch[4] == pytest.approx([4.75, 1.75]) or patch[4] == pytest.approx([5.25, 1.75])
+    disks = {(round(x, 6), round(y, 6)) for x, y in scene.positions}
+    assert all((round(x, 6), round(y, 6)) in disks for x, y in patch)
+
+
+def test_bodies_two_disks_high_have_single_disks() -> None:
+    scene = lattice(**{"packing.size": [10.0, 1.0], "monitor": [{"name": "back", "position": [9.6, 0.2]}]})
+    np.testing.assert_allclose(patch_around(scene, np.array([3.3, 0.3])), [[3.25, 0.25]], atol=1e-12)
+
+
+def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
+    """Of 1 at (2.5, 1) and 3 at (6.5, 1): (5.5, 1); a pressure counts from the middle of its hole."""
+    loads = [
+        {"name": "a", "force": [1e5, 0.0], "region": [2.0, 0.5, 3.0, 1.5], "wave": "push"},
+        {"name": "b", "force": [0.0, -3e5], "region": [6.0, 0.5, 7.0, 1.5], "wave": "push"},
+    ]
+    cave = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.5, 6.0, 1.5]}
+    blast = {"name": "c", "pressure": 1e5, "hole": "cave", "wave": "push"}
+    free = {"boundary": {}}
+
+    def middle(**changes: object) -> np.ndarray | None:
+        return middle_of_loads(build(small(PUSHED, changes=changes)))  # type: ignore[arg-type]
+
+    assert middle(load=loads, **free) == pytest.approx(np.array([5.5, 1.0]))
+    assert middle(load=[blast], hole=[cave], **free) == pytest.approx(np.array([5.0, 1.0]))
+    assert middle() is None  # driven
+
+
+def test_loads_that_a_body_rests_under_start_no_waves() -> None:
+    foot = {"name": "foot", "force": [0.0, -1e6], "region": [2.0, 0.5, 3.0, 1.5]}
+    hit = {"name": "hit", "force": [1e5, 0.0], "region": [6.0, 0.5, 7.0, 1.5], "wave": "push"}
+    at_rest = {"load": [foot, hit], "boundary": {}, "static": {"boundary": {"bottom": {"type": "fixed"}}}}
+    assert middle_of_loads(build(small(PUSHED, changes=at_rest))) == pytest.approx(np.array([6.5, 1.0]))  # type: ignore[arg-type]
+    sudden = {"load": [foot, hit], "boundary": {}}
+    found = middle_of_loads(build(small(PUSHED, changes=sudden)))  # type: ignore[arg-type]
+    assert found == pytest.approx(np.array([(10 * 2.5 + 6.5) / 11, 1.0]))

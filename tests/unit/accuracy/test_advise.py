@@ -1,0 +1,160 @@
+"""The cheapest choice within an error, of a bar under a P wave."""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from small_cases import PUSHED, small
+
+from dembound.accuracy.advise import choose
+from dembound.accuracy.best import Best
+from dembound.accuracy.history import Motions
+from dembound.accuracy.of_disks import search as of_disks
+from dembound.accuracy.of_disks.search import SAFETY
+from dembound.accuracy.runner import measure
+from dembound.casefile.disks import DiskCase
+from dembound.errors import CaseError
+from dembound.running import Progress
+
+BAR = PUSHED | {
+    "packing": {"pattern": "A", "size": [30.0, 1.5], "radius": 0.25},
+    "boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous", "beta_p": 0.6}},
+    "motion": {"held": ["y", "rotation"]},
+    "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.03}},
+    "monitor": [{"name": "near", "position": [3.75, 0.75]}, {"name": "back", "position": [24.75, 0.75]}],
+    "run": {"duration": 0.07},
+}
+"""Waves of 60 disks; factor 0.6 of the dashpots returns (1 - 0.6)/(1 + 0.6) = 25 % of the velocity."""
+
+RETURNED = (1.0 - 0.6) / (1.0 + 0.6)
+
+
+def bar() -> DiskCase:
+    case = small(BAR)
+    assert isinstance(case, DiskCase)
+    return case
+
+
+@cache
+def chosen() -> Best:
+    return choose(bar(), 0.02)
+
+
+def exact(case: DiskCase, gauges: Motions, name: str) -> np.ndarray:
+    """The velocity of a plane wave from the first disk of the given case, at the times of a history."""
+    way = {"near": 3.75, "back": 24.75}[name] - 0.25
+    return np.asarray(case.wave["push"].velocity(gauges[name].time - way / 1000.0))
+
+
+def true_error(given: DiskCase, case: Any) -> float:
+    """Largest RMS of the velocity's error over that of the velocity."""
+    gauges = measure(case, Progress())[0].motions
+    errors = [gauges[name].velocity[:, 0] - exact(given, gauges, name) for name in gauges]
+    sizes = [exact(given, gauges, name) for name in gauges]
+    return max(float(np.linalg.norm(e) / np.linalg.norm(s)) for e, s in zip(errors, sizes, strict=True))
+
+
+def test_the_choice_is_as_accurate_as_asked_for_where_the_case_is_not() -> None:
+    case = bar()
+    assert true_error(case, case) > 0.9 * RETURNED / 2**0.5  # the echo comes back to one monitor in full
+    choice = chosen()
+    assert choice.holds
+    assert true_error(case, choice.case) < 0.02
+    assert choice.cost <= choice.own_cost * 1.01  # matched dashpots need no more steps
+
+
+def test_only_what_may_change_does() -> None:
+    case, changed = bar(), chosen().case
+    for name in ("material", "wave", "motion", "load", "hole", "run", "output"):
+        assert getattr(changed, name) == getattr(case, name)
+    assert changed.side("left") == case.side("left")
+    assert [monitor.name for monitor in changed.monitor] == ["near", "back"]
+
+
+def test_a_loose_bound_leaves_the_sides_as_they_are() -> None:
+    """0.25 < bound/SAFETY, with larger disks only if their error leaves it."""
+    choice = choose(bar(), 0.6, ["packing"])
+    assert choice.holds
+    assert choice.choice.toml == []
+
+
+def test_kept_keys_remain_and_the_best_is_returned_where_nothing_holds() -> None:
+    case = bar()
+    choice = choose(case, 0.01, ["boundary", "packing"])
+    assert not choice.holds
+    assert SAFETY * choice.error > 0.01
+    assert choice.case.packing == case.packing
+    assert choice.case.boundary == case.boundary
+    assert choice.by["sides"] == pytest.approx(true_error(case, case), rel=0.1)
+
+
+def test_the_best_may_have_sides_that_only_larger_disks_can_afford(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Far sides and disks of 0.5 m have an error of 0.1 %, disks of 0.17 m without them one of 40 %."""
+    monkeypatch.setattr(of_disks, "COSTLIEST", 10.0)  # those of 0.17 m cost 9 times the given ones, far sides 3 times
+    push = {"name": "push", "region": [13.5, 0.0, 15.0, 1.5], "force": [1e6, 0.0], "wave": "push"}
+    ends = {"boundary": dict.fromkeys(("left", "right"), BAR["boundary"]["right"]), "load": [push]}
+    choice = choose(small(BAR | ends), 0.001, ["boundary"])
+    assert not choice.holds
+    assert choice.error < 0.002
+
+
+@pytest.mark.parametrize("bound", [0.0, 1.0, -0.1, float("nan")])
+def test_bounds_are_shares(bound: float) -> None:
+    with pytest.raises(CaseError, match="--error: is"):
+        choose(bar(), bound)
+
+
+def test_cases_without_monitors_are_refused() -> None:
+    with pytest.raises(CaseError, match="needs a monitor"):
+        choose(small({key: value for key, value in BAR.items() if key != "monitor"}), 0.01)
+    with pytest.raises(CaseError, match=r"--keep: packing\.radios is no key"):
+        choose(bar(), 0.01, ["packing.radios"])
+
+
+def test_monitors_that_nothing_reaches_are_refused() -> None:
+    """To 24.5 m waves of 1,000 m/s take 24.5 ms; what runs ahead of them has faded after a few disks."""
+    far = [{"name": "back", "position": [24.75, 0.75]}]
+    late = {"push": BAR["wave"]["push"] | {"start": 0.05}}
+    for tables in ({"run": {"duration": 0.01}, "monitor": far}, {"run": {"duration": 0.04}, "wave": late}):
+        with pytest.raises(CaseError, match="nothing moves at the monitors"):
+            choose(small(BAR | tables), 0.01)
+
+
+def test_what_whole_cells_at_a_side_reflect_is_counted() -> None:
+    """Half a cell too much at matched dashpots reflects kD/4 or so of a wave, 2 % of one of 20 disks."""
+    sides = {"left": BAR["boundary"]["left"], "right": {"type": "viscous", "beta_p": 1.0}}
+    case = small(BAR, changes={"boundary": sides, "wave.push.period": 0.012})
+
+    choice = choose(case, 0.001, ["boundary", "packing"])
+
+    assert choice.by["sides"] > 0.01
+    assert choice.error == pytest.approx(true_error(case, case), rel=0.2)  # type: ignore[arg-type]
+
+
+def test_cases_whose_errors_depend_on_what_is_not_known_are_refused() -> None:
+    shaken = {key: value for key, value in BAR.items() if key != "boundary"} | {
+        "boundary": {"right": {"type": "viscous"}},
+        "load": [{"name": "shake", "acceleration": [1.0, 0.0], "wave": "push"}],
+    }
+    with pytest.raises(CaseError, match=r"load\.shake: starts waves everywhere"):
+        choose(small(shaken), 0.01)
+    steady = {"name": "foot", "force": [1.0, 0.0], "region": [5.0, 1.0, 6.0, 1.5]}
+    with pytest.raises(CaseError, match=r"load\.shake: starts waves everywhere"):
+        choose(small(shaken | {"load": [*shaken["load"], steady]}), 0.01)
+
+
+def test_where_bonds_break_the_error_is_that_before() -> None:
+    """A pulse of 1.25 MPa comes back from a free end as tension, and breaks bonds of 0.8 MPa."""
+    tables = BAR | {
+        "material": BAR["material"] | {"law": "linearpbond", "contact_share": 0.0, "pb_ten": 0.8e6},
+        "boundary": {"left": {"type": "viscous_input", "wave_p": "push"}},
+        "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.02}},
+        "run": {"duration": 0.1},
+    }
+    choice = choose(small(tables), 0.1, ["boundary", "packing"])
+    assert "the error is that before bonds break, after about 0.04" in choice.words
+    assert isinstance(choice.case, DiskCase)
+    assert choice.case.material.law == "linearpbond"
+    assert choice.case.run.until == "duration"
+    assert choice.holds

@@ -1,0 +1,301 @@
+"""Enlarged scenes: how large, with what where, and when not."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dembound.accuracy.extended import extended
+from dembound.disks.scene import build
+from dembound.errors import CaseError
+from dembound.kinds import checked, load
+from dembound.packings.tiling import count_disks
+from dembound.running import plan
+
+GRIP = {"type": "velocity", "wave_p": "pulse"}
+WAVE = {"wave_p": "pulse"}
+BASE = {"type": "viscous_input", **WAVE}
+FIELD = {"motion.held": [], "run.duration": 0.02, "packing.size": [10.0, 5.0]}
+HOLE = {"name": "tunnel", "type": "circle", "centre": [6.0, 3.0], "radius": 0.8}
+BLOW = {"name": "blow", "force": [1e5, 0.0], "position": [3.1, 2.2], "wave": "pulse"}
+REGION = {**BLOW, "name": "wide", "position": None, "region": [1.0, 1.0, 3.0, 2.0]}
+SPRINGS = {"type": "viscoelastic", "source": [3.25, 2.25]}
+
+
+@pytest.fixture
+def field(bar):
+    """Makes cases: a field with a hole, two loads and sides that are all artificial but the top."""
+
+    def make(changes=None):
+        region = {key: value for key, value in REGION.items() if value is not None}
+        boundary = {"left": {"type": "viscous"}, "right": SPRINGS, "bottom": {"type": "roller"}}
+        own = {"hole": [HOLE], "load": [BLOW, region], "boundary": boundary}
+        own["monitor"] = [{"name": "a", "position": [2.1, 4.0]}, {"name": "b", "position": [9.9, 0.1]}]
+        return bar({**FIELD, **own, **(changes or {})}, "field")
+
+    return make
+
+
+def at(scene, nodes, shift):
+    """Place of particles less a shift, and the disk of the brick."""
+    return scene.positions[nodes] - shift, scene.assembly.brick_particle[nodes]
+
+
+@pytest.mark.parametrize("pattern", ["A", "B", "C"])
+def test_all_is_at_its_place_on_its_particles(field, pattern) -> None:
+    random = {"pattern": pattern, "size": [10.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+    if pattern == "C":
+        random["edge_radius"] = 0.26
+    case = field({} if pattern == "A" else {"packing": random})
+    small, large = build(case), build(checked(extended(case).case))
+    shift = large.size - small.size
+    right = large.positions[large.monitors["b"], 0] - small.positions[small.monitors["b"], 0]
+    shift[0] = right
+
+    assert 0.0 < shift[0] < large.size[0] - small.size[0]
+    assert shift[1] > 0.0
+    np.testing.assert_allclose(np.array(shift) / case.packing.brick_size % 1.0 % (1.0 - 1e-9), 0.0, atol=1e-9)
+    np.testing.assert_allclose(extended(case).inside, [*shift, *(shift + small.size)])
+    for name, node in small.monitors.items():
+        (here, twin), (there, its) = at(small, node, 0.0), at(large, large.monitors[name], shift)
+        np.testing.assert_allclose(there, here, atol=1e-9)
+        assert twin == its
+    for table in ("drive", "drive_signal"):
+        driven = getattr(small.supports, table), getattr(large.supports, table)
+        np.testing.assert_allclose(np.sort(driven[0]), np.sort(driven[1]), rtol=1e-12)
+    inside = ((large.positions > shift - 1e-9) & (large.positions < shift + small.size + 1e-9)).all(axis=1)
+    assert np.count_nonzero(inside) >= small.count  # disks that the cut severed are connected again
+    assert np.count_nonzero(inside) - small.count <= 0.02 * small.count
+    source = extended(case).case.boundary["right"].source
+    assert source == pytest.approx((3.25 + shift[0], 2.25 + shift[1]), rel=1e-12)
+
+
+@pytest.mark.parametrize("side", ["fixed", "roller", "free"])
+def test_other_sides_move_where_the_case_calls_them_artificial(bar, side) -> None:
+    def width(**keys) -> float:
+        changes = {"boundary.left": GRIP, "boundary.right": {"type": side, **keys}, "run.duration": 0.05}
+        return extended(bar(changes)).case.packing.extent[0]
+
+    assert width(artificial=False) == 10.0 < width(artificial=True)
+    assert width() == width(artificial=side != "free")
+
+
+def test_sides_that_are_physical_stay(bar) -> None:
+    found = extended(bar({"boundary.left": GRIP, "run.duration": 0.05}))
+    tall = extended(bar({"motion.held": ["x"], "boundary": {"bottom": GRIP, "top": {"type": "viscous"}}, **{}}))
+
+    wide, high = found.case.packing.extent
+    assert high == 1.0
+    # to the middle at 4.75 m and back within 0.05 s, over the side at X: 2X − 4.75 = 50 m and the precursor,
+    # 10 (50 · 0.5²/8)^(1/3) = 11.6 m: X = 33.2 m, whole disks of 0.5 m
+    middle = build(found.case).positions[build(found.case).monitors["middle"], 0]
+    needed = 0.5 * (50.0 + 10.0 * np.cbrt(50.0 * 0.25 / 8.0) + middle)
+    assert wide == pytest.approx(0.5 * np.ceil(2.0 * needed), rel=1e-12)
+    assert found.case.monitor[0].position[0] == pytest.approx(middle, rel=1e-12)
+    assert found.sentence == (
+        f"reference: the same scene {wide:g} m × 1 m, {int(4 * wide):,} particles, from which nothing returns "
+        "before 0.05 s"
+    )
+    assert tall.case.packing.extent[0] == 10.0
+    assert found.case.run.time_step == plan(bar({"boundary.left": GRIP})).time_step
+    assert found.case.name == "bar_extended"
+
+
+def test_where_waves_enter_a_side_stays_and_is_named(bar) -> None:
+    found = extended(bar({"boundary.left": BASE, "run.duration": 0.05}))
+
+    assert found.sentence.endswith(
+        "from whose right nothing returns before 0.05 s; left stays, as waves enter there, and reflects as in the case"
+    )
+    with pytest.raises(CaseError, match=r"^boundary\.left: lets motion in"):
+        extended(bar({"boundary": {"left": BASE}}))
+
+
+def test_a_free_field_is_widened_only_for_what_is_local(bar) -> None:
+    sides = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": BASE}
+    plain = {**FIELD, "boundary": sides, "run.duration": 0.03}
+    without, hollow = (bar({**plain, **changes}) for changes in ({}, {"hole": [HOLE]}))
+
+    assert extended(without).case is without  # the column moves like the ground
+    assert extended(hollow).case.packing.extent[0] > 10.0
+    assert extended(hollow).case.packing.extent[1] == 5.0
+    scene = build(checked(extended(hollow).case))
+    assert f"{scene.count:,} particles" in extended(hollow).sentence
+
+
+def test_sides_of_a_continuum_under_waves_from_below_move_as_free_fields_do(bar) -> None:
+    """Their column has the waves of the ground, so only what holes scatter has to stay away."""
+    outside = {"left": {"type": "outside"}, "right": {"type": "outside"}, "bottom": {"type": "outside", **WAVE}}
+    free_field = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": BASE}
+    around, beside = (
+        extended(bar({**FIELD, "hole": [HOLE], "boundary": sides, "run.duration": 0.03}))
+        for sides in (outside, free_field)
+    )
+    assert around.inside == beside.inside
+    assert around.inside[0] > 0.0
+    assert around.case.packing == beside.case.packing
+    assert around.sentence.endswith(
+        "bottom stays, as waves enter there, before a continuum, which returns next to nothing"
+    )
+
+
+def test_a_box_in_the_ground_is_not_extended(bar) -> None:
+    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    said = r"^ground\.size: the scene cannot be extended, .* --reference finest, .* packing\.size = \[30, 5\]"
+    with pytest.raises(CaseError, match=said):
+        extended(bar({**FIELD, "boundary": sides, "ground.size": [30.0, 5.0], "packing.origin": [10.0, 0.0]}))
+
+
+def test_a_scene_large_enough_is_left_alone(bar) -> None:
+    short, free = bar({"run.duration": 1e-3}), bar({"boundary": {"left": GRIP}})
+
+    assert extended(short).case is short
+    assert "nothing returns before 0.001 s" in extended(short).sentence
+    assert extended(free).case is free
+    assert (
+        extended(free).sentence
+        == "reference: the same scene 10 m × 1 m, 40 particles, none of whose sides is artificial"
+    )
+
+
+def test_without_monitors_nothing_returns_to_any_place(bar) -> None:
+    changes = {"boundary.left": GRIP, "run.duration": 0.05}
+    watched, unwatched = (extended(bar({**changes, **each})).case.packing.extent[0] for each in ({}, {"monitor": []}))
+    # the farthest place is the right side, 10 m, in place of the middle
+    assert unwatched == pytest.approx(watched + 0.5 * (10.0 - 4.75), abs=0.5)
+
+
+def test_too_many_particles_are_refused_with_the_size_needed(bar) -> None:
+    case = bar({"boundary.left": GRIP, "run.duration": 10.0})
+
+    with pytest.raises(CaseError, match=r"run\.duration: is 10 s.* only in a scene of 50..(\.5)? m × 1 m with 20,1"):
+        extended(case, most=1000)
+
+
+def test_a_hole_over_a_side_that_moves_is_refused(field) -> None:
+    valley = {"name": "valley", "type": "rectangle", "corners": [-1.0, 3.0, 2.0, 6.0]}
+    moved = {"monitor": [{"name": "a", "position": [5.0, 1.0]}], "load": []}
+    moved["boundary"] = {"left": {"type": "viscous"}, "right": {"type": "velocity", "wave_p": "pulse"}}
+
+    with pytest.raises(CaseError, match=r"^hole\.valley: reaches the left side"):
+        extended(field({**moved, "hole": [valley]}))
+    extended(field({**moved, "hole": [{**valley, "corners": [8.0, 3.0, 12.0, 6.0]}]}))  # over a side that stays
+
+
+@pytest.mark.parametrize("pattern", ["A", "B", "C"])
+@pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
+def test_disks_are_counted_as_tiled(lab_brick, pattern, periodic) -> None:
+    from dembound.packings.tiling import tile
+
+    brick = lab_brick(pattern)
+    for copies in ((1, 1), (3, 2)):
+        made = tile(brick, copies, periodic)
+        assert count_disks(brick, copies, periodic) == len(made.radii) + made.loose
+
+
+@pytest.fixture
+def lab_brick(bar):
+    def make(pattern):
+        keys = {"pattern": pattern, "bricks": [1, 1], "radius": 0.25}
+        if pattern != "A":
+            keys |= {"radius_ratio": 1.5, "brick": [5.0, 5.0]}
+        if pattern == "C":
+            keys["edge_radius"] = 0.26
+        return bar({"packing": keys, "monitor": []}).packing.pack(1.25e9)
+
+    return make
+
+
+def test_a_rock_bar_grows_beyond_its_absorbing_end(spalling) -> None:
+    method = {"type": "finite_difference"}
+    case = spalling({"boundary.right": {"type": "viscous"}, "method": method, "run.duration": 4e-3})
+    found = extended(case)
+
+    # there and back to 0.525 m from the inner end of the load, 0.05 m: 2X − 0.575 m = 4 m and the precursor
+    needed = 0.5 * (4.0 + 10.0 * np.cbrt(4.0 * 0.025**2 / 8.0) + 0.575)
+    assert found.case.bar.length == pytest.approx(0.025 * np.ceil(needed / 0.025), rel=1e-12)
+    assert found.case.monitor[0].position == pytest.approx(0.525, rel=1e-12)
+    nodes = round(found.case.bar.length / 0.025) + 1
+    assert found.sentence == (
+        f"reference: the same bar {found.case.bar.length:g} m long, {nodes} nodes, from which nothing returns "
+        "before 0.004 s"
+    )
+    other = spalling({"boundary.left": {"type": "viscous"}, "load.hit.side": "right", "run.duration": 4e-3})
+    found = extended(other)
+    longer, beyond = found.case, found.case.bar.length - 1.0
+    assert longer.monitor[0].position - 0.525 == pytest.approx(beyond, rel=1e-12)
+    assert found.inside == pytest.approx((beyond, 0.0, beyond + 1.0, 0.0))
+
+
+def test_a_loaded_end_stays(spalling) -> None:
+    with pytest.raises(CaseError, match=r"^boundary\.left: lets motion in"):
+        extended(spalling({"boundary.left": {"type": "viscous"}}))
+
+
+@pytest.mark.parametrize("duration", [0.002, 0.05])
+def test_monitors_and_loads_in_a_continuum_are_at_disks_of_the_larger_scene(bar, duration) -> None:
+    places = {"in": (4.1, 3.9), "beside": (-1.4, 2.2), "low": (4.2, -1.7)}
+    case = bar(
+        {
+            "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25},
+            "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+            "outside": {"element": 2.0, "margin": 2},
+            "motion.held": [],
+            "load": [{"name": "f", "force": [0.0, -1.0], "region": [9.0, 3.5, 11.5, 4.0], "wave": "pulse"}],
+            "monitor": [{"name": name, "position": list(place)} for name, place in places.items()],
+            "run.duration": duration,
+        }
+    )
+    found = extended(case)
+    small, large = build(case), build(checked(found.case))
+
+    assert len(small.between) == 2
+    assert not large.between
+    for name, place in large.monitored.items():
+        np.testing.assert_allclose(place - found.inside[:2], small.monitored[name], atol=1e-9)
+    (load,) = found.case.load
+    np.testing.assert_allclose(np.reshape(load.region, (2, 2)) - found.inside[:2], [[9.0, 3.5], [11.5, 4.0]], atol=1e-9)
+    assert f"{large.disk_count:,} particles" in found.sentence
+
+
+@pytest.mark.parametrize("stage", ["before", "after"])
+def test_the_floor_of_a_slope_goes_on_beyond_a_continuum(bar, stage) -> None:
+    slope = {"name": "slope", "type": "polygon", "points": [[4.0, 11.0], [6.0, 6.0], [11.0, 6.0], [11.0, 11.0]]}
+    weight = {"name": "weight", "acceleration": [0.0, -9.81]}
+    blow = BLOW | {"position": [2.25, 9.75]}
+    changes = {
+        **{"packing.size": [10.0, 10.0], "motion.held": [], "run.duration": 0.02, "monitor": []},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        "hole": [slope | {"stage": stage}],
+        "load": [blow, weight] if stage == "after" else [blow],
+    }
+    if stage == "after":
+        held = {"bottom": {"type": "fixed"}, "left": {"type": "roller"}, "right": {"type": "roller"}}
+        changes["static"] = {"boundary": held}
+    case = bar(changes)
+    larger = extended(case)
+    left, bottom, right, _ = larger.inside
+    made = build(larger.case)
+
+    assert right < larger.case.packing.extent[0]
+    x, y = made.assembly.positions.T
+    assert y[x > left + 6.0].max() < bottom + 6.0
+    assert y[x < left + 4.0].max() > bottom + 9.5
+    assert checked(larger.case).floors.keys() == {"right"}
+    assert made.outside.levels["right"].surface == pytest.approx(bottom + 6.0, abs=1e-9)
+    assert (made.before is None) == (stage == "before")
+    if stage == "after":
+        assert not made.before.outside.levels
+
+
+def test_a_bar_of_ranges_has_a_longer_end_range() -> None:
+    case = load(Path(__file__).parents[3] / "cases" / "shpb.toml")
+    found = extended(case)
+
+    # from the striker's end at 0.2 m over the end to the gauge at 2.0126 m are 3 m for an end at 2.606 m, beyond which
+    # only the precursor of the front counts
+    lengths = [each.length for each in found.case.bar.range]
+    assert lengths[:-1] == [0.2, 0.0017, 1.2, 0.0109]
+    assert 2.606 < found.case.bar.length < 2.7
+    assert found.case.bar.length == pytest.approx(sum(lengths), rel=1e-12)
+    assert found.case.run.courant == 1.0

@@ -1,0 +1,157 @@
+"""Runs with cracks once more: what two of them have in common, and that the second one is the same problem."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from small_cases import PULLED, PUSHED, TORN, small
+
+from dembound.accuracy import repeat
+from dembound.accuracy.estimate import estimate_results
+from dembound.accuracy.repeat import Cracked, Repeat, repeated
+from dembound.errors import CaseError, RunError
+from dembound.results.compare import compare
+from dembound.running import run_case
+from dembound.running.recorded import recorded_case
+
+BREAKING = TORN | {"output.estimate": True, "run.checkpoint": 100.0}
+"""With keys that a second run must not have."""
+
+
+@pytest.fixture(scope="module")
+def torn(tmp_path_factory) -> Path:
+    """The folder of a run whose bonds break."""
+    return run_case(small(PUSHED, "torn", BREAKING), tmp_path_factory.mktemp("torn"))
+
+
+def cracked(x: list[float], size: float = 1.0) -> Cracked:
+    """Cracks on a line."""
+    return Cracked(np.column_stack([x, np.zeros(len(x))]), np.ones(len(x)), 2.0 * len(x), "J/m", size, 0.1)
+
+
+def test_cracks_in_common_are_counted_in_both_runs() -> None:
+    """Neither the one that repeats all of the other's and has more, nor the one with fewer, has all in common."""
+    first, second = cracked([0.0, 5.0, 5.9, 9.0]), cracked([1.0, 5.5, 20.0])
+    for own, other in ((first, second), (second, first)):
+        assert Repeat(own, other, {}, 1.0).common == pytest.approx(5.0 / 7.0)  # 0, 5, 5.9 and 1, 5.5
+    assert Repeat(first, cracked([]), {}, 1.0).common == 0.0
+    assert Repeat(first, first, {}, 1.0).common == 1.0
+    assert Repeat(cracked([0.0]), cracked([1.06]), {}, 1.0).common == 0.0
+
+
+def test_the_radius_of_their_zone_leaves_out_the_farthest() -> None:
+    line = cracked(np.linspace(-10.0, 10.0, 2001).tolist())
+    assert line.radius == pytest.approx(9.5, abs=0.01)
+    assert cracked([]).radius is None
+    assert cracked([3.0]).radius == 0.0
+
+
+def test_a_repeat_with_the_same_step_is_the_same_run(torn) -> None:
+    """All but the step is that of the run: also duration, laws and output of histories."""
+    record = torn / "run.h5"
+    same = repeated(recorded_case(record), record, Cracked.of(record), 1.0)
+
+    assert np.array_equal(same.other.places, same.own.places)
+    assert np.array_equal(same.other.times, same.own.times)
+    assert (same.common, same.cost) == (1.0, 1.0)
+    assert same.other.energy == same.own.energy > 0.0
+    assert same.changes == {name: {"velocity": 0.0, "displacement": 0.0} for name in ("front", "back")}
+
+
+def test_a_repeat_is_in_the_estimate_and_leaves_no_run_behind(torn, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(repeat.TemporaryDirectory, "__init__", _in(tmp_path, repeat.TemporaryDirectory.__init__))
+    before = sorted(torn.parent.iterdir())
+    found = estimate_results(torn, repeat=True)
+
+    assert sorted(torn.parent.iterdir()) == before
+    assert not any(tmp_path.iterdir())
+    entry = json.loads((torn / "summary.json").read_text(), parse_constant=pytest.fail)["error_estimate"]
+    assert entry["repeat"] == found.repeat.summary()
+    own, other = entry["repeat"]["this_run"], entry["repeat"]["second_run"]
+    assert other["time_step"] == pytest.approx(0.98 * own["time_step"], rel=1e-12)
+    assert own["cracks"] == len(Cracked.of(torn / "run.h5")) > 10
+    assert entry["repeat"]["within"] == pytest.approx(1.05 * 0.5)
+    assert [line.split(":")[0] for line in entry["notes"]] == [
+        "repeated at 0.98 of the time step",
+        *entry["notes"][1:2],
+        "motion changes by",
+    ]
+    assert entry["cost"] > 1.0
+    assert any(line.startswith("motion after") for line in entry["not_estimated"])
+    with h5py.File(torn / "estimate.h5") as file:
+        assert len(file["repeat/time"]) == len(file["repeat/position"]) == other["cracks"]
+
+
+def test_a_repeat_that_fails_leaves_the_results_as_they_are(torn, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(repeat.TemporaryDirectory, "__init__", _in(tmp_path, repeat.TemporaryDirectory.__init__))
+
+    def half_written(case, folder):
+        (folder / "torn.partial").mkdir()
+        raise RunError("the motion grows without bound")
+
+    monkeypatch.setattr(repeat, "run_case", half_written)
+    before = {path: path.read_bytes() for path in torn.iterdir() if path.is_file()}
+    with pytest.raises(RunError):
+        estimate_results(torn, repeat=True)
+
+    assert not any(tmp_path.iterdir())
+    assert {path: path.read_bytes() for path in torn.iterdir() if path.is_file()} == before
+
+
+def _in(folder, make):
+    """A temporary directory made in a folder."""
+    return lambda self, **options: make(self, **options, dir=folder)
+
+
+def test_changes_of_motion_are_those_that_compare_finds(torn, tmp_path) -> None:
+    """The second run, made and kept: the same numbers."""
+    record = torn / "run.h5"
+    found = repeated(recorded_case(record), record, Cracked.of(record))
+    again = run_case(small(PUSHED, "again", BREAKING | {"run.time_step": found.other.time_step}), tmp_path)
+    for quantity in ("velocity", "displacement"):
+        for line in compare(record, [again / "run.h5"], quantity):
+            assert found.changes[line.monitor][quantity] == pytest.approx(line.rms, rel=1e-9)
+
+
+def test_without_a_repeat_many_cracks_are_said_to_be_one_draw(torn) -> None:
+    (note,) = estimate_results(torn).summary()["notes"]
+    assert note.startswith(f"{len(Cracked.of(torn / 'run.h5'))} bonds break: which ones")
+    assert "--repeat" in note
+    assert list(cracked([0.0] * 10).one_draw()) == []
+    assert len(list(cracked([0.0] * 11).one_draw())) == 1
+    assert list(replace(cracked([0.0] * 11), in_bar=True).one_draw()) == []  # several bonds break at one place
+
+
+def test_many_cracks_need_no_monitor(torn, tmp_path) -> None:
+    changes = BREAKING | {"monitor": [], "output.estimate": False}
+    folder = run_case(small(PUSHED, "silent", changes), tmp_path)
+    found = estimate_results(folder, repeat=True)
+
+    assert found.repeat.changes == {}
+    assert found.repeat.common == pytest.approx(estimate_results(torn, repeat=True).repeat.common)
+    assert found.summary()["not_estimated"] == ["has no monitor whose error could be estimated"]
+    assert estimate_results(folder).summary()["not_estimated"] == found.summary()["not_estimated"]
+    with pytest.raises(CaseError, match="has no monitor"):
+        estimate_results(folder, second_seed=True)
+
+
+def test_a_repeat_needs_cracks(tmp_path) -> None:
+    folder = run_case(small(PUSHED, "whole", {"output.pictures": False, "run.duration": 0.002}), tmp_path)
+    with pytest.raises(CaseError, match="has no broken bonds"):
+        estimate_results(folder, repeat=True)
+
+
+def test_a_bar_is_repeated_too(tmp_path) -> None:
+    """Its size is its largest spacing; its step was given as a Courant number."""
+    folder = run_case(small(PULLED, "bar", {"output.snapshots": 0}), tmp_path)
+    found = estimate_results(folder, repeat=True).repeat
+
+    assert found.own.in_bar
+    assert found.own.size == pytest.approx(0.01)
+    assert found.own.unit == "J"
+    assert found.other.time_step == pytest.approx(0.98 * found.own.time_step)
+    assert found.common > 0.9
+    assert replace(found, other=found.own).summary()["common"] == 1.0

@@ -1,0 +1,53 @@
+"""What reaches a side: kinds and angles."""
+
+import math
+
+import numpy as np
+import pytest
+from small_cases import GRAINS, small
+
+from dembound.disks.reflection.arrivals import Arrival, arrivals_of
+from dembound.disks.reflection.meter import Reflections
+from dembound.disks.scene import ground_of
+
+POINT = {"name": "blow", "position": [2.0, 4.0], "force": [0.0, -1e3], "wave": "pulse"}
+
+
+def reflections(**same: np.ndarray) -> Reflections:
+    nothing = {kind: np.zeros_like(values) for kind, values in same.items()}
+    return Reflections("right", np.array([0.0, 60.0]), np.array([1.0, 2.0]), same, nothing)
+
+
+def test_driven_sides_send_waves_along_the_normal_and_loads_spread_them() -> None:
+    case = small(GRAINS | {"load": [POINT]})
+    ground = ground_of(case)
+    assert [(each.name, each.kinds) for each in arrivals_of(case, "top", ground)][:2] == [
+        ("wave pulse along the normal", ("p",)),
+        ("wave pulse along the normal", ("s",)),
+    ]
+    (spreading,) = arrivals_of(case, "right", ground)
+    assert spreading.name == "waves from load blow"
+    assert spreading.kinds == ("p", "s")
+    # the side is 6 m from the load, which is at its upper end: angles from 0 to atan(4/6)
+    assert spreading.angles.max() == pytest.approx(math.degrees(math.atan2(4.0, 6.0)))
+    assert spreading.angles.min() == pytest.approx(0.0)
+    assert spreading.shares.sum() == pytest.approx(1.0)
+    # cos θ / r of waves that spread in the plane: cos² θ at the same distance of the side
+    np.testing.assert_allclose(
+        spreading.shares / spreading.shares.max(), np.cos(np.radians(spreading.angles)) ** 2, rtol=1e-12
+    )
+
+
+def test_a_load_on_the_side_does_not_reach_it_and_without_sources_all_directions_do() -> None:
+    case = small(GRAINS | {"load": [POINT | {"position": [8.0, 2.0]}]})
+    (only,) = arrivals_of(case, "right", ground_of(case))
+    assert only.name == "waves from all directions"
+    np.testing.assert_allclose(only.shares / only.shares[0], np.cos(np.radians(only.angles)))
+
+
+def test_shares_are_means_over_kinds_frequencies_and_angles_of_what_is_known() -> None:
+    found = reflections(p=np.array([[0.1, 0.3], [0.3, np.nan]]), s=np.array([[0.4, 0.6], [0.4, 0.6]]))
+    half = Arrival("both", ("p", "s"), np.array([0.0, 30.0]), np.array([0.5, 0.5]))
+    # p: 0.2 at 0°, 0.3 at 60°, 0.25 between; s: 0.4 and 0.5
+    assert half.sent_back(found) == pytest.approx(0.5 * (0.225 + 0.45))
+    assert math.isnan(Arrival("none", ("s",), np.zeros(1), np.ones(1)).sent_back(reflections(p=np.ones((2, 2)))))

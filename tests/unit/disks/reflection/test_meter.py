@@ -1,0 +1,181 @@
+"""Reflections of plane waves by sides, beside formulas."""
+
+import math
+
+import numpy as np
+import pytest
+from small_cases import GRAINS, small
+
+from dembound.disks.reflection import measure_side, measured_sides
+from dembound.disks.reflection.bricks import end_scene
+from dembound.disks.reflection.meter import Meter, Reflections
+from dembound.disks.reflection.smeared import by_smeared_supports
+from dembound.errors import CaseError
+
+DIAMETER, SPEED = 0.5, 1000.0
+LATTICE = {
+    "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.5 * DIAMETER},
+    "material": {"density": 2500.0, "p_wave_speed": SPEED, "fric": 0.5},
+    "boundary": {"right": {"type": "viscous"}},
+    "run": {"duration": 0.01},
+}
+
+
+def measured(tables, side: str, step: float, frequencies, angles, kinds=("p", "s"), changes=None) -> Reflections:
+    (found,) = Meter.of(side, step, end_scene(small(tables, changes=changes), side)).measure(frequencies, angles, kinds)
+    return found
+
+
+@pytest.mark.parametrize("half", [False, True])
+@pytest.mark.parametrize("step", [0.0, 1.5e-4])
+def test_normal_incidence_on_a_chain_is_reflected_as_its_equations_say(half, step) -> None:
+    """Two equations, with p_j = e^{−iqaj} + R e^{iqaj}: that of the chain gives q, that of its last node R.
+
+    In continuous time |R| is tan(qa/4) for a whole last mass and its square for half of it.
+    """
+    frequency = 80.0
+    changes = {"boundary.right.half_mass": half}
+    found = measured(LATTICE, "right", step, [frequency], [0.0], ("p",), changes)
+    omega = 2.0 * math.pi * frequency
+    square = (2.0 / step * math.sin(0.5 * omega * step)) ** 2 if step else omega**2
+    rate = 1j * (math.sin(omega * step) / step if step else omega)
+    mass, damping = 2500.0 * DIAMETER**2, 2500.0 * SPEED * DIAMETER
+    stiffness = mass * (SPEED / DIAMETER) ** 2
+    qa = math.acos(1.0 - 0.5 * mass * square / stiffness)
+    last = stiffness - mass * (0.5 if half else 1.0) * square + rate * damping
+    expected = abs((last - stiffness * np.exp(1j * qa)) / (last - stiffness * np.exp(-1j * qa)))
+    assert math.sqrt(found.same["p"][0, 0]) == pytest.approx(expected, rel=1e-7)
+    assert found.converted["p"][0, 0] < 1e-20
+    if step == 0.0:
+        assert expected == pytest.approx(math.tan(0.25 * qa) ** (2 if half else 1), rel=1e-9)
+
+
+def by_continuum(angle: float, kind: str, ratio: float) -> tuple[float, float]:
+    """Energies that dashpots ρc_p, ρc_s send back as P and as S, of a continuum with c_s/c_p = ratio.
+
+    The traction of all three waves on x = 0 is −(ρc_p v_x, ρc_s v_y). Displacements d e^{iω(t − s·x)}: tractions are
+    −iω(λ d·s + 2μ…) in the usual way, v = iω d.
+    """
+    speed = {"p": 1.0, "s": ratio}
+    trace = math.sin(math.radians(angle)) / speed[kind]
+
+    def wave(of: str, sign: float) -> tuple[np.ndarray, np.ndarray]:
+        normal = sign * np.sqrt(complex(1.0 / speed[of] ** 2 - trace**2))
+        s = np.array([normal, trace])
+        return s, s * speed[of] if of == "p" else np.array([-s[1], s[0]]) * speed[of]
+
+    def rest(s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        mu, lam = ratio**2, 1.0 - 2.0 * ratio**2
+        xx = (lam + 2.0 * mu) * d[0] * s[0] + lam * d[1] * s[1]
+        xy = mu * (d[0] * s[1] + d[1] * s[0])
+        return np.array([-xx + d[0], -xy + ratio * d[1]])
+
+    back = [wave("p", -1.0), wave("s", -1.0)]
+    amplitudes = np.linalg.solve(np.column_stack([rest(*each) for each in back]), -rest(*wave(kind, 1.0)))
+    flux = [speed["p"] * speed["p"] * back[0][0][0].real, speed["s"] * speed["s"] * back[1][0][0].real]
+    own = flux[0 if kind == "p" else 1]
+    found_p, found_s = (abs(a) ** 2 * f / own for a, f in zip(amplitudes, flux, strict=True))
+    return float(found_p), float(found_s)
+
+
+@pytest.mark.parametrize("kind", ["p", "s"])
+def test_oblique_incidence_is_that_of_a_continuum_for_long_waves(kind) -> None:
+    """At 1 Hz waves are 1,400 disks long or more: the lattice deviates by (qa)² = 2e-5 with half cells."""
+    angles = [10.0, 30.0, 60.0, 75.0]
+    found = measured(LATTICE, "right", 0.0, [1.0], angles, (kind,), {"boundary.right.half_mass": True})
+    other = "s" if kind == "p" else "p"
+    expected = [dict(zip(("p", "s"), by_continuum(angle, kind, math.sqrt(0.5)), strict=True)) for angle in angles]
+    np.testing.assert_allclose(found.same[kind][0], [each[kind] for each in expected], rtol=2e-4, atol=1e-6)
+    np.testing.assert_allclose(found.converted[kind][0], [each[other] for each in expected], rtol=2e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["p", "s"])
+def test_a_quick_answer_is_that_of_the_continuum(kind) -> None:
+    """To rounding, the root of it where a wave along the side is about to run: S at 45°."""
+    angles = [0.0, 10.0, 30.0, 45.0, 60.0, 75.0]
+    found = by_smeared_supports(end_scene(small(LATTICE), "right"), "right", [1.0, 50.0], angles)
+    expected = np.array([by_continuum(angle, kind, math.sqrt(0.5)) for angle in angles]).T
+    for frequency in (0, 1):
+        np.testing.assert_allclose(found.same[kind][frequency], expected["ps".index(kind)], rtol=1e-9, atol=5e-8)
+        np.testing.assert_allclose(found.converted[kind][frequency], expected["sp".index(kind)], rtol=1e-9, atol=5e-8)
+
+
+def test_continuum_formula_gives_the_published_amplitudes() -> None:
+    """Of dashpots at ν = 0: 8.0, 12.2, 22.1, 45.2 % of P at 30, 45, 60, 75°; 20.5 and 61.5 % of S at 30 and 75°."""
+    p = [math.sqrt(sum(by_continuum(angle, "p", math.sqrt(0.5)))) for angle in (30.0, 45.0, 60.0, 75.0)]
+    s = [math.sqrt(sum(by_continuum(angle, "s", math.sqrt(0.5)))) for angle in (30.0, 75.0)]
+    np.testing.assert_allclose(p, [0.080, 0.122, 0.221, 0.452], atol=6e-4)
+    np.testing.assert_allclose(s, [0.205, 0.615], atol=6e-4)
+
+
+@pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
+@pytest.mark.parametrize("kind", ["free", "fixed"])
+def test_sides_that_take_nothing_send_everything_back(side, kind) -> None:
+    """P and S of a random packing, at all sides; below the frequencies at which copies scatter."""
+    found = measured(GRAINS, side, 1e-4, [20.0, 60.0], [0.0, 25.0], changes={"boundary": {side: {"type": kind}}})
+    for wave in found.kinds:
+        np.testing.assert_allclose(found.total(wave), 1.0, rtol=1e-8)
+        assert found.converted[wave][0, 1] > 0.05
+
+
+def test_what_p_waves_send_as_s_waves_these_send_as_p_waves() -> None:
+    """Reciprocity, at the same frequency and trace: sin θ_s = c_s/c_p · sin θ_p on the lattice, c_s² = c_p²/2."""
+    angle = math.degrees(math.asin(math.sin(math.radians(45.0)) * math.sqrt(0.5)))
+    p = measured(LATTICE, "right", 1e-4, [1.0], [45.0])
+    s = measured(LATTICE, "right", 1e-4, [1.0], [angle])
+    assert p.converted["p"][0, 0] == pytest.approx(s.converted["s"][0, 0], rel=1e-3)
+    assert p.converted["p"][0, 0] > 5e-3
+
+
+def test_left_and_right_and_upright_sides_of_a_lattice_are_alike() -> None:
+    right = measured(LATTICE, "right", 1e-4, [40.0], [0.0, 35.0, 70.0])
+    for side in ("left", "bottom", "top"):
+        other = measured(
+            LATTICE, side, 1e-4, [40.0], [0.0, 35.0, 70.0], changes={"boundary": {side: {"type": "viscous"}}}
+        )
+        for kind in ("p", "s"):
+            np.testing.assert_allclose(other.same[kind], right.same[kind], rtol=1e-7, atol=1e-12)
+            np.testing.assert_allclose(other.converted[kind], right.converted[kind], rtol=1e-7, atol=1e-12)
+
+
+def test_held_motion_leaves_the_waves_that_can_run() -> None:
+    found = measured(LATTICE, "right", 1e-4, [20.0], [0.0, 30.0], changes={"motion.held": ["y", "rotation"]})
+    assert found.kinds == ("p",)
+    assert found.angles.tolist() == [0.0]
+
+
+def test_a_side_is_measured_beside_matched_factors_and_a_continuum() -> None:
+    """At the homogenised factors of long waves nothing comes back: amplitudes of the order qa/4 of whole masses."""
+    case = small(GRAINS, changes={"boundary.right.beta_p": 0.5, "wave.pulse.period": 0.5})
+    found = measure_side(case, "right", [0.0, 30.0], 3)
+    assert found.matched is not None
+    assert found.matched.total("p")[:, 0].max() < 1e-3 < found.found.total("p")[:, 0].min()
+    nodes, continuum = found.continuum
+    assert nodes > 100
+    assert continuum.total("p").max() < 1e-3 < found.found.total("p").max()
+    assert [arrival.name for arrival in found.arrivals] == ["waves from all directions"]
+
+
+def test_an_outside_is_measured_by_itself() -> None:
+    case = small({**GRAINS, "boundary": {"right": {"type": "outside"}}})
+    found = measure_side(case, "right", [0.0, 80.0], 2)
+    assert found.matched is found.continuum is None
+    assert found.found.total("s")[0, 1] > found.found.total("s")[0, 0]
+    assert found.found.total("s")[0, 0] < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("side", "angles", "frequencies", "message"),
+    [
+        ("right", [90.0], 2, "--angle: is 90, must be at least 0 and below 90"),
+        ("right", [0.0], [0.0], "--frequency: is 0, must be above 0"),
+        ("top", [0.0], 2, "--side: is top, which is periodic"),
+    ],
+)
+def test_what_is_refused(side, angles, frequencies, message) -> None:
+    lateral = {"type": "periodic"}
+    case = small(LATTICE, changes={"boundary": {"right": {"type": "viscous"}, "top": lateral, "bottom": lateral}})
+    with pytest.raises(CaseError, match=message):
+        measure_side(case, side, angles, frequencies)
+    with pytest.raises(CaseError, match="no side that absorbs"):
+        measured_sides(small(LATTICE, changes={"boundary.right": {"type": "free"}}))

@@ -1,0 +1,70 @@
+"""Reflections by a continuum with smeared supports, beside formulas and beside those of the disks."""
+
+import math
+
+import numpy as np
+import pytest
+from small_cases import GRAINS, small
+
+from dembound.disks.reflection import measure_side
+from dembound.disks.reflection.bricks import end_scene
+from dembound.disks.reflection.meter import Meter
+from dembound.disks.reflection.smeared import by_smeared_supports
+from dembound.disks.scene import DiskScene
+from dembound.errors import CaseError
+
+ANGLES = [0.0, 10.0, 30.0, 60.0, 75.0]
+
+
+def grains(side: str, **table) -> DiskScene:
+    return end_scene(small(GRAINS, changes={"boundary": {side: table}}), side)
+
+
+def test_springs_and_dashpots_along_the_normal_reflect_by_their_impedance() -> None:
+    """R = (ρc − z)/(ρc + z) with z = c + k/iω of all supports per m of the side; on a lattice no P wave becomes S."""
+    lattice = {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25}
+    table = {"type": "viscoelastic", "distance": 3.0, "alpha_n": 2.0, "beta_p": 0.7}
+    scene = end_scene(small({**GRAINS, "packing": lattice, "boundary": {"right": table}}), "right")
+    found = by_smeared_supports(scene, "right", [15.0], [0.0])
+    ground, supports = scene.ground, scene.supports
+    length, own = scene.assembly.size[1], supports.component == 0
+    z = (supports.damping[own].sum() + supports.stiffness[own].sum() / (2j * math.pi * 15.0)) / length
+    impedance = ground.density * ground.wave_speeds(0)[0]
+    assert found.same["p"][0, 0] == pytest.approx(abs((impedance - z) / (impedance + z)) ** 2, rel=1e-9)
+    assert found.converted["p"][0, 0] < 1e-20
+
+
+@pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
+@pytest.mark.parametrize("kind", ["free", "fixed"])
+def test_what_takes_nothing_sends_all_back_and_as_much_of_each_type_as_disks(side, kind) -> None:
+    """Up to the square of a disk in 1/k of S waves, ωD/c_s = 0.026 at 5 Hz, times tan 75° = 3.7: 2.6e-3."""
+    scene = grains(side, type=kind)
+    found = by_smeared_supports(scene, side, [5.0], ANGLES)
+    (expected,) = Meter.of(side, 1e-4, scene).measure([5.0], ANGLES)
+    for wave in found.kinds:
+        np.testing.assert_allclose(found.total(wave), 1.0, rtol=1e-9)
+        np.testing.assert_allclose(found.converted[wave], expected.converted[wave], atol=2.6e-3)
+
+
+@pytest.mark.parametrize("side", ["right", "top"])
+def test_dashpots_of_a_random_packing_send_back_nearly_as_much_as_beside_disks(side) -> None:
+    """Beyond disks it lacks their masses at the side, ωρD/ρc = 0.016 at 5 Hz, in quadrature: squares are left."""
+    scene = grains(side, type="viscous", beta_p=0.4, beta_s=0.6)
+    found = by_smeared_supports(scene, side, [5.0], ANGLES)
+    (expected,) = Meter.of(side, 1e-4, scene).measure([5.0], ANGLES)
+    for wave in found.kinds:
+        np.testing.assert_allclose(found.total(wave), expected.total(wave), rtol=0.03, atol=1e-4)
+        np.testing.assert_allclose(found.converted[wave], expected.converted[wave], rtol=0.1, atol=3e-4)
+
+
+def test_a_side_is_answered_quickly_beside_matched_factors() -> None:
+    case = small(GRAINS, changes={"boundary.right.beta_p": 1.0})
+    found = measure_side(case, "right", [0.0, 30.0], 3, quick=True)
+    assert found.matched is not None
+    assert found.continuum is None
+    # at its own factors nothing comes back, but for what cut bonds turn of P into S
+    assert found.matched.total("p")[:, 0].max() < 1e-4 < found.found.total("p")[:, 0].min()
+    assert measure_side(small(GRAINS), "right", [0.0], 3, quick=True).matched is None  # it has these factors
+    outside = small({**GRAINS, "boundary": {"right": {"type": "outside"}}})
+    with pytest.raises(CaseError, match="--quick: is not possible for side right"):
+        measure_side(outside, "right", quick=True)
