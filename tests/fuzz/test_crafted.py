@@ -119,7 +119,7 @@ def most_memory() -> int:
 
 
 BATCH = 100
-"""Structures that one process reads: VTK and compiled code keep memory, which would reach the limit after some hundred."""
+"""Structures that one process reads: VTK keeps memory, which would reach the limit after some hundreds."""
 
 
 @pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.slow)])

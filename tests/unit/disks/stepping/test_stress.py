@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from dembound.disks.contacts import forces as module
 from dembound.disks.contacts.arrays import plain_contacts
-from dembound.disks.contacts.contact_list import forces as module
 from dembound.disks.rest.block_stress import block_stress
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
