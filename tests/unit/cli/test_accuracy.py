@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from unit.studies.accuracy.test_choice import BAR, small
+from unit.accuracy.test_advise import BAR, small
 
 from dembound.cli.accuracy import bound_of, name_within
 from dembound.errors import CaseError
