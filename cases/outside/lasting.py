@@ -84,7 +84,7 @@ def rule(reached: np.ndarray | float) -> np.ndarray | float:
 def exact_settlement(case: api.Case, times: np.ndarray) -> np.ndarray:
     """That of the half-space."""
     receiver = exact_motions(build(case))[1]["receiver"]
-    return -np.interp(times, receiver.time, receiver.displacement[:, 1])
+    return -receiver.at(times).displacement[:, 1]
 
 
 def on_a_grid(ratio: float, times: np.ndarray, elements: int = 3) -> tuple[np.ndarray, np.ndarray, float]:
