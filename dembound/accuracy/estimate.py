@@ -25,7 +25,8 @@ from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
 from dembound.results.json_files import write_json
 from dembound.results.named import Named
-from dembound.results.reader import history_of, open_record, replacing, require_run
+from dembound.results.reader import history_of, open_record, require_run
+from dembound.results.replacing import replacing
 from dembound.results.summary_file import read_summary
 from dembound.running.recorded import recorded_case
 

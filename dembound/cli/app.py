@@ -80,7 +80,7 @@ def writable(path: Path | None) -> Path | None:
     Raises FileNotFoundError if it does not exist.
     """
     if path is not None:
-        from dembound.results.reader import require_folder
+        from dembound.results.replacing import require_folder
 
         require_folder(path)
     return path

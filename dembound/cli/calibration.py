@@ -94,7 +94,7 @@ def calibrate_sides(
     All other lines of the case remain. A calibrated case that differs in more than the β found is not replaced.
     """
     from dembound.casefile.edit import edited
-    from dembound.results.reader import replacing
+    from dembound.results.replacing import replacing
     from dembound.studies.all_sides import calibrate_all, changes_of
     from dembound.studies.calibration import calibrate
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.gauge.hopkinson import Specimen
-from dembound.results.reader import replacing
+from dembound.results.replacing import replacing
 
 HEAD = (
     "time (s),stress 3 waves (Pa),stress 2 waves (Pa),stress 1 wave (Pa),strain 3 waves,strain 1 wave,"

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dembound.methods.rod import Range
+
 if TYPE_CHECKING:
     from dembound.kernels.tables import Softening
-    from dembound.methods.rod import Range
 
 COLUMNS = ("row", "first", "began", "whole", "limit", "apart", "furthest", "rate")
 """The columns of the list of opening bonds."""
@@ -20,26 +20,6 @@ RISE = 0.5
 
 A method that waits for a stretch is called at this share at the latest, as plain springs are not watched.
 """
-
-
-@dataclass(frozen=True)
-class Fracture:
-    """How bonds open: fracture energy J/m², 0 for bonds that break at once; and their strength at higher strain rates.
-
-    per_decade : Pa by which the strength rises for a tenfold strain rate, between the two rates (1/s).
-    """
-
-    energy: float = 0.0
-    per_decade: float = 0.0
-    rates: tuple[float, float] = (1.0, 1.0)
-
-    def opening(self, strength: float) -> float:
-        """Opening w_c (m) of a crack at which it bears nothing, 2G_f/σ_t, at a strength in Pa."""
-        return 2.0 * self.energy / strength
-
-
-AT_ONCE = Fracture()
-"""Bonds that break at once."""
 
 
 class Opening:

@@ -11,7 +11,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.laws.peridynamic import families, micromodulus
-from dembound.methods.opening import AT_ONCE, Fracture
+from dembound.methods.fracture import AT_ONCE, Fracture
 from dembound.nearest import nearest_number
 
 

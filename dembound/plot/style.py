@@ -19,7 +19,7 @@ from matplotlib.path import Path as Path2D
 from matplotlib.ticker import AutoLocator, LogLocator, ScalarFormatter
 
 from dembound.interrupts import look
-from dembound.results.reader import replacing
+from dembound.results.replacing import replacing
 
 # Okabe & Ito: distinct with every kind of colour vision; without yellow, which is too pale for lines on white
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from dembound.results.reader import replacing
+from dembound.results.replacing import replacing
 
 Column = tuple[str, np.ndarray]
 """A head with its unit, and the values (k,) below it."""

@@ -17,7 +17,7 @@ from dembound.motion.moving_picture import MovingPicture
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
 from dembound.plot.time_line import TimeLine
 from dembound.results.histories import monitor_names
-from dembound.results.reader import replacing, require_folder
+from dembound.results.replacing import replacing, require_folder
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -23,7 +23,8 @@ from dembound.report import tables
 from dembound.report.pictures import Picture, picture_of, uri_of
 from dembound.report.runs import ReportedRun, read_runs
 from dembound.results.histories import read_histories
-from dembound.results.reader import reading, replacing, require_folder, snapshots_of, understood
+from dembound.results.reader import reading, snapshots_of, understood
+from dembound.results.replacing import replacing, require_folder
 from dembound.version import __version__
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from dembound.errors import CaseError, RecordError
 from dembound.interrupts import Stopped, caught
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
-from dembound.results.reader import replacing
+from dembound.results.replacing import replacing
 from dembound.version import __version__
 
 if TYPE_CHECKING:

@@ -19,6 +19,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from dembound.results.replacing import replacing
+
 if TYPE_CHECKING:
     import h5py
 
@@ -225,8 +227,6 @@ def new_file(path: Path) -> Iterator[h5py.File]:
     Raises OSError, such as for a full disk, without harm to HDF5.
     """
     import h5py
-
-    from dembound.results.reader import replacing
 
     with replacing(path) as part, CommittedFile(part, "w") as store:
         with h5py.File(store, "w", libver=FORMAT) as file:

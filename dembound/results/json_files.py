@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from dembound.results.reader import replacing
+from dembound.results.replacing import replacing
 
 
 def write_json(path: Path, values: Any) -> None:

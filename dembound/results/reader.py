@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
@@ -317,28 +316,3 @@ def record_names(paths: Sequence[Path]) -> list[str]:
         name if names.count(name) == 1 else folder if folders.count(folder) == 1 else str(path)
         for name, folder, path in zip(names, folders, paths, strict=True)
     ]
-
-
-def require_folder(path: Path) -> None:
-    """Raise FileNotFoundError, with the name of the folder, if the folder of `path` does not exist."""
-    if not path.parent.is_dir():
-        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path.parent))
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Yield a neighbouring path to write to; the file replaces `path` if there was no error.
-
-    Raises FileNotFoundError as `require_folder`.
-    """
-    require_folder(path)
-    part = path.with_name(f"{path.name}.part")
-    try:
-        yield part
-        part.replace(path)
-    except BaseException as error:
-        if isinstance(error, OSError) and error.filename is None:
-            error.filename = str(path)  # errors of writing have no file name
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-        raise

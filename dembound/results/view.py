@@ -15,13 +15,13 @@ from dembound.results.reader import (
     cracks_until,
     is_line,
     open_record,
-    replacing,
     require_run,
     snapshot_of,
     snapshot_of_largest_motion,
     snapshots_of,
     text_of,
 )
+from dembound.results.replacing import replacing
 
 if TYPE_CHECKING:
     import pyvista

@@ -28,7 +28,8 @@ from dembound.casefile.output import ParaView
 from dembound.interrupts import look
 from dembound.motion.kind import Kind
 from dembound.motion.state import Arrays
-from dembound.results.reader import cracks_until, datasets_in, open_record, replacing, snapshots_of, until
+from dembound.results.reader import cracks_until, datasets_in, open_record, snapshots_of, until
+from dembound.results.replacing import replacing
 from dembound.results.vtkhdf import temporal_file
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from dembound.methods.bonds import Bonds
 from dembound.methods.method import WIDEST
 from dembound.methods.rod import Rod
 from dembound.motion.simulation import Simulation
-from dembound.results.reader import replacing
+from dembound.results.replacing import replacing
 
 COLUMNS = (
     "horizon",

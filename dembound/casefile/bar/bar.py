@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError, model_validator
 
 from dembound.casefile.bar.range import BarRange
-from dembound.methods.opening import Fracture
+from dembound.methods.fracture import Fracture
 from dembound.table import LARGEST, SMALLEST, Table, quantity
 
 PAIRS = (("section", "diameter"), ("wave_speed", "youngs_modulus"), ("strength", "critical_stretch"))

@@ -18,7 +18,7 @@ from dembound.casefile.sweep import Action
 from dembound.errors import CaseError
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, text, write
-from dembound.results.reader import replacing
+from dembound.results.replacing import replacing
 from dembound.studies.sweep.members import Member
 from dembound.studies.sweep.perform import Outcome
 from dembound.studies.sweep.statistics import Statistic, quantities, statistics

@@ -6,7 +6,7 @@ import pytest
 from dembound.kernels.bar import plane_force, stored
 from dembound.kernels.bar_cracks import OPENING, WHOLE, soften
 from dembound.methods.bonds import Bonds
-from dembound.methods.opening import Fracture
+from dembound.methods.fracture import Fracture
 from dembound.methods.rod import Range, Rod
 
 EPS = np.finfo(float).eps

@@ -17,12 +17,12 @@ from dembound.results.reader import (
     open_record,
     place_in_words,
     record_names,
-    replacing,
     side_energies_of,
     snapshot_of,
     snapshots_of,
     text_of,
 )
+from dembound.results.replacing import replacing
 from dembound.results.results import Results
 from dembound.results.sides import read_side_history
 

@@ -10,7 +10,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import BOUNDARIES, METHODS
 from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes
-from dembound.methods.opening import Fracture
+from dembound.methods.fracture import Fracture
 from dembound.starting import starting_point
 from dembound.table import name_of
 
