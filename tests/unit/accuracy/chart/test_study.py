@@ -14,6 +14,8 @@ from dembound.accuracy.chart import study
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.chart.tables import COLUMNS, write_results, write_table
 from dembound.accuracy.choice import Choice, choices_of, combinations
+from dembound.accuracy.of_bars.judge import BarJudge
+from dembound.accuracy.of_disks.judge import REALISATIONS, DiskJudge
 from dembound.accuracy.reference import Reference, Wanted
 from dembound.accuracy.runner import Run
 from dembound.errors import CaseError, RunError
@@ -171,7 +173,7 @@ def test_the_finest_choice_takes_its_place_where_it_fails(charted, spalling, mon
     def impossible(*_):
         raise CaseError(["bar.spacing: is too small"])
 
-    monkeypatch.setattr(reference, "finer", impossible)
+    monkeypatch.setattr(BarJudge, "finer", impossible)
     found, _ = charted(spalling(FADING), repeats=1)
     assert (found.reference.name, found.reference.own) == ("finest", (1,))
     (line,) = found.left_out
@@ -217,7 +219,7 @@ def test_random_packings_are_realisations(charted, bar) -> None:
     packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
     case = bar({"packing": packing, "run.duration": 0.004})
     found, _ = charted(case, {"packing.seed": [1, 2]}, repeats=1, reference="finest")
-    assert found.left_out == [reference.REALISATIONS]
+    assert found.left_out == [REALISATIONS]
     same = charted(case, {"packing.size": [[9.0, 3.0], [12.0, 3.0]]}, repeats=1, reference="finest")[0]
     assert not same.left_out  # the same brick, more of them
     assert not charted(bar(), {"packing.radius": [0.25, 0.5]}, repeats=1, reference="finest")[0].left_out
@@ -256,15 +258,17 @@ def test_boxes_elsewhere_have_the_same_bricks(bar) -> None:
     box = {"ground.size": [10.0, 10.0], "packing": packing | {"size": [5.0, 5.0], "origin": [0.0, 5.0]}}
     sides = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "bottom")}
     choices, _ = choices_of(case, {"all": {}, "box": box | sides, "other": {"packing.seed": 7}})
-    assert reference._of_random_packings(choices[:2]) == ()
-    assert len(reference._of_random_packings(choices)) == 1
+    cases = [choice.case for choice in choices]
+    assert DiskJudge().cautions(cases[:2]) == ()
+    assert len(DiskJudge().cautions(cases)) == 1
 
 
 def test_places_in_an_extended_scene_are_those_in_the_case() -> None:
     found = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
-    shifted = reference._shifted(found, (200.0, 2.0, 240.0, 22.0))
+    shifted = reference._shifted(found, (200.0, 2.0, 240.0, 22.0), DiskJudge.places)
     assert {name: value for name, (value, _) in shifted.items()} == {"break time": 0.1, "break x": 3.0, "break y": 3.0}
-    assert reference._shifted({"spall place": Finding(1.5, "m")}, (1.0, 0.0, 2.0, 0.0))["spall place"].value == 0.5
+    spall = {"spall place": Finding(1.5, "m")}
+    assert reference._shifted(spall, (1.0, 0.0, 2.0, 0.0), BarJudge.places)["spall place"].value == 0.5
 
 
 def test_a_law_that_does_not_break_is_described_so(bar, tmp_path) -> None:
