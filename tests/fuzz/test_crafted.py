@@ -122,7 +122,7 @@ BATCH = 100
 """Structures that one process reads: VTK keeps memory, which would reach the limit after some hundreds."""
 
 
-@pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [30, pytest.param(1000, marks=pytest.mark.slow)])
 def test_crafted_results_are_refused_in_a_line_or_used(tmp_path, count) -> None:
     environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(Path(__file__).parents[1])}
     codes, bad, times, sizes = Counter(), [], [0.0], [0]

@@ -55,7 +55,7 @@ def test_estimated_errors_are_the_true_ones(side: Tables) -> None:
     for name, own in recorded.items():
         for quantity, values in own.values.items():
             column = own.component(quantity)
-            error = (values - far[name].of(quantity)[:, :2])[:, column]  # type: ignore[arg-type]
+            error = (values - far[name].values[quantity][:, :2])[:, column]
             truth = np.linalg.norm(error) / np.linalg.norm(values[:, column])
             assert truth > 0.1
             assert 1.0 / 1.3 < found.shares(name, quantity)[SIDES] / truth < 1.3

@@ -46,7 +46,8 @@ def numbers(record: Path) -> dict[str, bytes]:
 
 
 # durations: each process steps for up to three intervals before it is killed, and none may have reached the end
-@pytest.mark.parametrize(("kills", "duration"), [(3, 2.4), pytest.param(50, 16.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("kills", "duration"), [(3, 2.4), (50, 16.0)])
 def test_a_run_that_is_killed_goes_on(tmp_path, kills, duration) -> None:
     for name in ("killed", "whole"):
         tables = CASE | {"run": {"duration": duration, "checkpoint": INTERVAL}}

@@ -161,7 +161,7 @@ def test_bonds_of_any_strength_always_hold() -> None:
 
 def _recorded(gauges: Motions) -> dict[str, History]:
     return {
-        name: History(each.position, each.time, {q: each.values[q][:, :2] for q in ("velocity", "displacement")})  # type: ignore[arg-type]
+        name: History(each.place, each.time, {q: each.values[q][:, :2] for q in ("velocity", "displacement")})
         for name, each in gauges.items()
     }
 

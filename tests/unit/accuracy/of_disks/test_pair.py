@@ -66,7 +66,7 @@ def test_a_pair_that_can_be_afforded_has_the_smallest_disks_and_no_echoes(scene)
 
 
 def test_a_budget_that_is_too_small_leaves_echoes_and_the_largest_disks(scene):
-    pair = pairs.scenes_of_pair(scene.case, scene, choose_step(scene)[0], 1.0, Runner())
+    pair = pairs.scenes_of_pair(scene.case, scene, choose_step(scene)[0], 1.0)
     assert not pair.echo_free
     assert pair.ratio == max(pairs.ratios(scene.case, scene))
     assert pair.larger.size[0] == pytest.approx(12.0 + 2 * (pairs.SMALLER[-1] - 1.0) * 12.0, rel=0.1)  # at each side
