@@ -10,6 +10,8 @@ import pytest
 from dembound.casefile import Case
 from dembound.errors import CaseError, RunError
 from dembound.kinds import with_changes
+from dembound.motion.paths import first_arrivals
+from dembound.motion.silence import monitored
 from dembound.motion.trackers import Run
 from dembound.plot.scene import plot_scene
 from dembound.results.folder import OWN
@@ -582,3 +584,18 @@ def test_keys_of_silence_without_effect_are_refused(request, kind, changes, said
         request.getfixturevalue(kind)(changes | {"run.duration": 0.01})
 
     assert any(problem.startswith(said) for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize(("duration", "late"), [(0.9, True), (1.1, False)])
+def test_monitors_that_no_wave_reaches_are_named_before_the_run(bar, duration: float, late: bool) -> None:
+    """The monitor of the farther end: its way over the speed of the fastest waves, of which `duration` is a share."""
+    planned = plan(bar())
+    first = first_arrivals(
+        planned.kind.sources(planned.scene),
+        planned.kind.front(planned.scene, planned.time_step),
+        monitored(planned.scene),
+    )
+    farthest = planned.scene.case.monitor[int(first.argmax())].name
+    lines = warnings_before(plan(bar({"run.duration": duration * float(first.max())})))
+    found = [line for line in lines if "the first wave reaches it" in line]
+    assert [farthest in line and f"reaches it at {first.max():.4g} s" in line for line in found] == late * [True]
