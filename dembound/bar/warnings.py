@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 
@@ -12,6 +11,7 @@ from dembound.bar.banded import ROUNDING
 from dembound.bar.entering import MOMENTS, entering_pressure, moments
 from dembound.bar.facts import PERCENT, cells_of_waves
 from dembound.bar.lattice import carrying_lattices
+from dembound.bar.range_warnings import range_warnings
 from dembound.bar.scene import BarScene, bar_medium, end_supports
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
@@ -35,8 +35,11 @@ _TOO_LARGE = "solids break or yield at a tenth of 3 %, are the units right?"
 LIKELY = (100.0, 10_000.0)
 """Slowest and fastest waves (m/s) of bars of solids; those of soft rubber and of hard ceramics are within it."""
 
-ALIKE = 1e-3
-"""Relative difference of Δx/c up to which it is the same."""
+BLURRED = 0.8
+"""Share of its peak that a load spread over nodes must let in; peridynamic bars need one on as many as the horizon.
+
+A harmonic wave 5.6 times as long as them keeps 0.80 of it, one of eight times 0.90; a pulse (1 − cos)/2 3.8 times.
+"""
 
 LONGEST = 0.25
 """Horizon over EG_f/σ_t² up to which a crack opens at one plane: at 0.2 it takes 1.00 to 1.04 of its fracture energy,
@@ -53,14 +56,14 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *_dashpots_at_soft_ends(case),
         *_unmatched_dashpots(scene),
         *_loads_at_dashpots(case),
+        *_loads_spread_too_far(case),
         *_long_bonds_across_cracks(case),
         *_too_tough(case),
         *stress_beside_strength(case),
         *_unlikely_speeds(case),
         *_large_strains(case),
         *_fades(case),
-        *_bonded_impacts(case),
-        *_impacts(case, time_step),
+        *range_warnings(case, time_step),
         *_monitors_in_gaps(scene),
     ]
 
@@ -118,37 +121,6 @@ def _fades(case: BarCase) -> Iterator[str]:
         )
 
 
-def _bonded_impacts(case: BarCase) -> Iterator[str]:
-    """Neighbours of different velocities that are bonded, so that they cannot part after their impact."""
-    for number, (left, right) in enumerate(itertools.pairwise(case.bar.range), start=2):
-        if right.interface == "bonded" and left.velocity != right.velocity:
-            yield (
-                f'bar.range[{number}, {right.name}].interface: is "bonded", while {left.name} has '
-                f"{left.velocity:g} m/s at the start and {right.name} {right.velocity:g} m/s: they pull each other as "
-                'hard as they push; give interface = "contact"'
-            )
-
-
-def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
-    """Impacts: their fronts of one step swing unless the time step is the Δx/c of all ranges."""
-    if not any(each.velocity for each in case.bar.range):
-        return
-    steps = np.array([part.length / part.cells / part.speed for part in case.bar.parts])
-    if np.ptp(steps) < ALIKE * steps.max():
-        if time_step < (1.0 - ALIKE) * steps.max():
-            yield (
-                f"run.courant: is {time_step / steps.max():.3g}, so fronts of impacts overshoot by some 20 % of the "
-                "stress; as Δx/c is alike in all ranges, courant = 1.0 has none of it"
-            )
-        return
-    listed = ", ".join(f"{1e6 * step:.3g}" for step in steps)
-    yield (
-        f"bar.range: Δx/c differs, {listed} µs, so fronts of impacts swing from step to step, by some 20 % of the "
-        "stress, which can break bonds though the stress at nodes does not show it; choose spacings with one Δx/c, and "
-        "run.courant = 1.0"
-    )
-
-
 def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
     """Waves that are too short for the spacing of the nodes, except for those of a slow grip."""
     travel = scene.case.bar.travel_time
@@ -198,6 +170,28 @@ def _loads_at_dashpots(case: BarCase) -> Iterator[str]:
             yield (
                 f"load.{load.name}: is on an end that absorbs: boundary.{load.side} takes {100.0 * taken:.3g} % of it, "
                 f"and up to {stress} enters the bar; on a free end all of it does"
+            )
+
+
+def _loads_spread_too_far(case: BarCase) -> Iterator[str]:
+    """Loads on so many nodes that their waves are blurred: of the peak less enters.
+
+    A force at a distance x from a free end sends half of itself away from it and half towards it, which returns as the
+    same after 2x/c. All forces within W together send the mean of f(t) within ± W/c, of a frequency ω the share
+    sin(ωW/c)/(ωW/c). An end that absorbs keeps what runs towards it: ± W/2c.
+    """
+    for load in case.load:
+        end, wave, absorbs = case.bar.end(load.side), case.wave[load.wave], not case.side(load.side).is_free
+        wide = (load.nodes - 0.5) * end.length / end.cells
+        half = wide / end.speed * (0.5 if absorbs else 1.0)
+        last = wave.duration() if np.isfinite(wave.duration()) else wave.peak_time() + wave.time_scale()
+        time = np.union1d(np.linspace(wave.begin() - half, last + half, MOMENTS), [wave.peak_time()])
+        means = np.abs(wave.displacement(time + half) - wave.displacement(time - half)) / (2.0 * half)
+        if (share := float(means.max()) / wave.peak()) < BLURRED:
+            entering = share * abs(load.pressure) * wave.peak()
+            yield (
+                f"load.{load.name}.nodes: is {load.nodes}, {wide:.3g} m, so long beside its wave that only "
+                f"{100.0 * share:.2g} % of its peak enters, {stress_in_words(entering)}; take fewer nodes"
             )
 
 

@@ -183,6 +183,13 @@ def few_returns(time: np.ndarray, values: np.ndarray, position: float, length: f
     return f"the second return of the pulse, due at {due:.4g} s, is below 1 % of the first or within the noise"
 
 
+OSCILLATIONS = (
+    "small oscillations between the returns, as of bending or ringing, may be taken for returns: take the mean of two "
+    "gauges on opposite faces or a --low-pass, or give --wave-speed and --attenuation of another test"
+)
+"""Why peaks may be too near to each other, where no unit explains it, and what to do."""
+
+
 def unlikely_speed(speed: float) -> Iterator[str]:
     """Message about a wave speed, m/s, of no solid bar, with the unit that would explain it."""
     if SLOWEST <= speed <= FASTEST:
@@ -195,7 +202,7 @@ def unlikely_speed(speed: float) -> Iterator[str]:
     }
     fitting = [hint for factor, hint in hints.items() if SLOWEST <= factor * speed <= FASTEST]
     said = f"the tension peaks give {speed:.4g} m/s, must be {SLOWEST:g} to {FASTEST:g} m/s"
-    yield f"--wave-speed: {said}" + (f"; {fitting[0]}" if fitting else "")
+    yield f"RECORD: {said}; {fitting[0] if fitting else OSCILLATIONS}"
 
 
 def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[str]:

@@ -63,8 +63,8 @@ def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Wind
     off = max((unbalanced(faces, setup, found, end) for end in (found.largest + 1, len(faces.time))), key=abs)
     if abs(off) > BALANCED:
         yield (
-            f"the impulses of both faces of the specimen differ by {100.0 * off:+.2g} %, beyond its inertia: look for "
-            "a baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut"
+            f"the impulses of both faces of the specimen differ by {100.0 * abs(off):.3g} %, beyond its inertia: look "
+            "for a baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut"
         )
     travelled = None if signals.second is not None else travel_speed(signals, setup, windows)
     if travelled is not None:

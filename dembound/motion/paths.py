@@ -71,6 +71,12 @@ class Source:
         return Source((box[0], box[1], box[2], box[3]), self.start, self.over, self.slowest).distance(image)
 
 
+def first_arrivals(sources: Sequence[Source], front: Front, places: np.ndarray) -> np.ndarray:
+    """Times (k,) s before which no wave reaches places (k, 2) m, but for precursors; infinite without any source."""
+    times = [source.start + source.distance(places) / front.speed for source in sources if front.speed > 0.0]
+    return np.min(times, axis=0) if times else np.full(len(places), np.inf)
+
+
 def plane_needed(side: str, sources: Sequence[Source], places: np.ndarray, front: Front, duration: float) -> float:
     """Where along its normal (m) a side has to be that nothing comes back from it to places (k, 2) m within `duration`.
 

@@ -12,6 +12,9 @@ from dembound.errors import RecordError
 if TYPE_CHECKING:
     import h5py
 
+MOTION = ("histories", "snapshots", "particles", "energy")
+"""Groups of a record whose numbers are all finite."""
+
 UNREADABLE = "cannot be read as a record of results"
 
 CHECKSUM = "filter returned failure"
@@ -56,3 +59,38 @@ def require_readable(file: h5py.File) -> None:
                 raise RecordError([f"{file.filename}: is damaged in {name} ({reason})"]) from None
 
     file.visititems(read)
+
+
+def require_finite(file: h5py.File) -> None:
+    """Raise RecordError for the first number of the motion in a record that is not finite, as none of a run's is."""
+    import h5py
+    import numpy as np
+
+    def look_into(name: str, item: h5py.Group | h5py.Dataset) -> None:
+        if not isinstance(item, h5py.Dataset) or item.dtype.kind != "f" or name.partition("/")[0] not in MOTION:
+            return
+        good = np.isfinite(item[()])
+        if not good.all():
+            row = f" in row {int(np.argmin(good.reshape(len(good), -1).all(axis=1)))}" if good.ndim else ""
+            raise RecordError([f"{file.filename}: is damaged: {name} has a number that is not finite{row}"])
+
+    file.visititems(look_into)
+
+
+def require_places(file: h5py.File) -> None:
+    """Raise RecordError for particles of no size, and for monitors of particles that the record does not have."""
+    import h5py
+    import numpy as np
+
+    particles = file.get("particles")
+    if not isinstance(particles, h5py.Group) or "position" not in particles:
+        return
+    if "radius" in particles and not np.all((radius := particles["radius"][:]) > 0.0):
+        row = int(np.argmin(radius > 0.0))
+        raise RecordError([f"{file.filename}: is damaged: particles/radius is {radius[row]:g} in row {row}"])
+    count = len(particles["position"])
+    for name, group in file.get("histories", {}).items():
+        index = group.attrs.get("particle", 0)
+        if not -1 <= int(index) < count:  # −1 in a continuum
+            where = f"histories/{name} is of particle {int(index)}"
+            raise RecordError([f"{file.filename}: is damaged: {where}, there are {count}"])

@@ -119,6 +119,10 @@ class Folder:
             if self.partial.is_dir() and not any(self.partial.iterdir()):
                 self.partial.rmdir()
 
+    def discard(self) -> None:
+        """Remove what a run has written to the partial folder."""
+        _remove_own(self.partial, but=LOCK)
+
     def _lock(self) -> FileLock:
         """The lock of the partial folder, acquired; raises CaseError if another run has it."""
         lock = FileLock(self.partial / LOCK)

@@ -12,7 +12,7 @@ import numpy as np
 from dembound.errors import CaseError, DemboundError, NumberMissingError, RecordError
 from dembound.interrupts import look
 from dembound.results.committed import CommittedFile, log_of
-from dembound.results.damage import damage_in_words, is_of_checksum, require_readable
+from dembound.results.damage import damage_in_words, is_of_checksum, require_finite, require_places, require_readable
 from dembound.results.datasets import datasets_of
 from dembound.results.structure import Members, require_structure
 
@@ -38,6 +38,7 @@ def open_record(path: Path) -> Iterator[h5py.File]:
         if _state_of(path) not in _sound:
             require_structure(file)
             require_equal_rows(file)
+            require_places(file)
             trust(path)
         yield file
 
@@ -87,6 +88,9 @@ def understood(*records: Path) -> Iterator[None]:
     try:
         yield
     except (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError, MemoryError) as error:
+        for record in (path for path in records if path.suffix == ".h5" and path.is_file()):
+            with reading(record) as file:
+                require_finite(file)
         what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
         names = ", ".join(map(str, records))
         reason = f"it or its summary.json is not of this version of dembound ({what})"

@@ -32,7 +32,11 @@ UNEXPLAINED = 0.01
 """Share of the energy put in that may be taken by the length of the step, or be unaccounted for, without a warning."""
 
 QUIET = 0.01
-"""Share of the largest peak of all monitors; a monitor with a smaller peak has not been reached by the motion."""
+"""Share of the largest velocity known; a monitor with a smaller peak has not been reached by the motion.
+
+That is the largest peak of all monitors, or, if larger, the root mean square velocity of the whole body at any time of
+the ledger, which some of it exceeds.
+"""
 
 
 def still_moving(
@@ -55,10 +59,11 @@ def still_moving(
     moving = {}
     if max(peaks.values(), default=0.0) <= at_rest:
         return
+    quiet = QUIET * max(*peaks.values(), _mean_velocity(scene, file))
     for name, velocity in histories.items():
         late, last = (velocity[-max(2, round(share * len(velocity))) :] for share in (lately, NOW))
         at_the_end = float(np.abs(last).max())
-        if peaks[name] > QUIET * max(peaks.values()) and min(at_the_end, float(np.ptp(late))) > MOVING * peaks[name]:
+        if peaks[name] > quiet and min(at_the_end, float(np.ptp(late))) > MOVING * peaks[name]:
             moving[name] = at_the_end / peaks[name]
     if moving:
         worst = max(moving, key=lambda name: moving[name])
@@ -67,6 +72,12 @@ def still_moving(
             f"{duration:.3g} s, and still changes ({len(moving)} of {len(histories)} monitors); "
             f"{_why_moving(scene)}"
         )
+
+
+def _mean_velocity(scene: Scene, file: h5py.File) -> float:
+    """The largest root mean square velocity (m/s) of the body in its ledger; 0 without a ledger."""
+    kinetic = file["energy/kinetic"][:] if "energy/kinetic" in file else np.zeros(0)
+    return math.sqrt(2.0 * max(0.0, float(kinetic.max(initial=0.0))) / float(scene.mass.sum()))
 
 
 def _why_moving(scene: Scene) -> str:

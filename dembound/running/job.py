@@ -2,13 +2,14 @@
 
 import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from dembound.casefile import Case
-from dembound.errors import CaseError, RunError
+from dembound.errors import CaseError, RecordError, RunError
 from dembound.interrupts import Interrupts, put_off
 from dembound.kinds import kind_of
 from dembound.motion.clock import Clock
@@ -125,7 +126,7 @@ class _Job:
             planned = self._plan()
             require_stages(planned)
             self._announce_size(planned)
-            with about(case), self.folder.writing(anew=self.found is None) as partial:
+            with about(case), self.folder.writing(anew=self.found is None) as partial, self._without_copies():
                 if self.found is not None:
                     self.found.copy_to(partial)
                 summary = self._record(planned, partial)
@@ -135,6 +136,16 @@ class _Job:
                 write_json(partial / "summary.json", summary)
                 self.folder.finish()
         return self.folder.final
+
+    @contextmanager
+    def _without_copies(self) -> Iterator[None]:
+        """Remove the copies of a complete run that is continued, if its record is found to be damaged meanwhile."""
+        try:
+            yield
+        except RecordError:
+            if self.found is not None and self.found.path != self.folder.partial:
+                self.folder.discard()
+            raise
 
     def _announce_size(self, planned: Plan) -> None:
         """Warn if the disk has less space than the results still need, and log their size if it is large."""

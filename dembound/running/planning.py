@@ -14,8 +14,9 @@ from dembound.kinds import checked, kind_of
 from dembound.motion.clock import Clock
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Beginning, Kind, Plan
+from dembound.motion.paths import first_arrivals
 from dembound.motion.scene import Scene
-from dembound.motion.silence import Silence, silent_rule
+from dembound.motion.silence import Silence, monitored, silent_rule
 from dembound.motion.simulation import Simulation
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.kept_stages import settled_state
@@ -99,6 +100,7 @@ def warnings_before(planned: Plan) -> list[str]:
         *unlikely(planned.scene.case),
         *_unused_waves(planned.scene.case),
         *_same_place(planned.scene),
+        *_never_reached(planned),
         *planned.kind.warnings_before(planned.scene, planned.time_step),
         *_interval_warnings(planned),
     ]
@@ -118,6 +120,25 @@ def _same_place(scene: Scene) -> Iterator[str]:
         if (other := first.setdefault(place, name)) != name:
             listed = ", ".join(f"{each:.4g}" for each in place)
             yield f"monitor.{name}: is nearest to the same place as monitor.{other}, ({listed}) m, and records the same"
+
+
+def _never_reached(planned: Plan) -> Iterator[str]:
+    """Monitors that no wave reaches before the run ends, as their way is too long for it or waves begin too late."""
+    scene, duration = planned.scene, planned.scene.case.run.duration
+    if not scene.case.monitor or not (sources := planned.kind.sources(scene)):
+        return
+    first = first_arrivals(sources, planned.kind.front(scene, planned.time_step), monitored(scene))
+    late = {
+        monitor.name: time
+        for monitor, time in zip(scene.case.monitor, first.tolist(), strict=True)
+        if duration <= time < np.inf
+    }
+    if late:
+        soonest = min(late, key=lambda name: late[name])
+        yield (
+            f"monitor.{soonest}: the first wave reaches it at {late[soonest]:.4g} s, not within run.duration, "
+            f"{duration:g} s ({len(late)} of {len(first)} monitors: {', '.join(late)}); it records no motion"
+        )
 
 
 def _interval_warnings(planned: Plan) -> Iterator[str]:

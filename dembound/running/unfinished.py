@@ -21,7 +21,7 @@ from dembound.results.damage import require_readable
 from dembound.results.folder import PARTIAL, Folder, with_name
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.new_record import require_laid_out
-from dembound.results.reader import open_record, text_of, understood
+from dembound.results.reader import increasing, open_record, text_of, understood
 from dembound.running.recorded import case_of
 
 SILENCE = ("until", "silent_level", "silent_for")
@@ -77,11 +77,16 @@ class Unfinished:
         return Checkpoint.read(self.path / FILE).arrays
 
     def require_record(self, scene: Scene) -> None:
-        """Raise RecordError if the record of the run, if it has begun, lacks what the whole scene appends to it."""
+        """Raise RecordError if the record of the run, if it has begun, lacks what the whole scene appends to it.
+
+        Also where the times of its histories do not increase, to which none can be added.
+        """
         if (counts := self.facts["counts"]) is not None:
             record = self.path / "run.h5"
             with open_record(record) as file, understood(record):
                 require_laid_out(file, scene, counts)
+                for group in file["histories"].values():
+                    increasing(group["time"])
 
     def copy_to(self, partial: Path) -> None:
         """Copy what a run is continued from to its partial folder, unless it is there.

@@ -12,10 +12,14 @@ from dembound.disks.scene import DiskScene
 HELD = 0.1
 """Share of a load that disks of held sides may have without a warning: a region often reaches such a side."""
 
+ONE_WAY = 0.5
+"""Share of the sizes of all steady forces that their resultant must exceed to pull the whole body one way."""
+
 
 def load_warnings(scene: DiskScene) -> Iterator[str]:
     """All of them, one line each."""
     yield from _twice(scene.case.load)
+    yield from _hung(scene)
     for load in scene.case.load:
         if load.force is None:
             continue
@@ -24,6 +28,28 @@ def load_warnings(scene: DiskScene) -> Iterator[str]:
             on_side = np.isin(nodes, edge.nodes)
             if on_side.any():
                 yield from (f"load.{load.name}: {words}" for words in _at_side(scene, load, edge, forces, on_side))
+
+
+def _hung(scene: DiskScene) -> Iterator[str]:
+    """Bodies that settle under steady loads towards a free side, held at the opposite one, and so all in tension."""
+    static = scene.case.static
+    if static is None or static.stress is not None:
+        return
+    before = scene if scene.before is None else scene.before
+    for axis, (low, high) in enumerate((("left", "right"), ("bottom", "top"))):
+        forces = before.steady_load[axis]
+        if axis in scene.ground.held or abs(forces.sum()) <= ONE_WAY * np.abs(forces).sum():
+            continue
+        towards, held = (high, low) if forces.sum() > 0.0 else (low, high)
+        if any(scene.case.side(side).is_periodic or scene.case.side(side).is_outside for side in (low, high)):
+            continue
+        table = static.boundary.get(held)
+        if towards not in static.boundary and table is not None and axis in table.prescribed(axis):
+            yield (
+                f"static: the steady loads pull the body along {'xy'[axis]} towards its {towards}, which is free in "
+                f"the static stage, and static.boundary.{held} holds it: it hangs, all in tension; give "
+                f"static.boundary.{towards} where it is to rest on it"
+            )
 
 
 def _at_side(scene: DiskScene, load: Load, edge: Edge, forces: np.ndarray, on_side: np.ndarray) -> Iterator[str]:

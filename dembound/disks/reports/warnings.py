@@ -66,6 +66,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *spring_warnings(scene),
         *load_warnings(scene),
         *_speed_of_the_packing(scene),
+        *_s_speed_of_the_packing(scene),
         *_unlikely_speed(scene),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
     ]
@@ -173,6 +174,22 @@ def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
             yield (
                 f"material.p_wave_speed: is {material.p_wave_speed:g} m/s of the square lattice; P waves along "
                 f'{"xy"[axis]} run at {own:.4g} m/s in this packing; give match = "assembly"'
+            )
+            return
+
+
+def _s_speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
+    """A given speed of S waves that the packing does not have: only the dashpots of its sides take it."""
+    given = scene.case.material.s_wave_speed
+    if given is None:
+        return
+    for axis in _axes_in_use(scene):
+        own = scene.ground.wave_speeds(axis)[1]
+        if abs(own / given - 1.0) > SPEED_ERROR:  # nan where the motion is held
+            yield (
+                f"material.s_wave_speed: is {given:g} m/s, S waves along {'xy'[axis]} run at {own:.4g} m/s in this "
+                "packing; only factors of sides follow it, so leave it out, or change what gives the packing its shear "
+                "stiffness"
             )
             return
 

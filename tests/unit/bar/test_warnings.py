@@ -7,6 +7,7 @@ import pytest
 from small_cases import SPALLING, small
 
 from dembound.bar.facts import cells_of_waves
+from dembound.bar.range_warnings import never_closing, range_warnings
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.warnings import bar_warnings, ends_too_soon, stress_beside_strength
@@ -371,3 +372,71 @@ def test_a_fracture_energy_above_that_of_the_waves_is_warned_of(spalling, energy
     found = of_key("bar.fracture_energy", bar_warnings(build_bar(case), 2.5e-5))
     assert len(found) == tough
     assert not tough or "is 7800 J/m², more than all waves bring in, 7.68e+03 J/m², so no crack" in found[0]
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"diameter": 0.02}, "bar.range[2, rod]: has neither section nor diameter, so 1 m², beside 0.0003142 m²"),
+        ({"section": 0.02}, ""),
+        ({"section": 0.0099}, "bar.range[2, rod]: its section, 1 m², is 101 times that of striker, 0.0099 m²"),
+        ({"section": 0.0101}, ""),
+    ],
+)
+def test_sections_that_are_forgotten_or_of_another_unit_are_warned_of(changed: dict, said: str) -> None:
+    rod = STRIKER[1] | ({} if "diameter" in changed else {"section": 1.0})
+    case = with_ranges([STRIKER[0] | changed, rod])
+    assert [line[: len(said)] for line in range_warnings(case, 1e-5) if "section" in line] == ([said] if said else [])
+
+
+@pytest.mark.parametrize(
+    ("velocity", "gap", "duration", "said"),
+    [
+        (5.0, 0.01, 1.9e-3, "bar.range[2, rod].gap: is 0.01 m, which 5 m/s close at 0.002 s"),
+        (5.0, 0.01, 2.1e-3, ""),
+        (-5.0, 0.0, 1.0, "bar.range[2, rod]: it and striker part at 5 m/s"),
+        (0.0, 0.01, 1.0, "bar.range[2, rod].gap: is 0.01 m, and never closes"),
+        (0.0, 0.0, 1.0, ""),
+    ],
+)
+def test_gaps_that_never_close_are_known_before_the_run(
+    velocity: float, gap: float, duration: float, said: str
+) -> None:
+    case = with_ranges([STRIKER[0] | {"velocity": velocity}, STRIKER[1] | {"gap": gap}], {"duration": duration})
+    found = never_closing(case)
+    assert list(found) == ["rod"] * bool(said)
+    assert found.get("rod", "").startswith(said)
+
+
+def test_no_gap_is_foreseen_where_waves_move_the_bar() -> None:
+    """A striker held at its end, another impact, a load: each sends waves by which a range may turn round."""
+    away = [STRIKER[0] | {"velocity": -5.0}, STRIKER[1]]
+    assert never_closing(with_ranges(away))
+    assert not never_closing(with_ranges(away, boundary={"left": {"type": "fixed"}}))
+    assert not never_closing(
+        with_ranges([*away, {"name": "c", "length": 0.2, "velocity": -1.0, "interface": "contact"}])
+    )
+    assert not never_closing(with_ranges(away, load=SPALLING["load"], wave=SPALLING["wave"]))
+
+
+def with_ranges(ranges: list[dict], run: dict | None = None, **tables):
+    bar = {key: value for key, value in SPALLING["bar"].items() if key != "length"} | {"range": ranges}
+    return small({"bar": bar, "method": EXACT["method"], "run": run or {"duration": 1.0}, **tables})
+
+
+def test_a_load_over_a_length_beside_that_of_its_wave_is_warned_of() -> None:
+    """The mean of a pulse (1 − cos)/2 of the length l over 2W has 1/2 + sin(2πW/l)/(4πW/l), 0.80 at W/l = 0.264."""
+    case = {**UNBROKEN, "method": EXACT["method"], "run": {"duration": 4e-3}}
+    case["wave"] = {"w": {"type": "cosine", "amplitude": 1.0, "period": 5e-4}}  # l = 0.5 m, W = (n − 1/2) 0.025 m
+
+    def found(nodes: int) -> list[str]:
+        load = {"name": "l", "pressure": 10e6, "nodes": nodes, "wave": "w"}
+        scene = build_bar(small(case | {"load": [load]}))
+        return of_key("load.l.nodes", bar_warnings(scene, 2.5e-5))
+
+    assert found(5) == []  # W/l = 0.225
+    (line,) = found(6)
+    ratio = 2.0 * np.pi * 5.5 * 0.025 / 0.5
+    assert f"only {100.0 * (0.5 + 0.5 * np.sin(ratio) / ratio):.2g} % of its peak enters" in line
+    (line,) = found(21)  # all of the pulse within: l/4W
+    assert f"only {100.0 * 0.25 * 0.5 / (20.5 * 0.025):.2g} % of its peak enters" in line

@@ -94,3 +94,12 @@ def test_large_errors_are_told():
     assert not [*uncertain_speed(Estimate(1000.0)), *uncertain_decay(Estimate(0.5))]
     assert len(list(raised_by_noise(0.016, 1.0))) == 1
     assert not list(raised_by_noise(0.014, 1.0))
+
+
+@pytest.mark.parametrize("speed", [14_180.0, 60.0])
+def test_speeds_that_no_unit_explains_are_said_to_be_of_the_record(speed):
+    """Peaks of bending between the returns: no option was given, so none is named as the mistake."""
+    said = next(unlikely_speed(speed))
+    assert said.startswith("RECORD: the tension peaks give ")
+    assert "bending" in said
+    assert "--low-pass" in said

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import airy
 
-from dembound.motion.paths import PRECURSOR, Front, Source, plane_needed
+from dembound.motion.paths import PRECURSOR, Front, Source, first_arrivals, plane_needed
 from dembound.table import EVERYWHERE
 
 LEVEL = {"left": (-np.inf, 0.0, np.inf, 0.0), "bottom": (0.0, -np.inf, 0.0, np.inf)}
@@ -71,3 +71,11 @@ def test_nothing_is_needed_where_nothing_comes() -> None:
 
     assert plane_needed("right", [], place, Front(1.0, 0.1), 5.0) == -np.inf
     assert plane_needed("left", [source(EVERYWHERE, 5.0)], place, Front(1.0, 0.1), 4.0) == np.inf
+
+
+def test_the_first_arrival_is_that_of_the_nearest_way_and_the_earliest_source() -> None:
+    left = Source((0.0, -np.inf, 0.0, np.inf), 2.0, 3.0, 1.0)
+    point = Source((8.0, 0.0, 8.0, 0.0), 5.0, 6.0, 1.0)
+    places = np.array([[4.0, 9.0], [8.0, 3.0], [12.0, 0.0]])
+    assert first_arrivals([left, point], Front(2.0, 0.1), places) == pytest.approx([4.0, 6.0, 7.0])
+    assert np.isinf(first_arrivals([], Front(2.0, 0.1), places)).all()

@@ -8,13 +8,15 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
-from dembound.errors import CaseError, RunError
+from dembound.errors import CaseError, RecordError, RunError
 from dembound.kinds import with_changes
+from dembound.motion.paths import first_arrivals
+from dembound.motion.silence import monitored
 from dembound.motion.trackers import Run
 from dembound.plot.scene import plot_scene
 from dembound.results.folder import OWN
 from dembound.results.summary import end_in_words
-from dembound.running import SECTIONS, Progress, plan, preflight, run_case, warnings_before
+from dembound.running import SECTIONS, Progress, plan, preflight, resume_case, run_case, warnings_before
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
 BLOW_UP = {"boundary.left": GRIP, "run.duration": 0.05}
@@ -582,3 +584,28 @@ def test_keys_of_silence_without_effect_are_refused(request, kind, changes, said
         request.getfixturevalue(kind)(changes | {"run.duration": 0.01})
 
     assert any(problem.startswith(said) for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize(("duration", "late"), [(0.9, True), (1.1, False)])
+def test_monitors_that_no_wave_reaches_are_named_before_the_run(bar, duration: float, late: bool) -> None:
+    """The monitor of the farther end: its way over the speed of the fastest waves, of which `duration` is a share."""
+    planned = plan(bar())
+    first = first_arrivals(
+        planned.kind.sources(planned.scene),
+        planned.kind.front(planned.scene, planned.time_step),
+        monitored(planned.scene),
+    )
+    farthest = planned.scene.case.monitor[int(first.argmax())].name
+    lines = warnings_before(plan(bar({"run.duration": duration * float(first.max())})))
+    found = [line for line in lines if "the first wave reaches it" in line]
+    assert [farthest in line and f"reaches it at {first.max():.4g} s" in line for line in found] == late * [True]
+
+
+def test_a_refused_resume_leaves_nothing_beside_the_results(bar, tmp_path) -> None:
+    folder = run_case(bar(), tmp_path)
+    with h5py.File(folder / "run.h5", "a") as file:
+        times = next(iter(file["histories"].values()))["time"]
+        times[...] = times[:][::-1]
+    with pytest.raises(RecordError, match="do not increase"):
+        resume_case(folder, until=0.02)
+    assert [path.name for path in tmp_path.iterdir()] == [folder.name]

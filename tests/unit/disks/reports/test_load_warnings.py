@@ -55,3 +55,19 @@ def test_a_load_that_is_there_twice_is_warned_of() -> None:
     again, other = {**blow, "name": "again"}, {**blow, "name": "other", "position": [7.5, 5.5]}
     found = list(load_warnings(build(small(GROUND, changes={"load": [blow, other, again]}))))
     assert found == ["load.again: is the same as load.blow, so that it acts twice"]
+
+
+@pytest.mark.parametrize(
+    ("pull", "sides", "said"),
+    [
+        (9.81, ["left"], "static: the steady loads pull the body along x towards its right, which is free"),
+        (-9.81, ["left"], ""),
+        (9.81, ["left", "right"], ""),
+        (-9.81, ["right"], "static: the steady loads pull the body along x towards its left, which is free"),
+    ],
+)
+def test_a_body_that_hangs_while_it_settles_is_warned_of(pull: float, sides: list[str], said: str) -> None:
+    held = {side: {"type": "fixed"} for side in sides}
+    tables = {"load": [{"name": "weight", "acceleration": [pull, 0.0]}], "static": {"ratio": 1e-6, "boundary": held}}
+    found = [line for line in load_warnings(build(small(GROUND | {"wave": {}} | tables))) if line.startswith("static:")]
+    assert [line[: len(said)] for line in found] == ([said] if said else [])

@@ -6,7 +6,7 @@ from small_cases import SURROUNDED, small
 from warned_cases import DENSE, SLOW, warned
 
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.reports.warnings import _steady_without_static
+from dembound.disks.reports.warnings import _s_speed_of_the_packing, _steady_without_static
 from dembound.disks.scene import build
 from dembound.running import plan, warnings_before
 
@@ -158,4 +158,15 @@ def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
     assert [line for line in lines if line.startswith("hole")] == [
         f"hole[{number}, {name}]: no particle is centred in it, so it removes none"
         for number, name in ((1, "between"), (2, "above"))
+    ]
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.85, True), (1.0, False)])
+def test_a_speed_of_s_waves_that_the_packing_lacks_is_warned_of(share: float, told: bool) -> None:
+    """A square lattice of p_wave_speed 1000 m/s with springs of a quarter in shear has S waves of 500 m/s."""
+    material = {"density": 2500.0, "p_wave_speed": 1000.0, "s_wave_speed": share * 500.0}
+    ground = {"packing": {"pattern": "A", "size": [20.0, 10.0], "radius": 0.5}, "material": material}
+    lines = list(_s_speed_of_the_packing(build(small({**ground, "run": {"duration": 0.01}}))))
+    assert [line[:80] for line in lines] == told * [
+        "material.s_wave_speed: is 425 m/s, S waves along x run at 500 m/s in this packing"[:80]
     ]

@@ -1,0 +1,117 @@
+"""Warnings about the ranges of a bar, known before the run: their sections, and how they meet."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from dembound.casefile.bar import BarCase
+
+ALIKE = 1e-3
+"""Relative difference of Δx/c up to which it is the same."""
+
+UNLIKE_SECTIONS = 100.0
+"""Ratio of the sections of neighbours above which it is taken for a mistake: at 100 hardly 4 % of a force passes."""
+
+
+def range_warnings(case: BarCase, time_step: float) -> Iterator[str]:
+    """All of them, one line each; time_step in s."""
+    yield from _sections(case)
+    yield from _bonded_impacts(case)
+    yield from never_closing(case).values()
+    yield from _impacts(case, time_step)
+
+
+def _sections(case: BarCase) -> Iterator[str]:
+    """Sections that are left to the default beside others that are given, and neighbours of very unlike sections."""
+    parts, names = case.bar.parts, [each.name for each in case.bar.range]
+    given = [part.section is not None or part.diameter is not None for part in parts]
+    told = set()
+    for left, right in itertools.pairwise(range(len(parts))):
+        areas = parts[left].area, parts[right].area
+        if given[left] != given[right] and areas[0] != areas[1]:
+            bare, other = (left, right) if given[right] else (right, left)
+            if bare not in told:
+                told.add(bare)
+                yield (
+                    f"bar.range[{bare + 1}, {names[bare]}]: has neither section nor diameter, so 1 m², beside "
+                    f"{parts[other].area:.4g} m² of {names[other]}; give it one, or give [bar] that of all ranges"
+                )
+        elif max(areas) > UNLIKE_SECTIONS * min(areas):
+            yield (
+                f"bar.range[{right + 1}, {names[right]}]: its section, {areas[1]:.4g} m², is {areas[1] / areas[0]:.3g} "
+                f"times that of {names[left]}, {areas[0]:.4g} m²; is one of them, or a diameter, in another unit?"
+            )
+
+
+def _bonded_impacts(case: BarCase) -> Iterator[str]:
+    """Neighbours of different velocities that are bonded, so that they cannot part after their impact."""
+    for number, (left, right) in enumerate(itertools.pairwise(case.bar.range), start=2):
+        if right.interface == "bonded" and left.velocity != right.velocity:
+            yield (
+                f'bar.range[{number}, {right.name}].interface: is "bonded", while {left.name} has '
+                f"{left.velocity:g} m/s at the start and {right.name} {right.velocity:g} m/s: they pull each other as "
+                'hard as they push; give interface = "contact"'
+            )
+
+
+def never_closing(case: BarCase) -> dict[str, str]:
+    """Contacts that never close within the run, by the name of the range on their right, each with a warning.
+
+    Until something sends waves, ranges fly as they are; where something does within the run, none is foreseen.
+    """
+    pairs, duration = list(itertools.pairwise(case.bar.range)), case.run.duration
+    if case.load or case.driving or not pairs or _held_in_flight(case):
+        return {}
+    if any(right.interface == "bonded" and left.velocity != right.velocity for left, right in pairs):
+        return {}
+    found = {}
+    for number, (left, right) in enumerate(pairs, start=2):
+        if right.interface == "bonded":
+            continue
+        approach, place = left.velocity - right.velocity, f"bar.range[{number}, {right.name}]"
+        closes = right.gap / approach if approach > 0.0 else math.inf
+        if closes < duration:
+            return {}
+        if approach > 0.0:
+            found[right.name] = (
+                f"{place}.gap: is {right.gap:g} m, which {approach:g} m/s close at {closes:.4g} s, not within "
+                f"run.duration, {duration:g} s"
+            )
+        elif approach < 0.0:
+            found[right.name] = (
+                f"{place}: it and {left.name} part at {-approach:g} m/s and never meet; velocities are positive to the "
+                "right"
+            )
+        elif right.gap > 0.0:
+            found[right.name] = f"{place}.gap: is {right.gap:g} m, and never closes, as {left.name} is no faster"
+    return found
+
+
+def _held_in_flight(case: BarCase) -> bool:
+    """Whether a range that moves at the start is at an end of the bar that is not free."""
+    ends = {"left": case.bar.range[0], "right": case.bar.range[-1]}
+    return any(each.velocity != 0.0 and not case.side(side).is_free for side, each in ends.items())
+
+
+def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
+    """Impacts: their fronts of one step swing unless the time step is the Δx/c of all ranges."""
+    if not any(each.velocity for each in case.bar.range):
+        return
+    steps = np.array([part.length / part.cells / part.speed for part in case.bar.parts])
+    if np.ptp(steps) < ALIKE * steps.max():
+        if time_step < (1.0 - ALIKE) * steps.max():
+            yield (
+                f"run.courant: is {time_step / steps.max():.3g}, so fronts of impacts overshoot by some 20 % of the "
+                "stress; as Δx/c is alike in all ranges, courant = 1.0 has none of it"
+            )
+        return
+    listed = ", ".join(f"{1e6 * step:.3g}" for step in steps)
+    yield (
+        f"bar.range: Δx/c differs, {listed} µs, so fronts of impacts swing from step to step, by some 20 % of the "
+        "stress, which can break bonds though the stress at nodes does not show it; choose spacings with one Δx/c, and "
+        "run.courant = 1.0"
+    )

@@ -1,0 +1,54 @@
+"""Numbers of a record that no run has: refused, with the place, before anything is made of them."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import RecordError
+from dembound.results.damage import require_places
+from dembound.results.reader import understood
+
+
+@pytest.fixture
+def record(tmp_path) -> Path:
+    """Three particles, a monitor of the last, and one between nodes."""
+    path = tmp_path / "run.h5"
+    with h5py.File(path, "w") as file:
+        file["particles/position"], file["particles/radius"] = np.zeros((3, 2)), np.ones(3)
+        for name, particle in (("last", 2), ("between", -1)):
+            file[f"histories/{name}/velocity"] = np.zeros((4, 3))
+            file[f"histories/{name}"].attrs["particle"] = particle
+    return path
+
+
+def test_sound_numbers_are_accepted(record) -> None:
+    with h5py.File(record) as file:
+        require_places(file)
+
+
+@pytest.mark.parametrize("radius", [0.0, -0.5, np.nan])
+def test_particles_of_no_size_are_refused(record, radius: float) -> None:
+    with h5py.File(record, "a") as file:
+        file["particles/radius"][1] = radius
+        with pytest.raises(RecordError, match=f"particles/radius is {radius:g} in row 1"):
+            require_places(file)
+
+
+@pytest.mark.parametrize("particle", [3, -2])
+def test_monitors_of_no_particle_are_refused(record, particle: int) -> None:
+    with h5py.File(record, "a") as file:
+        file["histories/last"].attrs["particle"] = particle
+        with pytest.raises(RecordError, match=f"histories/last is of particle {particle}, there are 3"):
+            require_places(file)
+
+
+def test_a_failure_over_numbers_that_are_not_finite_names_them(record) -> None:
+    with pytest.raises(RecordError, match="not of this version"), understood(record):
+        raise ValueError("Axis limits cannot be NaN or Inf")
+    with h5py.File(record, "a") as file:
+        file["histories/last/velocity"][2, 1] = np.nan
+    said = "histories/last/velocity has a number that is not finite in row 2"
+    with pytest.raises(RecordError, match=said), understood(record):
+        raise ValueError("Axis limits cannot be NaN or Inf")
