@@ -43,3 +43,9 @@ def test_an_edge_knows_its_normal_and_how_much_its_disks_cover(side: str, axis: 
 
     assert edge.axis == axis
     assert edge.diameter_sum_ratio == 1.2
+
+
+def test_a_disk_shared_by_two_sides_takes_its_part_of_the_width() -> None:
+    diameters, shares = np.array([0.5, 1.0]), np.array([0.5, 1.0])
+    edge = Edge("right", np.arange(2), np.zeros((2, 2)), diameters, length=1.25, shares=shares)
+    assert edge.widths.tolist() == [0.25, 1.0]

@@ -307,3 +307,9 @@ def test_motion_that_is_prescribed_does_not_depend_on_widths() -> None:
     Velocity(type="velocity", wave_p="shake").support(edge, MEDIUM, WAVES, builder)
 
     assert column(builder.table(), "push", 0).tolist() == [30.0, 30.0]
+
+
+def test_p_waves_move_along_the_normal_and_s_waves_across() -> None:
+    table = Velocity(type="velocity", wave_p="push", wave_s="shake")
+    assert table.waves_by_axis(0) == ("push", "shake")
+    assert table.waves_by_axis(1) == ("shake", "push")

@@ -172,3 +172,10 @@ def test_forces_may_be_of_several_sides() -> None:
         ("top", 7),
     }
     assert dict(zip(shares.node.tolist(), shares.signal.tolist(), strict=True)) == {4: 0, 2: 1, 7: 2}
+
+
+def test_an_incident_wave_enters_by_twice_its_velocity_through_the_dashpot() -> None:
+    builder = SupportBuilder()
+    builder.add(NODES, 0, damping=np.array([3.0, 5.0]), incident=ramp)
+
+    assert sorted(builder.table().drive) == [6.0, 10.0]  # 2Cv_i, Z eq. 6

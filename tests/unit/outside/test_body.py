@@ -19,6 +19,7 @@ def test_mass_is_that_of_the_medium_and_what_is_added(grid) -> None:
 
     assert body.mass.sum() == pytest.approx(2500.0 * body.mesh.areas.sum())
     np.testing.assert_allclose(grid(added_mass=added).mass, body.mass + added)
+    np.testing.assert_allclose(grid(thickness=2.0).mass, 2.0 * body.mass)
 
 
 @pytest.mark.parametrize("order", [3, 4, 6])
