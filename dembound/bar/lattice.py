@@ -1,5 +1,9 @@
 """The infinite row of nodes with the same bonds as the inside of a bar."""
 
+import math
+from collections.abc import Iterable, Iterator
+from itertools import product
+
 from dembound.bar.scene import BarScene
 from dembound.exact.dispersion import Lattice, usual_shares
 from dembound.methods.bonds import Bonds
@@ -15,6 +19,16 @@ def lattice_of(bonds: Bonds, part: Range, time_step: float) -> Lattice:
     horizon = len(shares)
     usual = shares == tuple(round(share, DIGITS) for share in usual_shares(horizon))
     return Lattice(horizon, part.spacing, time_step, part.speed, None if usual else shares)
+
+
+def even_lattices(stages: Iterable[Bonds], ranges: Iterable[Range], time_step: float) -> Iterator[Lattice]:
+    """The infinite rows of all stages of a method in all ranges; time_step s.
+
+    Without those in which a zone of other bonds ends in the middle of a range, where the row is not even.
+    """
+    for bonds, part in product(stages, ranges):
+        if math.isclose(sum(bonds.shares(part)), 1.0, rel_tol=10.0**-DIGITS):
+            yield lattice_of(bonds, part, time_step)
 
 
 def carrying_lattices(scene: BarScene, time_step: float) -> list[Lattice]:

@@ -1,10 +1,8 @@
 """Where the motion of a bar starts, and how far its waves can have come at a time."""
 
-from itertools import product
-
 import numpy as np
 
-from dembound.bar.lattice import lattice_of
+from dembound.bar.lattice import even_lattices
 from dembound.bar.scene import BarScene
 from dembound.casefile.bar import BarCase
 from dembound.motion.paths import Front, Source
@@ -48,8 +46,7 @@ def front_of_bar(scene: BarScene, time_step: float) -> Front:
     """
     ranges = scene.rod.ranges
     speed = max(part.speed for part in ranges)
-    for bonds, part in product(scene.case.method.stages(scene.rod), ranges):
-        row = lattice_of(bonds, part, time_step)
+    for row in even_lattices(scene.case.method.stages(scene.rod), ranges, time_step):
         groups = row.group_velocity(row.shortest * np.linspace(0.0, 1.0, SAMPLES * row.horizon, endpoint=False))
         speed = max(speed, float(np.nanmax(groups)))
     horizon = scene.case.method.largest_horizon

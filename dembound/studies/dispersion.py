@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from dembound.bar.lattice import lattice_of
+from dembound.bar.lattice import even_lattices
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step
 from dembound.casefile import Case
@@ -87,7 +87,7 @@ def lattices_of(case: Case) -> list[Lattice]:
     scene = build_bar(bar)
     time_step, _ = choose_step(scene)
     stages = bar.method.stages(scene.rod)
-    found = {lattice_of(bonds, part, time_step) for bonds, part in product(stages, scene.rod.ranges)}
+    found = set(even_lattices(stages, scene.rod.ranges, time_step))
     return sorted(found, key=lambda lattice: (lattice.horizon, lattice.shares or ()))
 
 

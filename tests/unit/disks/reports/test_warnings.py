@@ -60,7 +60,9 @@ def test_a_steady_load_without_a_static_stage_is_warned_of(bar, static: dict, su
     tap = {"name": "tap", "acceleration": [1.0, 0.0], "wave": "pulse"}
     found = warned(bar({"load": [weight, tap], **SLOW, **static}))
 
-    assert [warning.split(",")[0] for warning in found] == ["load.weight: is steady"] * sudden
+    assert [warning.split(",")[0] for warning in found if "load.weight" in warning] == [
+        "load.weight: is steady"
+    ] * sudden
 
 
 @pytest.mark.parametrize(
