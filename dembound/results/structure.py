@@ -107,12 +107,13 @@ class Members(Mapping[str, "h5py.Group"]):
         self._group = file.get(collection, {})
         if hasattr(self._group, "dtype"):
             raise _refused(file, collection, "must be a group")
+        self._links = frozenset(self._group)
         self._searched: set[str] = set()
         self._declared = 0
 
     def __getitem__(self, name: str) -> h5py.Group:
         """A member; raises KeyError if there is none, and RecordError as `require_structure`."""
-        if name not in self._searched and name in self._group:
+        if name not in self._searched and name in self._links:  # a link that leads nowhere is no key of a group
             path = f"{self._collection}/{name}"
             self._declared = _search(self._file, path, COLLECTIONS[self._collection], self._declared)
             self._searched.add(name)
