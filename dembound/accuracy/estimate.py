@@ -154,7 +154,7 @@ def _until(case: Case, summary: Mapping[str, Any]) -> Case:
 
 
 def _broken(first: float) -> str:
-    """That nothing is known once bonds have broken, first at a time (s)."""
+    """What is not estimated: motion from the first break of a bond on, at a time (s)."""
     return f"motion after {first:.4g} s, when the first bond broke"
 
 

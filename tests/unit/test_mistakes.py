@@ -129,7 +129,7 @@ OTHERS = [
     (LATTICE | WEIGHT, "load", down(0.0, -9.81), None),
     (LATTICE, "load", [{**down(0.0, -9.81)[0], "wave": "push"}],
      'load.weight.acceleration: is gravity times wave "push"; a weight that stays has no wave'),
-    (LATTICE | BREAKING, "material.pb_coh", 1e4, "times material.pb_ten; bonds of rock and soil have 0.5 to 10"),
+    (LATTICE | BREAKING, "material.pb_coh", 1e4, "times material.pb_ten, more than a factor of 100 apart"),
     (LATTICE | WEIGHT, "load", down(0.0, -1.62), None),  # on the moon
     (LATTICE, "static.stress", [5e6, 10e6, 0.0],
      "static.stress: is a tension, 5e+06 Pa along x and 1e+07 Pa along y; likely compression, which is"),

@@ -192,4 +192,4 @@ def test_a_signal_at_any_moment_ends_a_command(tmp_path, monkeypatch, count, col
     print(found.outcomes, f"resumed {found.resumed}; s to the end: median {np.median(times):.2f}, most", times[-5:])
     print(sorted(found.took)[-8:])
     assert sum(found.outcomes.values()) == count
-    assert found.outcomes["by its own code"] > 0.3 * count
+    assert found.outcomes["by its own code"] > 0.5 * count

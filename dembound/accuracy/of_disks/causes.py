@@ -65,7 +65,7 @@ class _Disks:
         return Causes(self.by_formula(), [*self._edge_disks(), *self._without_formula()]) + self._pair()
 
     def by_formula(self) -> list[Cause]:
-        """Those without the sides that are compared by runs."""
+        """Causes of errors that formulas give, without the sides that runs are compared for."""
         return [*self._sides(), *self._delays()]
 
     def _edge_disks(self) -> Iterator[str]:

@@ -112,7 +112,7 @@ class Companions:
         return needed_by(build(self._own))
 
     def recorded(self, scene: DiskScene) -> dict[str, History]:
-        """That motion, at the places of the monitors in a scene, seen from the loads."""
+        """The far companion's motion at the places of the monitors in a scene, seen from the loads."""
         time = next(iter(self.far.values())).time
         motion = self._motion(self.far, self._places(scene))
         return {name: History(scene.monitored[name], time, values) for name, values in motion.items()}

@@ -93,12 +93,12 @@ def _empty_holes(scene: DiskScene) -> Iterator[str]:
 
 
 def _unlike_strengths(scene: DiskScene) -> Iterator[str]:
-    """Strengths of bonds in tension and in shear that differ more than those of any rock."""
+    """Strengths of bonds in tension and in shear that differ by more than `UNLIKE_STRENGTHS`."""
     tension, shear = scene.case.material.pb_ten, scene.case.material.pb_coh
     if tension is not None and shear is not None and not 1.0 / UNLIKE_STRENGTHS <= shear / tension <= UNLIKE_STRENGTHS:
         yield (
-            f"material.pb_coh: is {shear / tension:.3g} times material.pb_ten; bonds of rock and soil have 0.5 to 10, "
-            "are both in Pa?"
+            f"material.pb_coh: is {shear / tension:.3g} times material.pb_ten, more than a factor of "
+            f"{UNLIKE_STRENGTHS:g} apart; are both in Pa?"
         )
 
 

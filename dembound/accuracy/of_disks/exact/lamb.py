@@ -139,7 +139,7 @@ def _line_load(scene: DiskScene) -> LineLoad:
 
 
 def _covered(case: DiskCase) -> Iterator[str]:
-    """That the top of a case is not the free surface of a half-space."""
+    """A line if the top of a case is not the free surface of a half-space."""
     top = case.side("top")
     if not top.is_free:
         yield f'boundary.top.type: is "{top.type}", must be "free", the surface of the half-space'

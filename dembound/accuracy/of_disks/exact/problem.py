@@ -77,7 +77,7 @@ def solid_of(scene: DiskScene) -> Solid:
 
 
 def law_problems(case: DiskCase) -> Iterator[str]:
-    """That a case has a law other than that of a linear solid."""
+    """A line if the law of a case is not that of a linear solid."""
     if LAWS[case.material.law].has_history:
         name = case.material.law
         yield f'material.law: is "{name}", must have no history, as "elastic"; the solution is that of a linear solid'
