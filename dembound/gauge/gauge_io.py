@@ -14,7 +14,7 @@ from dembound.gauge.plausibility import (
     implausible_signal,
     implausible_size,
 )
-from dembound.gauge.recorded import (
+from dembound.gauge.reading.recorded import (
     BarMetadata,
     GaugeMetadata,
     bar_length,
@@ -24,7 +24,7 @@ from dembound.gauge.recorded import (
     loaded_end,
     recorded_gauge,
 )
-from dembound.gauge.signal import Reading, Signal, read_signal
+from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.gauge.treatment import Treatment, treated
 from dembound.results.reader import history_of, open_record
 

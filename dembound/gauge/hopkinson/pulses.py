@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.gauge.hopkinson.separation import Bar, moved, separated
 from dembound.gauge.peaks import CREST, noise_left, smooth, white_noise, width_of
 from dembound.gauge.plausibility import implausible_modulus, implausible_size
-from dembound.gauge.separation import Bar, moved, separated
 
 ONSET = 0.02
 """Share of its largest value at which the incident pulse begins; with noise five standard deviations of it."""

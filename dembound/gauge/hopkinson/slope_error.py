@@ -19,10 +19,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.gauge.estimates import FEWEST
-from dembound.gauge.hopkinson import Specimen, slope_of, specimen
+from dembound.gauge.hopkinson.pulses import Faces, Setup
+from dembound.gauge.hopkinson.specimen import Specimen, slope_of, specimen
 from dembound.gauge.noise import rounding
 from dembound.gauge.peaks import CREST, smooth, white_noise, width_of
-from dembound.gauge.pulses import Faces, Setup
 
 SEED, DRAWS = 0, 40
 """Of the noise: a standard error is known to 11 % from 40 slopes."""
