@@ -15,7 +15,9 @@ def with_tables(command: Callable[..., None]) -> Callable[..., None]:
     The annotations of these fields are those of typer's options. The command itself gets one object of the class.
     """
     hints = get_type_hints(command, include_extras=True)
-    tables: dict[str, type] = {name: hint for name, hint in hints.items() if isinstance(hint, type) and is_dataclass(hint)}
+    tables: dict[str, type] = {
+        name: hint for name, hint in hints.items() if isinstance(hint, type) and is_dataclass(hint)
+    }
 
     @wraps(command)
     def flat(**given: Any) -> None:
