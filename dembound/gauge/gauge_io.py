@@ -54,7 +54,7 @@ class Gauge:
     notes: tuple[str, ...] = ()
 
     def in_pascals(self, speed: float) -> "Gauge":
-        """The same with stresses in Pa: strains times E, by default ρc² with c = speed, m/s.
+        """The gauge with stresses in Pa: strains times E, by default ρc² with c = speed, m/s.
 
         Raises CaseError where they cannot be known, and for a modulus that is not that of the density and the speed.
         """

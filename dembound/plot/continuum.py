@@ -55,7 +55,7 @@ class Continuum:
         return Window(low, self.elements[:, 2:].max(axis=0) - low)
 
     def moved(self, displacements: np.ndarray | None) -> Self:
-        """The same with the cells where displacements (m, 2) m of the nodes move them; None: not at all."""
+        """The mesh with its cells where displacements (m, 2) m of the nodes move them; None: not at all."""
         return self if displacements is None else replace(self, corners=self.corners + displacements[self.nodes])
 
 

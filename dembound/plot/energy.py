@@ -141,7 +141,7 @@ def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[En
 
 
 def _not_negligible(lines: list[EnergyLine]) -> list[EnergyLine]:
-    """Those of the lines that exceed a small share of the largest."""
+    """Lines that exceed a small share of the largest."""
     largest = [float(np.abs(line.values).max(initial=0.0)) for line in lines]
     return [line for line, each in zip(lines, largest, strict=True) if each > line.least * max(largest)]
 

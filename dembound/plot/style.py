@@ -177,7 +177,7 @@ def point_style(index: int) -> dict[str, Any]:
 
 
 def open_point_style(index: int) -> dict[str, Any]:
-    """The same with hollow markers and dashes, so that rows show that lie on each other."""
+    """Style of points with hollow markers and dashes, so that rows show that lie on each other."""
     return point_style(index) | {"linestyle": DASHES[index % len(DASHES)], "markersize": 6.0, "fillstyle": "none"}
 
 

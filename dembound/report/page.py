@@ -224,7 +224,7 @@ def _drawn(draw: Callable[[], Figure]) -> Picture:
 
 
 def _components(records: Sequence[Path]) -> list[Any]:
-    """Those of x and y along which the velocity is visible at any monitor, or the larger if both are zero."""
+    """Components, x or y, along which the velocity is visible at any monitor, or the larger if both are zero."""
     histories = [read_histories(record, "velocity") for record in records]
     if not any(histories):
         raise CaseError([f"{', '.join(map(str, records))}: has no monitors to show"])

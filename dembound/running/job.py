@@ -261,7 +261,7 @@ class _Job:
 
 
 def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
-    """The same warnings, after the progress has received each."""
+    """Warnings as they come, after the progress has received each."""
     for warning in warnings:
         progress.warned(warning)
     return warnings

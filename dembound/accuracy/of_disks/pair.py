@@ -102,7 +102,7 @@ class PairScenes:
 
     @property
     def scenes(self) -> list[DiskScene]:
-        """Those that are run."""
+        """The scenes that are run."""
         return [self.smaller, self.larger, *([] if self.whole is None else [self.whole])]
 
     @property

@@ -63,7 +63,7 @@ def skin_depths(brick: Brick, stiffness: Stiffness, tensor: np.ndarray, axis: in
 
 
 def cut_at(brick: Brick, height: float) -> Brick:
-    """The same packing in bricks that end at a height (m) above the lower edge of one of its bricks.
+    """The packing in bricks that end at a height (m) above the lower edge of one of its bricks.
 
     Disks centred on it are above. Its rows along y = 0 are rows inside of it.
     """

@@ -244,7 +244,7 @@ def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Windo
 
 
 def _outside(time: np.ndarray, starts: Sequence[float]) -> str:
-    """That pulses begin before or behind a record, or that nothing of them is left, by the times (3,) s they begin."""
+    """Problems of pulses that begin (times (3,) s) before or behind a record, or of which nothing is left."""
     whole = f"the record is from {time[0]:.6g} to {time[-1]:.6g} s"
     names = ("incident", "reflected", "transmitted")
     late = [f"{name} at {at:.6g} s" for name, at in zip(names, starts, strict=True) if at >= time[-1]]
