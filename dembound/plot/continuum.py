@@ -15,7 +15,7 @@ from matplotlib.tri import Triangulation
 from dembound.plot.disks import EMPTY, Window, colours_within
 
 GROUP = "continuum"
-"""Of a record, and of its snapshots."""
+"""Group of the continuum in a record and in its snapshots."""
 
 FINEST_CELL, FINEST_ELEMENT = 2.0, 10.0
 """Pixels: where cells are narrower elements have their mean colours, elements that are narrower have no outline."""

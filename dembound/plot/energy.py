@@ -36,7 +36,7 @@ BAR_COLUMNS = COLUMNS | {
     "damping": "taken by attenuation",
     "law_switch": "in: added by a change of method",
 }
-"""The same for a bar."""
+"""Lines of the ledger of a bar."""
 
 OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
     "came_in": ("in: through the {}", {"marker": "^"}),

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_FRAMES = 40
-"""Of a scene; of more snapshots some are chosen evenly."""
+"""The most frames of a scene; of more snapshots some are chosen evenly."""
 
 FRAME_DOTS = 105
 """Pixels of an inch of a frame."""

@@ -42,7 +42,7 @@ LARGE = 1e9
 """Bytes of results whose size is logged before the run."""
 
 RESUMED_SECTIONS = ("settle", "step", "record")
-"""Those that a resumed run does not repeat."""
+"""Parts of a run that a resumed run does not repeat."""
 
 
 def run_case(

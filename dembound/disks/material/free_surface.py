@@ -27,7 +27,7 @@ SLENDER = 2.0
 depth y at least as exp(−2πy/width)."""
 
 FAINT = 1e-9
-"""See `Network.relaxed`: in packings without bonds a disk at a surface may have one contact only."""
+"""Springs against single motions, see `Network.relaxed`: without bonds a disk at a surface may have one contact."""
 
 LEAST_MASS = 0.5
 """Part of its medium's mass that a node keeps where a skin is stiff, of negative depth."""

@@ -25,7 +25,7 @@ from dembound.gauge.noise import rounding
 from dembound.gauge.peaks import CREST, smooth, white_noise, width_of
 
 SEED, DRAWS = 0, 40
-"""Of the noise: a standard error is known to 11 % from 40 slopes."""
+"""Seed and number of draws of the noise: a standard error is known to 11 % from 40 slopes."""
 
 NO_NOISE = 1e-9
 """Noise over the largest strain below which it is rounding."""
