@@ -66,10 +66,10 @@ class Judge(ABC, Generic[C, S]):
         """The scene of a case enlarged to at most so many nodes, see `extended.extended`."""
 
     @abstractmethod
-    def exact(self, case: C) -> Exact | None:
+    def exact(self, case: C) -> Exact[C] | None:
         """The exact solution of a case, None if none is known; raises CaseError if the reasons are."""
 
-    def finer(self, case: C, choices: Sequence[Choice], outcomes: Sequence[Run]) -> FinerRun | None:
+    def finer(self, case: C, choices: Sequence[Choice[C]], outcomes: Sequence[Run]) -> FinerRun | None:
         """A finer run than those of choices with these outcomes, with the ends of a case; by default there is none."""
         return None
 

@@ -48,16 +48,16 @@ class Reduction(Generic[S]):
 
 
 @dataclass(frozen=True)
-class Plan:
+class Plan(Generic[S]):
     """A case before its first step: the scene, the time step and its limit (s), the number of steps.
 
     stepped : the scene whose motion is computed, the scene itself or a smaller one, and refused : see `Reduction`.
     regular_steps : steps from which intervals of ledger and snapshots are found: those of the run as it was begun.
     """
 
-    kind: Kind[Any, Any]
-    scene: Scene
-    stepped: Scene
+    kind: Kind[Any, S]
+    scene: S
+    stepped: S
     time_step: float
     step_limit: float
     steps: int

@@ -45,7 +45,7 @@ class BarJudge(Judge[BarCase, BarScene]):
         """A pulse at the left end of a bar without attenuation."""
         return PulseInBar.of(case)
 
-    def finer(self, case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Run]) -> Finer:
+    def finer(self, case: BarCase, choices: Sequence[Choice[BarCase]], outcomes: Sequence[Run]) -> Finer:
         """Finite differences at Courant number 1."""
         return finer(case, choices, outcomes)
 

@@ -65,7 +65,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """The scene with more bricks beyond its sides."""
         return extended_disks(case, most)
 
-    def exact(self, case: DiskCase) -> Exact | None:
+    def exact(self, case: DiskCase) -> Exact[DiskCase] | None:
         """A plane wave, or one of the problems of `exact`; raises CaseError if loads are none of them."""
         if (plane := PlaneWave.of(case)) is not None:
             return plane

@@ -63,7 +63,7 @@ class ElasticTwin:
     """
 
     case: DiskCase
-    planned: Plan
+    planned: Plan[DiskScene]
     factor: float
     diameter: float
     stress: float
@@ -99,7 +99,9 @@ class ElasticTwin:
         return f"the elastic law, which holds up to {self.factor:.3g} times these waves {size}"
 
 
-def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str], runner: Runner) -> ElasticTwin | None:
+def elastic_twin(
+    case: DiskCase, planned: Plan[DiskScene], most: float, kept: Sequence[str], runner: Runner
+) -> ElasticTwin | None:
     """The case under the elastic law if this holds with its own disks; None if not, or if it is not known.
 
     planned : of the case. most : particle-steps that the companion should take. kept : keys that do not change.
@@ -114,9 +116,8 @@ def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str]
         twins = [with_changes(case, {"material": weak} | change) for change in _without_stage(case)]
     except CaseError:  # a load that never ends, without a body at rest under it; local damping
         return None
-    assert isinstance(watched, DiskCase)
     twin = next((each for each in twins if keeps(case, each, kept)), None)
-    if not isinstance(twin, DiskCase):
+    if twin is None:
         return None
     try:
         factor, diameter = _factor(watched, planned, most, runner)
@@ -160,16 +161,14 @@ def _turning_stress(case: DiskCase) -> float:
     return float(given + case.material.density * (weight @ case.size))
 
 
-def _diameter(planned: Plan) -> float:
+def _diameter(planned: Plan[DiskScene]) -> float:
     """Diameter (m) of the disks of a plan."""
-    assert isinstance(planned.scene, DiskScene)
     return planned.scene.ground.brick.mean_diameter
 
 
-def _factor(case: DiskCase, planned: Plan, most: float, runner: Runner) -> tuple[float, float]:
+def _factor(case: DiskCase, planned: Plan[DiskScene], most: float, runner: Runner) -> tuple[float, float]:
     """The load factor, and the diameter (m) of the disks with which it was found: as small as can be afforded."""
     own, scene = _diameter(planned), planned.scene
-    assert isinstance(scene, DiskScene)
     quiet = replace(case, output=case.output.model_copy(update={"snapshots": 0}))
     for ratio in (1.0, *ratios(case, scene)):
         if ratio > 1.0:

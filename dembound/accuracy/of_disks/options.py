@@ -48,8 +48,8 @@ class DiskOption:
     """
 
     case: DiskCase
-    planned: Plan
-    arrangement: Choice
+    planned: Plan[DiskScene]
+    arrangement: Choice[DiskCase]
     factor: float
     wider: float
     cost: float
@@ -57,7 +57,6 @@ class DiskOption:
     @property
     def scene(self) -> DiskScene:
         """The scene that is planned."""
-        assert isinstance(self.planned.scene, DiskScene)
         return self.planned.scene
 
     @cached_property
@@ -68,40 +67,37 @@ class DiskOption:
         return f"{self.arrangement.name}{wider}, {diameter}"
 
 
-def cost_of(planned: Plan) -> float:
+def cost_of(planned: Plan[DiskScene]) -> float:
     """CPU time of the steps, s."""
-    assert isinstance(planned.stepped, DiskScene)
     return 1e-9 * planned.steps * sum(step_cost.of_scene(planned.stepped).values())
 
 
-def with_diameter(companions: Companions, factor: float) -> Plan | None:
+def with_diameter(companions: Companions, factor: float) -> Plan[DiskScene] | None:
     """The given case with larger or smaller disks, planned; None if it cannot run or its loads have other forces."""
     given = companions.case
     try:
         case = given if factor == 1.0 else with_changes(given, {"packing": _larger(given, factor)})
-        planned = plan(case)
+        planned: Plan[DiskScene] = plan(case)
     except DemboundError:
         return None
-    assert isinstance(planned.scene, DiskScene)
     if factor > 1.0 and _is_narrow(planned.scene):
         return None
     return planned if _same_forces(companions.scene, planned.scene) else None
 
 
 def disk_options(
-    companions: Companions, plain: Plan, factor: float, bound: float, kept: Sequence[str]
+    companions: Companions, plain: Plan[DiskScene], factor: float, bound: float, kept: Sequence[str]
 ) -> Iterator[DiskOption]:
     """All choices with disks of one diameter that keep the values of some keys; those that cannot run are left out.
 
     plain : the plan with the given sides and these disks.
     """
     scene = plain.scene
-    assert isinstance(scene, DiskScene)
     for arrangement in arrangements(scene.case, scene, bound):
         planned = _planned(scene.case, arrangement.changes)
         if planned is None:
             continue
-        found = DiskOption(_case_of(planned), planned, arrangement, factor, 0.0, cost_of(planned))
+        found = DiskOption(planned.scene.case, planned, arrangement, factor, 0.0, cost_of(planned))
         each = [found, *(_wider(found, companions) if may_widen(arrangement) else [])]
         yield from (choice for choice in each if keeps(companions.case, choice.case, kept))
 
@@ -137,18 +133,12 @@ def _same_forces(given: DiskScene, scene: DiskScene) -> bool:
     return True
 
 
-def _planned(case: DiskCase, changes: Any) -> Plan | None:
+def _planned(case: DiskCase, changes: Any) -> Plan[DiskScene] | None:
     """The changed case, planned; None if it cannot run."""
     try:
         return plan(with_changes(case, changes) if changes else case)
     except DemboundError:
         return None
-
-
-def _case_of(planned: Plan) -> DiskCase:
-    """The case of a plan."""
-    assert isinstance(planned.scene.case, DiskCase)
-    return planned.scene.case
 
 
 def _wider(plain: DiskOption, companions: Companions) -> Iterator[DiskOption]:
@@ -161,7 +151,7 @@ def _wider(plain: DiskOption, companions: Companions) -> Iterator[DiskOption]:
             case = companions.wider(plain.scene, needed, wider)
             extent = tuple(round(length, 10) for length in case.packing.extent)
             packing = case.packing.model_copy(update={"size": extent, "bricks": None})
-            case = checked(replace(case, packing=packing, run=own.run, name=own.name))  # type: ignore[assignment]
+            case = checked(replace(case, packing=packing, run=own.run, name=own.name))
         except DemboundError:
             return
         if case.packing.extent == last:

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from dembound.accuracy.history import History, Motions, along
 from dembound.accuracy.reference import Exact
 from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
-from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import build
 
 
 @dataclass(frozen=True)
-class PlaneWave(Exact):
+class PlaneWave(Exact[DiskCase]):
     """A plane wave that enters at one side of a block of disks and leaves at the opposite one.
 
     It runs with the homogenised speed of the packing of each choice; whatever a choice has on the opposite side, the
@@ -38,9 +37,8 @@ class PlaneWave(Exact):
         ((motion, _),) = waves.items()
         return cls(side, motion) if all(_keeps_plane(case, side, motion)) else None
 
-    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
+    def motions(self, case: DiskCase, recorded: Motions) -> dict[str, History]:
         """The wave at the monitors' particles, at the same times."""
-        assert isinstance(case, DiskCase)
         scene, axis = build(case), normal_axis(self.side)
         speed = scene.ground.wave_speeds(axis)[0 if self.motion == "p" else 1]
         start = float(scene.positions[scene.edges[self.side].nodes, axis].mean())
