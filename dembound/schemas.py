@@ -45,4 +45,7 @@ def checked(case: K) -> K:
 
 def _of_same(case: K, made: Case) -> K:
     """A case that was made from another one, with its kind and its origin."""
-    return replace(as_kind(made, type(case), "is of another kind of body after these changes, must be of the same"), origin=case.origin)
+    return replace(
+        as_kind(made, type(case), "is of another kind of body after these changes, must be of the same"),
+        origin=case.origin,
+    )

@@ -67,9 +67,7 @@ class Choice(Generic[AnyCase]):
         return in_toml(self.changes)
 
 
-def choices_of(
-    case: AnyCase, named: Mapping[str, Mapping[str, Any]]
-) -> tuple[list[Choice[AnyCase]], list[str]]:
+def choices_of(case: AnyCase, named: Mapping[str, Mapping[str, Any]]) -> tuple[list[Choice[AnyCase]], list[str]]:
     """The choices whose changed cases are valid, and a line for each of the others.
 
     named : changes of keys by the name of the choice, see `with_changes`. Two choices that make the same case count

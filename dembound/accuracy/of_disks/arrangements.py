@@ -61,7 +61,9 @@ def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice
             yield Choice(f"{kind} sides", changes, changed(case, changes))
 
 
-def _continuum(case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float) -> Iterator[Choice[DiskCase]]:
+def _continuum(
+    case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float
+) -> Iterator[Choice[DiskCase]]:
     """A continuum beyond all artificial sides, or those without waves, and round boxes of disks."""
     coarse = CONTINUUM_SHARE * bound
     accuracies: dict[str, dict[str, Any]] = {"": {}} | (
