@@ -106,7 +106,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def has_coda(self, scene: DiskScene) -> bool:
         """Whether waves leave a coda: bricks are random, or contacts may open."""
-        return scene.has_history or len(scene.ground.brick.radii) > 1
+        return scene.has_history or not scene.case.packing.is_lattice
 
     def has_static_stage(self, scene: DiskScene) -> bool:
         """Whether the case has a static stage."""

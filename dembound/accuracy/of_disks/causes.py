@@ -25,7 +25,6 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.errors import DemboundError
 from dembound.motion.paths import Source
-from dembound.packings.square import Square
 from dembound.results.estimates import in_words
 
 MOTIONS = ("velocity", "displacement")
@@ -69,20 +68,22 @@ class _Disks:
         return [*self._sides(), *self._delays()]
 
     def _edge_disks(self) -> Iterator[str]:
-        """Monitors at absorbing sides of random packings, of whose disks nothing is known."""
-        if isinstance(self.case.packing, Square):
-            return
-        reach, box = 2.0 * self.scene.ground.brick.mean_diameter, self.case.packing.box
+        """Monitors at absorbing sides of random packings, or at uneven ones, of whose disks nothing is known."""
+        packing = self.case.packing
+        reach, box = 2.0 * self.scene.ground.brick.mean_diameter, packing.box
         edges = {side: box[k] for k, side in enumerate(("left", "bottom", "right", "top"))}
         at = [
             name
             for name, own in self.recorded.items()
             for side, table in self.case.boundary.items()
-            if table.factors and abs(own.place[normal_axis(side)] - edges[side]) < reach
+            if not (packing.is_lattice and side in packing.regular_sides)
+            and table.factors
+            and abs(own.place[normal_axis(side)] - edges[side]) < reach
         ]
         if at:
             names = " and ".join(dict.fromkeys(at))
-            yield f"how single disks at the edge of a random packing move otherwise than those around, at {names}"
+            edge = "an uneven edge" if packing.is_lattice else "the edge of a random packing"
+            yield f"how single disks at {edge} move otherwise than those around, at {names}"
 
     def _without_formula(self) -> Iterator[str]:
         """Causes for which a formula needs more than the case has."""

@@ -83,7 +83,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """That packings differ at random, if there are different bricks, and random ones among them."""
         packings = [case.packing for case in cases]
         bricks = {repr(packing.with_copies(1, 1).model_copy(update={"origin": (0.0, 0.0)})) for packing in packings}
-        if len(bricks) < 2 or not any(packing.packed_under_stress for packing in packings):
+        if len(bricks) < 2 or all(packing.is_lattice for packing in packings):
             return ()
         return (REALISATIONS,)
 

@@ -26,6 +26,7 @@ from dembound.accuracy.differences import keeps
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.pair import ratios
+from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import HISTORY_KEYS, STRENGTH_KEYS
@@ -38,7 +39,6 @@ from dembound.errors import CaseError, DemboundError
 from dembound.kinds import with_changes
 from dembound.motion.kind import Plan
 from dembound.motion.paths import Source
-from dembound.packings.square import Square
 from dembound.running import plan
 from dembound.table import EVERYWHERE
 
@@ -106,11 +106,12 @@ def elastic_twin(
 
     planned : of the case. most : particle-steps that the companion should take. kept : keys that do not change.
     """
-    if not _may_be_elastic(case):
+    if not _may_be_elastic(case, planned.scene):
         return None
     given = {key: value for key, value in case.material.given().items() if key not in HISTORY_KEYS}
-    strong = {"material": given | {"law": "elastic"}, "output.load_factor": True}
-    weak = {key: value for key, value in given.items() if key not in (*STRENGTH_KEYS, "pb_fa")} | {"law": "elastic"}
+    law = {"law": LAWS[case.material.law].linear}
+    strong = {"material": given | law, "output.load_factor": True}
+    weak = {key: value for key, value in given.items() if key not in (*STRENGTH_KEYS, "pb_fa")} | law
     try:
         watched = with_changes(case, strong)
         twins = [with_changes(case, {"material": weak} | change) for change in _without_stage(case)]
@@ -132,12 +133,12 @@ def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
     return math.hypot(*size) if source.box == EVERYWHERE else float(source.distance(place[None])[0])
 
 
-def _may_be_elastic(case: DiskCase) -> bool:
+def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
     """Whether the law has a history, of whose limits something is known with disks of other sizes."""
     if not LAWS[case.material.law].has_history or not case.material.elastic_start:
         return False
     pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
-    return isinstance(case.packing, Square) and not (case.static is not None and (case.hole or pushed))
+    return is_square_lattice(scene.ground) and not (case.static is not None and (case.hole or pushed))
 
 
 def _without_stage(case: DiskCase) -> list[dict[str, None]]:

@@ -14,13 +14,13 @@ from dembound.accuracy.differences import keeps
 from dembound.accuracy.of_disks.arrangements import arrangements, may_widen
 from dembound.accuracy.of_disks.companions import Companions, needed_by
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import LAWS
 from dembound.disks import step_cost
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.errors import DemboundError
 from dembound.kinds import checked, with_changes
 from dembound.motion.kind import Plan
-from dembound.packings.square import Square
 from dembound.running import plan
 
 FACTORS = (5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25, 1.0, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25)
@@ -36,7 +36,7 @@ ROTATION = 2
 """Of the motions that are held."""
 
 EQUAL = 1e-6
-"""Relative difference of forces that count as equal."""
+"""Relative difference of forces, and of stiffnesses, that count as equal."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,8 @@ def with_diameter(companions: Companions, factor: float) -> Plan[DiskScene] | No
         return None
     if factor > 1.0 and _is_narrow(planned.scene):
         return None
-    return planned if _same_forces(companions.scene, planned.scene) else None
+    same = _same_ground(companions.scene, planned.scene) and _same_forces(companions.scene, planned.scene)
+    return planned if same else None
 
 
 def disk_options(
@@ -104,15 +105,16 @@ def disk_options(
 
 def may_change_diameter(case: DiskCase, kept: Sequence[str]) -> bool:
     """Whether disks only stand for the ground, on a lattice whose bonds do not break, and their radius is not kept."""
-    is_kept = any(key in ("packing", "packing.radius") for key in kept)
-    return isinstance(case.packing, Square) and case.material.law == "elastic" and not is_kept
+    sizes = {"packing", *(f"packing.{key}" for key in case.packing.scaled(1.0))}
+    return case.packing.is_lattice and not LAWS[case.material.law].has_history and sizes.isdisjoint(kept)
 
 
 def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
     """The table of a packing of larger disks in the same place."""
     packing: dict[str, Any] = {key: value for key, value in case.packing.given().items() if key != "bricks"}
     size = [round(length, 10) for length in case.packing.extent]
-    return packing | {"size": size, "radius": float(f"{factor * case.packing.radius:.12g}")}
+    sizes = {key: float(f"{length:.12g}") for key, length in case.packing.scaled(factor).items()}
+    return packing | {"size": size, **sizes}
 
 
 def _is_narrow(scene: DiskScene) -> bool:
@@ -121,6 +123,12 @@ def _is_narrow(scene: DiskScene) -> bool:
         return False
     across = [length for axis, length in enumerate(scene.case.size) if not scene.case.periodic[axis]]
     return min(across, default=np.inf) < NARROW * scene.ground.brick.mean_diameter
+
+
+def _same_ground(given: DiskScene, scene: DiskScene) -> bool:
+    """Whether disks of another size make a ground of the same stiffness, as they need not under any law."""
+    own, other = (each.ground.material_tensor for each in (given, scene))
+    return np.allclose(own, other, rtol=0.0, atol=EQUAL * float(np.abs(own).max()))
 
 
 def _same_forces(given: DiskScene, scene: DiskScene) -> bool:
