@@ -41,7 +41,7 @@ class PulseInBar(Exact[BarCase]):
         if case.bar.range:
             return None
         load, far = case.load[0], case.side("right")
-        end: End | None = "absorbing" if far.factors or far.layer else "free" if far.is_free else None
+        end: End | None = "absorbing" if far.absorbs else "free" if far.is_free else None
         end = "fixed" if 0 in far.prescribed(0) else end
         if load.side != "left" or not case.side("left").is_free or end is None:
             return None

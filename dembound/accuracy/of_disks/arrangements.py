@@ -24,13 +24,13 @@ ROUNDING = 1e-9
 
 def may_widen(arrangement: Choice[DiskCase]) -> bool:
     """Whether sides of a choice reflect and may be farther away: not where disks fill only a box of the ground."""
-    reflecting = [side for side, table in _silent(arrangement.case).items() if not table.is_outside]
+    reflecting = [side for side, table in _silent(arrangement.case).items() if not table.absorber]
     return bool(reflecting) and arrangement.case.ground.size is None
 
 
 def _silent(case: DiskCase) -> dict[str, Boundary]:
-    """The artificial sides through which no waves enter."""
-    return {side: table for side, table in case.boundary.items() if table.is_artificial and not table.waves}
+    """The sides that may be farther away."""
+    return {side: table for side, table in case.boundary.items() if table.may_move}
 
 
 def arrangements(case: DiskCase, scene: DiskScene, bound: float) -> Iterator[Choice[DiskCase]]:

@@ -91,6 +91,10 @@ class _Disks:
             yield "continuum: its elements are judged by the highest frequency of waves, and a wave that jumps has none"
         if not any(self._ways(own) for own in self.recorded.values()):
             yield "grid and time step: waves start everywhere"
+        for side in self.case.driving:
+            table = self.case.side(side)
+            if table.is_artificial and not table.absorbs:
+                yield f'{side} side: "{table.type}" has no dashpots, by which its reflection would be known'
         if self.case.hole:
             size = in_words(wall_error(self.case, self.scene.ground.brick.mean_diameter))
             yield f"walls of holes, which consist of disks: up to some {size} beside them"
@@ -130,7 +134,7 @@ class _Disks:
             yield Cause(CONTINUUM, "by the formulas of its elements, layers and ties", same)
         for side, waves in self.case.driving.items():
             table = self.case.side(side)
-            if not table.is_artificial or table.is_outside or not table.factors:
+            if not table.factors:
                 continue
             shares = reflected(self.scene, side, self.time_step)
             errors = {name: self._returned(own, side, waves, shares) for name, own in self.recorded.items()}

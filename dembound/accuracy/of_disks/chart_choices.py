@@ -81,7 +81,7 @@ def _other_sides(case: DiskCase) -> Named:
 
 def _absorbing(case: DiskCase) -> dict[str, Boundary]:
     """The sides that absorb, with waves or without."""
-    return {side: table for side, table in case.boundary.items() if table.factors or table.is_outside}
+    return {side: table for side, table in case.boundary.items() if table.absorbs}
 
 
 def _continuum(case: DiskCase, *choices: Mapping[str, Boundary]) -> Named:

@@ -75,6 +75,10 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """Coarser disks, half the step, other sides and a box in the ground."""
         return disk_choices(case)
 
+    def hides_sides(self, case: DiskCase) -> bool:
+        """Whether it has holes, whose walls consist of disks."""
+        return bool(case.hole)
+
     def has_input_continuum(self, case: DiskCase) -> bool:
         """Whether waves enter through a continuum round disks that fill the scene."""
         return case.ground.size is None and any(case.side(side).waves for side in case.outside_sides)

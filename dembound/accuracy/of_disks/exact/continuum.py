@@ -41,16 +41,11 @@ class Continuum(Exact[DiskCase]):
 
     def _without_ends(self, case: DiskCase) -> DiskCase:
         """The case of a choice, with the sides of the base if it ends where the rock of the base goes on."""
-        if not any(_goes_on(self.base.side(side)) and _ends(case.side(side)) for side in SIDES):
+        if not any(self.base.side(side).is_artificial and _ends(case.side(side)) for side in SIDES):
             return case
         return with_changes(case, {"boundary": {side: table.given() for side, table in self.base.boundary.items()}})
 
 
-def _goes_on(side: Boundary) -> bool:
-    """Whether the rock goes on beyond a side."""
-    return side.is_artificial or side.is_outside
-
-
 def _ends(side: Boundary) -> bool:
     """Whether the rock ends at a side, instead of going on or being repeated beyond."""
-    return not (_goes_on(side) or side.is_mirror or side.is_periodic)
+    return not (side.is_artificial or side.is_mirror or side.is_periodic)
