@@ -138,8 +138,10 @@ sides = {
     "viscoelastic": viscoelastic,
     "quilt": {"type": "quilt", **springs},
     "mattress": {"type": "mattress", **springs},
+    "viscous": {"type": "viscous"},
 }
-of_sides = {name: case(**STRIP, **{"boundary.right": table}) for name, table in sides.items()}
+late = {"monitor.middle.position": [17.25, 1.25], "run.duration": 0.07}  # after the wave has come back
+of_sides = {name: case(**STRIP, **late, **{"boundary.right": table}) for name, table in sides.items()}
 hexagons, unsaid = case(**HEXAGONS), case(**HEXAGONS | {"packing.pattern": "unsaid"})
 drawn, b = case(**DRAWN), case(**DRAWN | {"packing": B})
 strong = {"law": "brittle", "contact_share": 0.0, "pb_ten": 1e9, "pb_coh": 1e9}  # bonds alone, which hold
