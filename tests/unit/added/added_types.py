@@ -36,6 +36,17 @@ class Brittle(Linear):
     linear = "linear"
 
 
+class Graded(Linear):
+    """Stiffer between larger disks."""
+
+    name: ClassVar[str] = "graded"
+
+    def springs(self, moduli, radius_i, radius_j):
+        """Those of the law without moments, bonds in proportion to the radius."""
+        springs = super().springs(moduli, radius_i, radius_j)
+        return replace(springs, bond_normal=springs.bond_normal * radius_i, bond_shear=springs.bond_shear * radius_i)
+
+
 class Forgetful(Linear):
     """Breaks, and does not say which law it is before."""
 

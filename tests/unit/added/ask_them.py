@@ -176,7 +176,7 @@ json.dump(
         "hexagonal": estimated(hexagons),
         "far sides": of_far_sides(hexagons),
         "unsaid": estimated(unsaid),
-        "larger": [larger(hexagons), larger(unsaid)],
+        "larger": [larger(each) for each in (hexagons, unsaid, case(**STRIP, **{"material.law": "graded"}))],
         "walls": [
             wall_error(kinds.with_changes(made, {"hole": [hole]}), 0.5)
             for made, hole in ((hexagons, CAVE), (unsaid, CAVE), (hexagons, SHAFT))

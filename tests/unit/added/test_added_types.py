@@ -37,7 +37,8 @@ def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
         groups[2] += f"{name} = added_types:{name}\n"
     for name in ("Unsaid", "Drawn"):
         groups[3] += f"{name} = added_types:{name}\n"
-    groups[0] += "y = added_types:Namesake\nb = added_types:Brittle\nf = added_types:Forgetful\n"
+    groups[0] += "y = added_types:Namesake\nb = added_types:Brittle\n"
+    groups[0] += "f = added_types:Forgetful\ng = added_types:Graded\n"
     groups[4] += "y = added_types:Nameless\n"
     (info / "entry_points.txt").write_text("".join(groups))
     path = os.pathsep.join([str(site), *filter(None, [os.environ.get("PYTHONPATH")])])
@@ -187,9 +188,10 @@ def test_the_sides_of_another_lattice_are_estimated_from_square_companions(asked
 
 
 def test_a_lattice_only_stands_for_the_ground_and_other_packings_are_the_ground(asked) -> None:
-    (may_change, radius), (may_not, _) = asked["larger"]
+    (may_change, radius), (may_not, _), (_, graded) = asked["larger"]
     assert may_change
     assert radius == 0.125
+    assert graded is None  # under a law by which smaller disks make a softer ground
     assert not may_not
     said = "how single disks at the edge of a random packing move otherwise than those around, at right and top"
     assert asked["unsaid"]["missing"] == [said]
