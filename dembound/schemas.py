@@ -12,6 +12,7 @@ from typing import Any
 from dembound.casefile import Case, reader, writer
 from dembound.casefile.bar import SCHEMA as BAR
 from dembound.casefile.disks import SCHEMA as DISKS
+from dembound.casefile.model import K, as_kind
 
 SCHEMAS = (BAR, DISKS)
 """The tables of each kind, in the order in which a case file is searched for them."""
@@ -27,13 +28,24 @@ def loads(text: str, folder: Path = Path(), name: str = "case", files: Mapping[s
     return reader.loads(text, SCHEMAS, folder, name, files)
 
 
-def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
-    """The case with some keys changed, see `case.writer.with_changes`."""
-    return replace(writer.with_changes(case, changes, SCHEMAS), origin=case.origin)
+def with_changes(case: K, changes: Mapping[str, Any]) -> K:
+    """The case with some keys changed, see `case.writer.with_changes`; its kind of body remains.
+
+    Raises CaseError also for changes that make another kind of it.
+    """
+    return _of_same(case, writer.with_changes(case, changes, SCHEMAS))
 
 
-def checked(case: Case) -> Case:
+def checked(case: K) -> K:
     """The case, its tables checked as if they had been read from a file; errors as `load`."""
     if case.is_checked:
         return case
-    return replace(loads(case.text, case.folder, case.name, case.files), origin=case.origin)
+    return _of_same(case, loads(case.text, case.folder, case.name, case.files))
+
+
+def _of_same(case: K, made: Case) -> K:
+    """A case that was made from another one, with its kind and its origin."""
+    return replace(
+        as_kind(made, type(case), "is of another kind of body after these changes, must be of the same"),
+        origin=case.origin,
+    )

@@ -39,6 +39,12 @@ class Table(BaseModel):
         return {self.key_of(name): as_toml(value) for name, value in given.items()}
 
     @classmethod
+    def described(cls, name: str) -> Mapping[str, Any]:
+        """What `quantity` says about a field, its unit and its meaning by these names; empty for other fields."""
+        extra = cls.model_fields[name].json_schema_extra
+        return extra if isinstance(extra, Mapping) else {}
+
+    @classmethod
     def key_of(cls, name: str) -> str:
         """The key of a field; another name only where the key is a word of Python, as "from"."""
         return cls.model_fields[name].alias or name

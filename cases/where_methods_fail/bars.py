@@ -13,13 +13,13 @@ from dembound.bar.stability import choose_step
 from dembound.errors import RunError
 from dembound.exact.dispersion import cells_per_wavelength
 from dembound.gauge.estimates import pull_back_strength
+from dembound.kinds import kind_of
 from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Rod
 from dembound.motion.part import System
 from dembound.motion.simulation import Simulation
 from dembound.studies.dispersion import measure
 from dembound.studies.noise import short_run
-from dembound.studies.trials import trials
 
 METHODS: dict[str, dict[str, Any]] = {
     "finite_difference": {"type": "finite_difference"},
@@ -154,7 +154,7 @@ def odd_even_swing(late: float, courant: float = 1.0) -> float:
 def above_the_limit(share: float = 1.001) -> int:
     """Steps in which noise at a share of the limit grows to 1e4 times its energy."""
     case = bar(METHODS["finite_difference"], 5e-3)
-    course = short_run(trials(case)[0][0], share * build_bar(case).step_limit())
+    course = short_run(kind_of(case).trials(case)[0][0], share * build_bar(case).step_limit())
     return course.steps[-1]
 
 

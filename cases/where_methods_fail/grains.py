@@ -9,10 +9,10 @@ from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene
 from dembound.disks.stability import choose_step
 from dembound.kernels.elastic import contact_forces
+from dembound.kinds import kind_of
 from dembound.motion.kind import StalledError
 from dembound.motion.simulation import Simulation
 from dembound.studies.noise import short_run
-from dembound.studies.trials import trials
 
 DIAMETER = 2.0 * RADIUS
 
@@ -142,7 +142,7 @@ def opening_limit() -> tuple[float, float]:
     """Largest stable step of a row whose contacts open and close, and the limit used, over that of the linear law."""
     material = {"law": "linearpbond", "elastic_start": False}
     scene = disks("A", (100.0, DIAMETER), ("y", "rotation"), material=material)
-    linear, full = trials(scene.case, full=True)[0]
+    linear, full = kind_of(scene.case).trials(scene.case, full=True)[0]
     low, high = full.limit, linear.limit
     while high - low > 2e-3 * linear.limit:
         middle = 0.5 * (low + high)

@@ -6,10 +6,10 @@ from scenes import DENSITY, PERIODIC, RADIUS, SPEED, disks
 
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.stability import choose_step, step_limit
+from dembound.kinds import kind_of
 from dembound.motion.simulation import Simulation
 from dembound.studies.calibration import calibrate
 from dembound.studies.noise import short_run
-from dembound.studies.trials import trials
 
 DIAMETER = 2.0 * RADIUS
 ALL = ("left", "right", "bottom", "top")
@@ -47,7 +47,7 @@ def strong_dashpot(beta: float) -> tuple[float, bool]:
     """Reflected part of a P wave at a side with factor β, and whether noise grows at 0.9995 of the undamped limit."""
     side = {"type": "viscous", "beta_p": beta, "beta_s": beta}
     scene = disks("A", (5.0, 5.0), boundary=dict.fromkeys(ALL, side))
-    trial = trials(scene.case, full=True)[0][0]
+    trial = kind_of(scene.case).trials(scene.case, full=True)[0][0]
     limit = step_limit(disks("A", (5.0, 5.0)))
     return reflection(side, "p", 0.0, per_wavelength=2000.0)["p"], short_run(trial, 0.9995 * limit).is_growing
 
@@ -97,7 +97,7 @@ def corner(distance: float) -> bool:
     """Whether noise grows at 0.9995 of the limit of a lattice with springs of sources this close (m) at four sides."""
     side = {"type": "viscoelastic", "distance": distance}
     scene = disks("A", (5.0, 5.0), material={"fric": 0.5}, boundary=dict.fromkeys(ALL, side))
-    trial = trials(scene.case, full=True)[0][0]
+    trial = kind_of(scene.case).trials(scene.case, full=True)[0][0]
     return short_run(trial, 0.9995 * trial.limit).is_growing
 
 

@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
-from typing import Any, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
 
@@ -45,7 +45,7 @@ AnyCase = TypeVar("AnyCase", bound=Case)
 
 
 @dataclass(frozen=True)
-class Choice:
+class Choice(Generic[AnyCase]):
     """A change of a case.
 
     name : in words. changes : dotted keys with their new values, None for what is left out, as `with_changes` takes
@@ -54,10 +54,10 @@ class Choice:
 
     name: str
     changes: Mapping[str, Any]
-    case: Case
+    case: AnyCase
 
     @classmethod
-    def of(cls, given: Case, case: Case, name: str) -> Self:
+    def of(cls, given: Case, case: AnyCase, name: str) -> Self:
         """The choice that makes a case of the given one."""
         return cls(name, differences(given, case), case)
 
@@ -67,13 +67,13 @@ class Choice:
         return in_toml(self.changes)
 
 
-def choices_of(case: Case, named: Mapping[str, Mapping[str, Any]]) -> tuple[list[Choice], list[str]]:
+def choices_of(case: AnyCase, named: Mapping[str, Mapping[str, Any]]) -> tuple[list[Choice[AnyCase]], list[str]]:
     """The choices whose changed cases are valid, and a line for each of the others.
 
     named : changes of keys by the name of the choice, see `with_changes`. Two choices that make the same case count
     once. Raises CaseError with these lines if no choice is valid.
     """
-    made: dict[str, Choice] = {}
+    made: dict[str, Choice[AnyCase]] = {}
     left_out: list[str] = []
     for name, changes in named.items():
         try:
@@ -114,9 +114,7 @@ def valid(case: Case, changes: Iterator[dict[str, Any]]) -> Iterator[dict[str, A
 
 def changed(case: AnyCase, changes: Mapping[str, Any]) -> AnyCase:
     """The case with some keys changed, itself without changes; raises CaseError for changes that are not valid."""
-    found = with_changes(case, changes) if changes else case
-    assert isinstance(found, type(case))
-    return found
+    return with_changes(case, changes) if changes else case
 
 
 def digest(case: Case) -> str:

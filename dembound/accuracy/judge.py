@@ -16,6 +16,7 @@ from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.motion.scene import Scene
+from dembound.results.histories import Quantity
 
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)
@@ -28,10 +29,12 @@ class Judge(ABC, Generic[C, S]):
     ----------
     places : findings of its runs that are places, each with its axis, 0 or 1.
     first_break : its finding that is the time (s) of the first break.
+    quantities : what its monitors record, and charts compare.
     """
 
     places: ClassVar[Mapping[str, int]]
     first_break: ClassVar[str]
+    quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement")
 
     @abstractmethod
     def causes(self, case: C, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
@@ -66,16 +69,20 @@ class Judge(ABC, Generic[C, S]):
         """The scene of a case enlarged to at most so many nodes, see `extended.extended`."""
 
     @abstractmethod
-    def exact(self, case: C) -> Exact | None:
+    def exact(self, case: C) -> Exact[C] | None:
         """The exact solution of a case, None if none is known; raises CaseError if the reasons are."""
 
-    def finer(self, case: C, choices: Sequence[Choice], outcomes: Sequence[Run]) -> FinerRun | None:
+    def finer(self, case: C, choices: Sequence[Choice[C]], outcomes: Sequence[Run]) -> FinerRun | None:
         """A finer run than those of choices with these outcomes, with the ends of a case; by default there is none."""
         return None
 
     @abstractmethod
     def chart_choices(self, case: C) -> Named:
         """Choices for the chart of a case where neither the command nor the case gives any."""
+
+    def hides_sides(self, case: C) -> bool:
+        """Whether errors of the body itself hide those of its sides beside an exact solution, by default not."""
+        return False
 
     def has_input_continuum(self, case: C) -> bool:
         """Whether waves enter a scene that can be extended through a continuum, by default not."""

@@ -3,10 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import BaseModel
-
 from dembound.casefile import Case
-from dembound.table import DISCRIMINATORS
+from dembound.table import DISCRIMINATORS, Table
 
 
 def label(case: Case, changes: Mapping[str, Any]) -> str:
@@ -51,10 +49,9 @@ def _unit(case: Case, key: str, value: Any) -> str:
     *path, last = key.split(".")
     for name in path:
         table = _inner(table, name)
-    if not isinstance(table, BaseModel) or last not in type(table).model_fields:
+    if not isinstance(table, Table) or last not in type(table).model_fields:
         return ""
-    extra = type(table).model_fields[last].json_schema_extra
-    unit = extra.get("unit", "1") if isinstance(extra, Mapping) else "1"
+    unit = table.described(last).get("unit", "1")
     return "" if unit == "1" else f" {unit}"
 
 

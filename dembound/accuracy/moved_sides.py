@@ -1,5 +1,6 @@
 """What enlarged scenes of all kinds have in common: sides that move, their size in words, and their time step."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -33,10 +34,13 @@ class Extended:
     inside: Box
 
 
-def movable(case: Case, staying: set[str]) -> list[str]:
-    """The artificial sides that can move; staying : sides where motion enters."""
+def movable(case: Case, loaded: Sequence[str] = ()) -> list[str]:
+    """The artificial sides that can move; loaded : sides on which loads act.
+
+    Raises CaseError if there are artificial ones, and none can move.
+    """
     artificial = [side for side in SIDES if case.side(side).is_artificial]
-    moving = [side for side in artificial if side not in staying]
+    moving = [side for side in artificial if case.side(side).may_move and side not in loaded]
     if artificial and not moving:
         raise CaseError(
             [
@@ -72,10 +76,9 @@ def sentence_of(case: Case, what: str, moving: list[str]) -> str:
         return f"reference: {what}, from which {until}"
     stay, reflect = ("stay", "reflect") if len(staying) > 1 else ("stays", "reflects")
     stays = f"{what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} {stay}, as waves enter there"
-    if all(case.side(side).is_outside for side in staying):
-        return f"reference: {stays}, before a continuum, which returns next to nothing"
-    if all(case.side(side).layer for side in staying):
-        return f"reference: {stays}, before a matched layer, which returns next to nothing"
+    absorbers = dict.fromkeys(case.side(side).absorber for side in staying)
+    if all(absorbers):
+        return f"reference: {stays}, before {' and '.join(absorbers)}, which returns next to nothing"
     return f"reference: {stays}, and {reflect} as in the case"
 
 

@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Generic, Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from dembound.results.histories import Quantity
 from dembound.results.reader import COMPONENTS
 
 Component = Literal["x", "y"]
+
+C = TypeVar("C", bound=Case)
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Reference:
     cautions: Sequence[str] = ()
 
 
-class Exact(ABC):
+class Exact(ABC, Generic[C]):
     """An exact solution of a case.
 
     Attributes
@@ -61,7 +63,7 @@ class Exact(ABC):
     findings: Mapping[str, float] = {}
 
     @abstractmethod
-    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
+    def motions(self, case: C, recorded: Motions) -> dict[str, History]:
         """The exact motion at the recorded positions; case : that of the choice they were recorded for."""
 
 

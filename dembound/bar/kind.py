@@ -17,6 +17,7 @@ from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.storage import storage_of
 from dembound.bar.summary import part_of, spalls_of, summarise_bar
+from dembound.bar.trials import trials_of_bar
 from dembound.bar.warnings import bar_warnings
 from dembound.bar.warnings_after import warnings_after_bar
 from dembound.casefile.bar import SCHEMA, BarCase
@@ -27,6 +28,7 @@ from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
+from dembound.motion.trial import Trial
 from dembound.results.reader import has_monitors
 from dembound.table import Box
 
@@ -66,6 +68,10 @@ class Bars(Kind[BarCase, BarScene]):
     def begin(self, scene: BarScene, time_step: float, on_look: OnLook, stages: Stages | None = None) -> Beginning:
         """The bar at rest."""
         return Beginning(scene.system(time_step))
+
+    def trials(self, case: BarCase, *, full: bool = False) -> tuple[list[Trial], list[str]]:
+        """The whole bar, at every stage of its method."""
+        return trials_of_bar(case)
 
     def sources(self, scene: BarScene) -> list[Source]:
         """Driven and loaded ends."""

@@ -9,6 +9,9 @@ from dembound.boundaries.sides import Factor, Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import Table
 
+Place = tuple[Edge, BoundaryMedium]
+"""Where a side is: its particles, and the medium that it represents."""
+
 
 class Boundary(Table):
     """A side's table: the base of all types.
@@ -24,6 +27,7 @@ class Boundary(Table):
     is_periodic : whether the side is connected to the opposite side.
     is_mirror : whether the side is a mirror plane.
     is_outside : whether the ground beyond the side is a continuum that is computed, too.
+    may_halve : whether the side's particles may be half cells, see `with_half_cells`.
     needs_column : whether the side needs a free-field column, which moves with the waves of the ground.
     beyond_dashpots : text for reports, naming what `dashpots_alone` leaves out.
     """
@@ -34,6 +38,7 @@ class Boundary(Table):
     is_periodic: ClassVar[bool] = False
     is_mirror: ClassVar[bool] = False
     is_outside: ClassVar[bool] = False
+    may_halve: ClassVar[bool] = False
     needs_column: ClassVar[bool] = False
     beyond_dashpots: ClassVar[str] = ""
 
@@ -84,14 +89,31 @@ class Boundary(Table):
 
     def with_numbers(self, edge: Edge, medium: BoundaryMedium) -> Self:
         """The side with the factors β that it has at an edge as numbers."""
-        return self.model_copy(
-            update={f"beta_{motion}": beta for motion, beta in self.factors_at(edge, medium).items()}
-        )
+        return self.with_factors(self.factors_at(edge, medium))
+
+    def with_factors(self, factors: Mapping[Motion, Factor]) -> Self:
+        """The side with other factors β of its dashpots, by kind of wave: the keys beta_p and beta_s."""
+        return self.model_copy(update={f"beta_{motion}": beta for motion, beta in factors.items()})
 
     @property
     def is_artificial(self) -> bool:
-        """Whether the side stands in for ground or rock beyond it, so that it may be farther away; by default not."""
-        return False
+        """Whether the side stands in for ground or rock beyond it; by default if that is a continuum."""
+        return self.is_outside
+
+    @property
+    def may_move(self) -> bool:
+        """Whether the side may be farther away: by default an artificial one through which no waves enter."""
+        return self.is_artificial and not self.waves
+
+    @property
+    def absorber(self) -> str:
+        """What is beyond the side and returns next to nothing, in words; empty where waves may come back."""
+        return "a continuum" if self.is_outside else "a matched layer" if self.layer else ""
+
+    @property
+    def absorbs(self) -> bool:
+        """Whether the side takes in at least a part of the waves that reach it."""
+        return bool(self.factors or self.absorber)
 
     @property
     def layer(self) -> Layer | None:
@@ -102,6 +124,17 @@ class Boundary(Table):
     def half_cells(self) -> bool:
         """Whether the side's particles are half cells, see half_mass.py."""
         return False
+
+    def with_half_cells(self, half: bool) -> Self:
+        """The side with half cells or with whole ones; as it is if it may not have half cells."""
+        return self
+
+    def equal_springs(self, own: Place, other: Place) -> "Boundary | None":
+        """The side on one place with springs as stiff per length as those of this table on another place.
+
+        None, by default, of a type that has no springs, or that does not know.
+        """
+        return None
 
     def driven_by(self, waves: Mapping[Motion, str]) -> Self:
         """The side with other waves: kind -> name."""

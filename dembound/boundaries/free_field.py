@@ -18,6 +18,7 @@ from dembound.boundaries.viscous import Dashpots, Viscous
 class FreeField(Dashpots):
     """The column's seam forces, and F = −βρcD·(v − v_ff), v_ff the velocity of the particle's twin in the column."""
 
+    may_halve: ClassVar[bool] = False
     needs_column: ClassVar[bool] = True
     beyond_dashpots: ClassVar[str] = "free-field sides without their column"
 

@@ -19,11 +19,6 @@ class Outside(Drivable):
 
     type: Literal["outside"]
 
-    @property
-    def is_artificial(self) -> bool:
-        """Always, as the ground goes on beyond it."""
-        return True
-
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """What a continuum cannot be beside, and waves that cannot enter through it.
 

@@ -1,8 +1,8 @@
 """A plane of symmetry: the body continues beyond the side as its mirror image."""
 
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
-from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.boundary import Boundary, Place
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 
 
@@ -19,6 +19,10 @@ class Symmetry(Boundary):
     is_mirror: ClassVar[bool] = True
 
     type: Literal["symmetry"]
+
+    def equal_springs(self, own: Place, other: Place) -> Self:
+        """The same side, as its springs are those of the contacts."""
+        return self
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """A spring on the normal motion and one on the rotation of every edge particle."""

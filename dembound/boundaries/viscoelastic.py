@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.boundary import Boundary, Place
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.sides import normal_axis
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
@@ -86,6 +86,12 @@ class Springs(Boundary):
         along_normal, across = self.alpha_n, self.alpha_s
         factors = [along_normal, across] if edge.axis == 0 else [across, along_normal]
         return np.outer(factors, self.shear_modulus(medium) * edge.widths / self.distances(edge))
+
+    def equal_springs(self, own: Place, other: Place) -> Self:
+        """With other factors α."""
+        mine, theirs = (self.shear_modulus(medium) * edge.diameter_sum_ratio for edge, medium in (own, other))
+        ratio = theirs / mine
+        return self.model_copy(update={"alpha_n": self.alpha_n * ratio, "alpha_s": self.alpha_s * ratio})
 
     def stiffest(self, side: str, extent: tuple[float, float]) -> Boundary:
         """The side with the distance of the source from its nearest point, where its springs are stiffest."""

@@ -6,7 +6,7 @@ are uneven, and for the packing's own wave speeds, see `BoundaryMedium.matched`;
 """
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -23,6 +23,8 @@ Given = Annotated[float, Field(ge=0.0)] | Literal["matched"]
 
 class Dashpots(Boundary):
     """A side with dashpots: their two calibration factors, and whether the particles have half their mass."""
+
+    may_halve: ClassVar[bool] = True
 
     beta_p: Given = quantity(
         "matched", unit="1", means="factor of dashpots", help="factor of the P dashpots, along the side's normal"
@@ -46,6 +48,10 @@ class Dashpots(Boundary):
     def half_cells(self) -> bool:
         """The value of half_mass."""
         return self.half_mass
+
+    def with_half_cells(self, half: bool) -> Self:
+        """With this value of half_mass."""
+        return self.model_copy(update={"half_mass": half}) if self.may_halve else self
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Half cells on a side whose particles do not form one row."""

@@ -4,6 +4,8 @@ Another package registers its types under the entry point groups below; its modu
 same names and from `dembound.table`.
 """
 
+import warnings
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Literal
 
 from dembound import boundaries, holes, laws, methods, packings, waves
@@ -12,7 +14,7 @@ from dembound.holes import Hole
 from dembound.laws import Law
 from dembound.methods import Method
 from dembound.packings import Packing
-from dembound.table import one_of, with_registered
+from dembound.table import UnusableTypeWarning, one_of, with_registered
 from dembound.waves import Wave
 
 BOUNDARIES = with_registered("dembound.boundaries", Boundary, boundaries.TYPES)
@@ -21,7 +23,22 @@ METHODS = with_registered("dembound.methods", Method, methods.TYPES)
 PACKINGS = with_registered("dembound.packings", Packing, packings.TYPES)
 WAVES = with_registered("dembound.waves", Wave, waves.TYPES)
 
-LAWS: dict[str, Law] = {law.name: law() for law in with_registered("dembound.laws", Law, laws.TYPES)}
+
+def _usable(found: Mapping[str, Law]) -> dict[str, Law]:
+    """Laws by name, without those with a history that name no law of the same stiffness without one."""
+    usable = {
+        name: law for name, law in found.items() if (at_rest := found.get(law.linear)) and not at_rest.has_history
+    }
+    for name, law in found.items():
+        if name not in usable:
+            said = (
+                f'dembound.laws: "{name}" names "{law.linear}" as its linear law, which must be a law without history'
+            )
+            warnings.warn(said, UnusableTypeWarning, stacklevel=2)
+    return usable
+
+
+LAWS = _usable({law.name: law() for law in with_registered("dembound.laws", Law, laws.TYPES)})
 """Name in a case file -> law."""
 
 BoundaryTable, HoleTable, MethodTable = one_of("type", BOUNDARIES), one_of("type", HOLES), one_of("type", METHODS)

@@ -48,8 +48,7 @@ OF_STRENGTH = {"pressure of a load"}
 
 def meaning_of(table: Table | type[Table], name: str) -> tuple[str | None, str]:
     """The meaning of a field, None without one, and its unit."""
-    extra = (table if isinstance(table, type) else type(table)).model_fields[name].json_schema_extra
-    known = extra if isinstance(extra, Mapping) else {}
+    known = table.described(name)
     means = known.get("means")
     return (str(means) if means else None), str(known.get("unit", "1"))
 

@@ -27,6 +27,7 @@ from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
 from dembound.disks.stepping.system import DiskSystem
+from dembound.disks.trials import trials_of_disks
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
 from dembound.motion.moving_picture import MovingPicture
 from dembound.motion.paths import Front, Source
@@ -34,6 +35,7 @@ from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run, Tracker
+from dembound.motion.trial import Trial
 from dembound.table import Box
 
 if TYPE_CHECKING:
@@ -90,6 +92,10 @@ class Disks(Kind[DiskCase, DiskScene]):
         assert isinstance(system, DiskSystem)
         return [LoadFactor(case, system)]
 
+    def trials(self, case: DiskCase, *, full: bool = False) -> tuple[list[Trial], list[str]]:
+        """Fewer copies of the brick under the linear law, and under its own if that has a history."""
+        return trials_of_disks(case, full=full)
+
     def sources(self, scene: DiskScene) -> list[Source]:
         """Where waves start and are scattered: driven sides, loads, and holes."""
         return sources_of(scene.case, scene.ground)
@@ -100,7 +106,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def has_coda(self, scene: DiskScene) -> bool:
         """Whether waves leave a coda: bricks are random, or contacts may open."""
-        return scene.has_history or len(scene.ground.brick.radii) > 1
+        return scene.has_history or not scene.case.packing.is_lattice
 
     def has_static_stage(self, scene: DiskScene) -> bool:
         """Whether the case has a static stage."""

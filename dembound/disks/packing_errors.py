@@ -38,7 +38,7 @@ def _dispersion(scene: DiskScene, signals: Sequence[Signal]) -> str:
 def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
     """What remains in random packings, as all copies of a brick send back the same waves; empty for next to nothing."""
     case, ground = scene.case, scene.ground
-    if not case.packing.packed_under_stress:
+    if case.packing.is_lattice:
         return ""
     if len(ground.brick.radii) > bragg.MOST_DISKS:
         return f"send back short waves, which is not computed for bricks of more than {bragg.MOST_DISKS:,} disks"

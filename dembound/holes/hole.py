@@ -1,12 +1,19 @@
 """The base of all holes: a name, a stage, and the particles to remove."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Literal, Self
 
 import numpy as np
 
 from dembound.holes.outline import Outline
 from dembound.table import Box, FileName, Table, quantity
+
+Apart = Callable[[int, float], float]
+"""How far (m) a wall across an axis, at a place (m), is from the nearest plane between disks."""
+
+WALL = 0.7
+"""Error beside a round hole times its disks along the radius (docs/charts.md): 7 to 0.7 % with 10 to 80 of them."""
 
 
 class Hole(Table, ABC):
@@ -32,6 +39,19 @@ class Hole(Table, ABC):
     @abstractmethod
     def box(self) -> Box:
         """The smallest rectangle around it: x0, y0, x1, y1 in m."""
+
+    def wall_error(self, diameter: float, apart: Apart) -> float:
+        """Error of the motion beside it, RMS over RMS, as its wall consists of disks of a diameter (m).
+
+        By default that of a round hole, whose shape is known to a disk: `WALL` over the disks in its smaller half.
+        """
+        return WALL / (self.smaller_half / diameter)
+
+    @property
+    def smaller_half(self) -> float:
+        """Half the smaller side of the rectangle around it, m."""
+        left, bottom, right, top = self.box
+        return 0.5 * min(right - left, top - bottom)
 
     @property
     def outline(self) -> Outline | None:

@@ -22,6 +22,7 @@ from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run, Tracker
+from dembound.motion.trial import Trial
 from dembound.table import Box
 
 if TYPE_CHECKING:
@@ -48,16 +49,16 @@ class Reduction(Generic[S]):
 
 
 @dataclass(frozen=True)
-class Plan:
+class Plan(Generic[S]):
     """A case before its first step: the scene, the time step and its limit (s), the number of steps.
 
     stepped : the scene whose motion is computed, the scene itself or a smaller one, and refused : see `Reduction`.
     regular_steps : steps from which intervals of ledger and snapshots are found: those of the run as it was begun.
     """
 
-    kind: Kind[Any, Any]
-    scene: Scene
-    stepped: Scene
+    kind: Kind[Any, S]
+    scene: S
+    stepped: S
     time_step: float
     step_limit: float
     steps: int
@@ -163,6 +164,14 @@ class Kind(ABC, Generic[C, S]):
     def trackers(self, run: Run) -> list[Tracker]:
         """Trackers of a run that its case asks for, in addition to those of every run; by default none."""
         return []
+
+    @abstractmethod
+    def trials(self, case: C, *, full: bool = False) -> tuple[list[Trial], list[str]]:
+        """The scenes in which the largest stable step of a case is measured, and how they differ from it, in words.
+
+        full : the whole scene, where it consists of copies of a part, instead of fewer of them. Raises the errors of
+        building a scene.
+        """
 
     @abstractmethod
     def sources(self, scene: S) -> list[Source]:

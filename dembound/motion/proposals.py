@@ -119,8 +119,7 @@ def _movable(seen: WaveScene) -> Iterator[str]:
     case = seen.planned.scene.case
     for side in SIDES:
         table = case.side(side)
-        returns = not (table.is_outside or table.waves or table.layer)
-        if table.is_artificial and returns and normal_axis(side) in seen.axes:
+        if table.may_move and not table.absorber and normal_axis(side) in seen.axes:
             yield side
 
 

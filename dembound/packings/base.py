@@ -30,6 +30,9 @@ PRESSURE = 8e-3
 # diameter and are no longer contacts.
 PRESSURES = (5e-4, 0.1)
 
+SIZE = "size of a particle"
+"""Meaning of keys that are sizes of disks."""
+
 SOLID, CONTACTS, MOST_CONTACTS = 0.85, 2.23, 3.0
 """Solid fraction and contacts for each disk of random packings; between neighbours in a plane there are at most three.
 """
@@ -40,10 +43,13 @@ class Packing(Table, ABC):
 
     Attributes
     ----------
+    is_lattice : whether all disks are equal and have the same surroundings, so that they only stand for the ground, and
+        disks of another size stand for it as well; else the packing is one of many of the same ground, as random ones.
     packed_under_stress : whether a brick is packed under stress, which needs contacts with a stiffness.
     regular_sides : sides (left, right, bottom, top) whose disks form one row, so that they can be half cells.
     """
 
+    is_lattice: ClassVar[bool] = False
     packed_under_stress: ClassVar[bool] = False
     regular_sides: ClassVar[tuple[str, ...]] = ()
 
@@ -55,9 +61,7 @@ class Packing(Table, ABC):
     origin: tuple[float, float] = quantity(
         (0.0, 0.0), unit="m", means="place", help="lower left corner of the box of disks in [ground]"
     )
-    radius: float = quantity(
-        unit="m", means="size of a particle", help="disk radius (mean radius of a random packing)", gt=0.0
-    )
+    radius: float = quantity(unit="m", means=SIZE, help="disk radius (mean radius of a random packing)", gt=0.0)
 
     @property
     @abstractmethod
@@ -120,6 +124,23 @@ class Packing(Table, ABC):
         """Number of disks in a rectangle of this width and height (m), within some per cent."""
         return extent[0] / (2.0 * self.radius) * (extent[1] / (2.0 * self.radius))
 
+    def apart(self, axis: int, place: float) -> float:
+        """How far (m) a wall across an axis is from the nearest plane between disks; 0 beyond the box.
+
+        place : of the wall along the axis, m. By default half a diameter on a lattice, which may have no such planes;
+        walls in random packings are taken to be between disks.
+        """
+        inside = self.box[axis] < place < self.box[2 + axis]
+        return self.radius if self.is_lattice and inside else 0.0
+
+    def scaled(self, factor: float) -> dict[str, float]:
+        """The keys that disks of other sizes have, with their values: all sizes of particles, times a factor."""
+        return {key: factor * value for key, value in self.given().items() if self.described(key).get("means") == SIZE}
+
+    def reseeded(self, by: int) -> Self | None:
+        """Another random packing of the same ground, by a seed larger by a number; by default there is none."""
+        return None
+
     def with_copies(self, across: int, up: int) -> Self:
         """The packing with other numbers of bricks along x and y."""
         return self.model_copy(update={"size": None, "bricks": (across, up)})
@@ -181,6 +202,10 @@ class DensePacking(Packing):
     def largest_radius(self) -> float:
         """Radius of the largest disk in metres."""
         return radius_range(self.radius, self.radius_ratio)[1]
+
+    def reseeded(self, by: int) -> Self:
+        """The packing with a seed larger by a number."""
+        return self.model_copy(update={"seed": self.seed + by})
 
     def recipe(self, contact_modulus: float) -> Recipe:
         """All parameters of the brick, for disks of contact modulus E_c (Pa).

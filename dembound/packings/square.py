@@ -11,6 +11,7 @@ from dembound.packings.brick import Brick
 class Square(Packing):
     """Equal disks, one to a square cell, touching their four neighbours without force (Z section 2.3.1)."""
 
+    is_lattice: ClassVar[bool] = True
     regular_sides: ClassVar[tuple[str, ...]] = ("left", "right", "bottom", "top")
 
     pattern: Literal["A"] = "A"
@@ -30,6 +31,14 @@ class Square(Packing):
     def expected_contacts(self) -> float:
         """To the right and above."""
         return 2.0
+
+    def apart(self, axis: int, place: float) -> float:
+        """The distance (m) from the nearest edge of a cell."""
+        if not self.box[axis] < place < self.box[2 + axis]:
+            return 0.0
+        diameter = 2.0 * self.radius
+        cells = (place - self.box[axis]) / diameter
+        return abs(cells - round(cells)) * diameter
 
     def pack(self, contact_modulus: float) -> Brick:
         """One disk in the middle of its cell, touching its own images to the right and above.

@@ -87,9 +87,7 @@ def _why_moving(scene: Scene) -> str:
         if motion is not None and axis in motion.held:
             continue
         tables = [scene.case.side(side) for side in pair if side in scene.edges]
-        if len(tables) == 2 and not any(
-            table.factors or table.is_outside or table.layer or table.needs_column for table in tables
-        ):
+        if len(tables) == 2 and not any(table.absorbs for table in tables):
             kept.append(" and ".join(f"{side} ({table.type})" for side, table in zip(pair, tables, strict=True)))
     if not kept:
         return "the motion is not over, take a longer run.duration"
@@ -148,7 +146,7 @@ def _braked(scene: Scene, pieces: np.ndarray) -> np.ndarray:
     if scene.damp > 0.0:
         return np.ones(scene.count, dtype=np.bool_)
     tables = {side: scene.case.side(side) for side in scene.edges}
-    sides = [scene.edges[side] for side, table in tables.items() if table.factors or table.is_outside or table.layer]
+    sides = [scene.edges[side] for side, table in tables.items() if table.absorbs]
     ends = np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in sides)])
     return np.isin(pieces, pieces[ends])
 

@@ -179,7 +179,7 @@ def calibrate(
         raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
     time_step, _ = choose_step(scene)  # it does not depend on β: centred dashpots do not reduce the stability limit
     for _ in range(MOST_PASSES):
-        trial = with_boundaries(scene, _with_beta(strip, side, found.factor, beta))
+        trial = with_boundaries(scene, _with_beta(strip, side, motion, beta))
         outgoing, steps = _pass(trial, time_step, found, pulse)
         found.beta.append(beta)
         found.outgoing.append(outgoing)
@@ -269,6 +269,6 @@ def _must_move(case: DiskCase, side: str, motion: Motion) -> None:
         raise CaseError([f"motion.held: holds {name}, the motion of {motion.upper()} waves at the side {side}"])
 
 
-def _with_beta(case: DiskCase, side: str, factor: str, beta: float) -> DiskCase:
-    table = case.boundary[side].model_copy(update={factor: beta})
+def _with_beta(case: DiskCase, side: str, motion: Motion, beta: float) -> DiskCase:
+    table = case.boundary[side].with_factors({motion: beta})
     return replace(case, boundary={**case.boundary, side: table})

@@ -23,7 +23,7 @@ from dembound.motion.energy import Ledger
 from dembound.motion.part import Part
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Every, Run, Tracker
-from dembound.studies.trials import Trial
+from dembound.motion.trial import Trial
 
 RESOLUTION = 1e-3
 """Relative width of the bracket in which the largest stable step is found: ε is half of it."""

@@ -2,7 +2,7 @@
 
 The limit from the largest eigenvalue (disks/stability.py, bar/stability.py) assumes that centred dampers, held
 components and one-sided seams do not lower it. Here noise is stepped (noise.py) in the scene without loads and waves
-(quiet.py): short runs around the limit, and a long one at the case's own step.
+(`Kind.trials`): short runs around the limit, and a long one at the case's own step.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ import numpy as np
 
 from dembound.casefile import Case
 from dembound.errors import CaseError
+from dembound.kinds import kind_of
+from dembound.motion.trial import Trial
 from dembound.studies.noise import RESOLUTION, Course, LongRun, long_run, short_run
-from dembound.studies.trials import Trial, parts_of, trials
 
 FACTORS = 1.0 + 0.5 * RESOLUTION, 1.01, 1.1, 1.3, 2.0
 """Steps over the computed limit, or below it, that are tried to bracket the largest stable one."""
@@ -66,7 +67,7 @@ def measure(
     """
     if steps < 1:
         raise CaseError([f"--steps: is {steps}, must be at least 1"])
-    chosen, words = trials(case, full=full)
+    chosen, words = kind_of(case).trials(case, full=full)
     say = report or (lambda line: None)
     return [_measured(trial, steps, say) for trial in chosen], words
 
@@ -76,7 +77,7 @@ def _measured(trial: Trial, steps: int, say: Report) -> Stability:
     if not np.isfinite(trial.limit):
         raise CaseError(["run.time_step: any step is stable, as nothing in the scene can vibrate"])
     found = _bracketed(trial, say)
-    for part in parts_of(trial):
+    for part in trial.parts:
         run = long_run(trial, part, steps)
         found.long_runs.append(run)
         seen = "does not grow" if run.is_stable else "grows"

@@ -84,7 +84,7 @@ class _References:
 
     def _default(self) -> Reference:
         """The first that the case allows."""
-        if not getattr(self._case, "hole", ()):  # beside its wall of disks the errors of sides would not be seen
+        if not self._judge.hides_sides(self._case):
             with suppress(CaseError):
                 return self._exact()
         if not any(key.startswith(SIDES) for choice in self._choices for key in choice.changes):

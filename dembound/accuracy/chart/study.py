@@ -12,6 +12,7 @@ from dembound.accuracy.chart.front import EQUAL, ROUNDING, Point, cheapest_withi
 from dembound.accuracy.chart.record import Record, record_in
 from dembound.accuracy.chart.references import exact_of, reference_of
 from dembound.accuracy.choice import Choice, choices_of, digest
+from dembound.accuracy.judges import judge_of
 from dembound.accuracy.reference import MonitorError, Reference, Wanted, errors
 from dembound.accuracy.runner import Run, Runner, Shown, measure
 from dembound.casefile import Case
@@ -168,7 +169,8 @@ def _must_be_comparable(case: Case, options: Options) -> None:
         raise CaseError(["monitor: is missing; a chart compares the histories of monitors"], case.name)
     if wanted.monitor is not None and wanted.monitor not in monitors:
         raise CaseError([f"--monitor: is {wanted.monitor}, must be one of {', '.join(monitors)}"])
-    if wanted.quantity == "stress" and (kind_of(case).name != "bar" or wanted.component is not None):
+    is_recorded = wanted.quantity in judge_of(case).quantities
+    if wanted.quantity == "stress" and (not is_recorded or wanted.component is not None):
         raise CaseError(["--quantity: stress is that along a bar; disks do not have it, nor has it components"])
     if _wanted_reference(case, options) == "exact":
         exact_of(case)

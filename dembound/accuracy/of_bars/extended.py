@@ -19,7 +19,7 @@ def extended_bar(case: BarCase, most: int) -> Extended:
     """A bar with more spacings; parameters and errors as of `extended`."""
     scene = build_bar(case)
     bar, step = case.bar, choose_step(scene)[0]
-    moving = movable(case, {*case.driving, *(load.side for load in case.load)})
+    moving = movable(case, [load.side for load in case.load])
     front = front_of_bar(scene, step)
     spacing = {side: bar.end(side).length / bar.end(side).cells for side in ("left", "right")}
     targets = monitored(scene) if case.monitor else scene.positions[[0, -1]]

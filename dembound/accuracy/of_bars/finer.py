@@ -46,14 +46,14 @@ class Finer:
         }
 
 
-def finer(case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Run]) -> Finer:
+def finer(case: BarCase, choices: Sequence[Choice[BarCase]], outcomes: Sequence[Run]) -> Finer:
     """The reference for choices with these outcomes; case : of the bar, loads and ends.
 
     Raises CaseError if the bar would have too many nodes, and for a bar with ranges, whose Courant numbers differ.
     """
     if case.bar.range:
         raise CaseError(["reference: finer is not available for a bar with ranges"], case.name)
-    bars = [choice.case.bar for choice in choices if isinstance(choice.case, BarCase)]
+    bars = [choice.case.bar for choice in choices]
     cells = _cells({bar.cells for bar in bars if bar.length == case.bar.length})
     spacing = case.bar.length / cells
     nodes = {_node(history, spacing, cells) for outcome in outcomes for history in outcome.motions.values()}

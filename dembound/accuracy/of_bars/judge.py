@@ -21,6 +21,7 @@ from dembound.accuracy.runner import Run
 from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.bar.scene import BarScene
 from dembound.casefile.bar import BarCase
+from dembound.results.histories import Quantity
 
 
 class BarJudge(Judge[BarCase, BarScene]):
@@ -28,6 +29,7 @@ class BarJudge(Judge[BarCase, BarScene]):
 
     places: ClassVar[Mapping[str, int]] = {SPALL_PLACE: 0}
     first_break = SPALL_TIME
+    quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement", "stress")
 
     def causes(self, case: BarCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
         """Ends, nodes and steps, from the waves of the linear bar."""
@@ -45,7 +47,7 @@ class BarJudge(Judge[BarCase, BarScene]):
         """A pulse at the left end of a bar without attenuation."""
         return PulseInBar.of(case)
 
-    def finer(self, case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Run]) -> Finer:
+    def finer(self, case: BarCase, choices: Sequence[Choice[BarCase]], outcomes: Sequence[Run]) -> Finer:
         """Finite differences at Courant number 1."""
         return finer(case, choices, outcomes)
 

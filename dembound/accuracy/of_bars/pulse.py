@@ -11,14 +11,13 @@ import numpy as np
 from dembound.accuracy.history import History, Motions, along
 from dembound.accuracy.reference import Exact
 from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
-from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.exact.bar import End, bar_stress, bar_velocity, triangle_spall
 from dembound.waves import Triangle, Wave
 
 
 @dataclass(frozen=True)
-class PulseInBar(Exact):
+class PulseInBar(Exact[BarCase]):
     """A pulse on the left end of a bar without attenuation, up to the first spall.
 
     pressure : Pa, factor of the wave; far_end : what reflects it.
@@ -42,7 +41,7 @@ class PulseInBar(Exact):
         if case.bar.range:
             return None
         load, far = case.load[0], case.side("right")
-        end: End | None = "absorbing" if far.factors or far.layer else "free" if far.is_free else None
+        end: End | None = "absorbing" if far.absorbs else "free" if far.is_free else None
         end = "fixed" if 0 in far.prescribed(0) else end
         if load.side != "left" or not case.side("left").is_free or end is None:
             return None
@@ -69,7 +68,7 @@ class PulseInBar(Exact):
             sentence=f"exact (d'Alembert), up to the first spall at {1e3 * at:.4g} ms",
         )
 
-    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
+    def motions(self, case: BarCase, recorded: Motions) -> dict[str, History]:
         """The motion and stress at the nodes of the monitors, at the same times."""
         return {name: self._at(history) for name, history in recorded.items()}
 

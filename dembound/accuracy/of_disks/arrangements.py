@@ -22,19 +22,18 @@ ROUNDING = 1e-9
 """Part of a brick by which places may be beyond it."""
 
 
-def may_widen(arrangement: Choice) -> bool:
+def may_widen(arrangement: Choice[DiskCase]) -> bool:
     """Whether sides of a choice reflect and may be farther away: not where disks fill only a box of the ground."""
-    assert isinstance(arrangement.case, DiskCase)
-    reflecting = [side for side, table in _silent(arrangement.case).items() if not table.is_outside]
+    reflecting = [side for side, table in _silent(arrangement.case).items() if not table.absorber]
     return bool(reflecting) and arrangement.case.ground.size is None
 
 
 def _silent(case: DiskCase) -> dict[str, Boundary]:
-    """The artificial sides through which no waves enter."""
-    return {side: table for side, table in case.boundary.items() if table.is_artificial and not table.waves}
+    """The sides that may be farther away."""
+    return {side: table for side, table in case.boundary.items() if table.may_move}
 
 
-def arrangements(case: DiskCase, scene: DiskScene, bound: float) -> Iterator[Choice]:
+def arrangements(case: DiskCase, scene: DiskScene, bound: float) -> Iterator[Choice[DiskCase]]:
     """Choices of sides for a case, its own first; valid ones only. scene : of the case; bound : error asked for."""
     silent = _silent(case)
     yield Choice("sides as given", {}, case)
@@ -44,7 +43,7 @@ def arrangements(case: DiskCase, scene: DiskScene, bound: float) -> Iterator[Cho
         yield from _continuum(case, scene, silent, bound)
 
 
-def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice]:
+def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice[DiskCase]]:
     """Matched dashpots, alone and with springs towards what makes waves."""
     if any(table.needs_column for table in silent.values()):
         return  # the motion of the ground is not zero beyond them
@@ -62,7 +61,9 @@ def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice
             yield Choice(f"{kind} sides", changes, changed(case, changes))
 
 
-def _continuum(case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float) -> Iterator[Choice]:
+def _continuum(
+    case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float
+) -> Iterator[Choice[DiskCase]]:
     """A continuum beyond all artificial sides, or those without waves, and round boxes of disks."""
     coarse = CONTINUUM_SHARE * bound
     accuracies: dict[str, dict[str, Any]] = {"": {}} | (
@@ -81,7 +82,7 @@ def _continuum(case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary],
         yield from _boxes(case, accuracy, name)
 
 
-def _boxes(case: DiskCase, accuracy: Mapping[str, Any], name: str) -> Iterator[Choice]:
+def _boxes(case: DiskCase, accuracy: Mapping[str, Any], name: str) -> Iterator[Choice[DiskCase]]:
     """Boxes of disks of several sizes in a continuum."""
     if not may_be_boxed(case):
         return

@@ -103,9 +103,7 @@ def _cost(scene: DiskScene) -> float:
 def may_be_boxed(case: DiskCase) -> bool:
     """Whether all that makes waves, but for those from below, is in one place, and the ground could go on beyond."""
     plain = not any(case.periodic) and not case.motion.held and (case.static is None or case.static.stress is None)
-    beyond = all(
-        case.side(side).is_artificial and not case.side(side).is_mirror for side in ("left", "right", "bottom")
-    )
+    beyond = all(case.side(side).is_artificial for side in ("left", "right", "bottom"))
     at_top = case.side("top").is_free or case.side("top").is_outside
     from_below = not any(case.side(side).waves for side in ("left", "right", "top"))
     return (

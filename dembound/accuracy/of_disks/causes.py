@@ -25,7 +25,6 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.errors import DemboundError
 from dembound.motion.paths import Source
-from dembound.packings.square import Square
 from dembound.results.estimates import in_words
 
 MOTIONS = ("velocity", "displacement")
@@ -69,20 +68,22 @@ class _Disks:
         return [*self._sides(), *self._delays()]
 
     def _edge_disks(self) -> Iterator[str]:
-        """Monitors at absorbing sides of random packings, of whose disks nothing is known."""
-        if isinstance(self.case.packing, Square):
-            return
-        reach, box = 2.0 * self.scene.ground.brick.mean_diameter, self.case.packing.box
+        """Monitors at absorbing sides of random packings, or at uneven ones, of whose disks nothing is known."""
+        packing = self.case.packing
+        reach, box = 2.0 * self.scene.ground.brick.mean_diameter, packing.box
         edges = {side: box[k] for k, side in enumerate(("left", "bottom", "right", "top"))}
         at = [
             name
             for name, own in self.recorded.items()
             for side, table in self.case.boundary.items()
-            if table.factors and abs(own.place[normal_axis(side)] - edges[side]) < reach
+            if not (packing.is_lattice and side in packing.regular_sides)
+            and table.factors
+            and abs(own.place[normal_axis(side)] - edges[side]) < reach
         ]
         if at:
             names = " and ".join(dict.fromkeys(at))
-            yield f"how single disks at the edge of a random packing move otherwise than those around, at {names}"
+            edge = "an uneven edge" if packing.is_lattice else "the edge of a random packing"
+            yield f"how single disks at {edge} move otherwise than those around, at {names}"
 
     def _without_formula(self) -> Iterator[str]:
         """Causes for which a formula needs more than the case has."""
@@ -90,6 +91,10 @@ class _Disks:
             yield "continuum: its elements are judged by the highest frequency of waves, and a wave that jumps has none"
         if not any(self._ways(own) for own in self.recorded.values()):
             yield "grid and time step: waves start everywhere"
+        for side in self.case.driving:
+            table = self.case.side(side)
+            if table.is_artificial and not table.absorbs:
+                yield f'{side} side: "{table.type}" has no dashpots, by which its reflection would be known'
         if self.case.hole:
             size = in_words(wall_error(self.case, self.scene.ground.brick.mean_diameter))
             yield f"walls of holes, which consist of disks: up to some {size} beside them"
@@ -129,7 +134,7 @@ class _Disks:
             yield Cause(CONTINUUM, "by the formulas of its elements, layers and ties", same)
         for side, waves in self.case.driving.items():
             table = self.case.side(side)
-            if not table.is_artificial or table.is_outside or not table.factors:
+            if not table.factors:
                 continue
             shares = reflected(self.scene, side, self.time_step)
             errors = {name: self._returned(own, side, waves, shares) for name, own in self.recorded.items()}

@@ -28,8 +28,8 @@ def disk_choices(case: DiskCase) -> Named:
     in the ground.
     """
     yield OWN, {}
-    radii = {f"packing.{key}": size for key, size in case.packing.given().items() if key.endswith("radius")}
-    for changes in valid(case, ({key: factor * size for key, size in radii.items()} for factor in COARSER)):
+    sizes = (case.packing.scaled(factor) for factor in COARSER)
+    for changes in valid(case, ({f"packing.{key}": size for key, size in each.items()} for each in sizes)):
         yield label(case, changes), changes
     step = "run.safety" if case.run.time_step == "auto" else "run.time_step"
     changes = {step: FRACTION * (case.run.safety if case.run.time_step == "auto" else case.run.time_step)}
@@ -81,7 +81,7 @@ def _other_sides(case: DiskCase) -> Named:
 
 def _absorbing(case: DiskCase) -> dict[str, Boundary]:
     """The sides that absorb, with waves or without."""
-    return {side: table for side, table in case.boundary.items() if table.factors or table.is_outside}
+    return {side: table for side, table in case.boundary.items() if table.absorbs}
 
 
 def _continuum(case: DiskCase, *choices: Mapping[str, Boundary]) -> Named:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.of_disks.equal_sides import equal_sides, with_whole_cells
+from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.load import Load
@@ -132,7 +133,7 @@ def _run(case: DiskCase) -> Any:
 
 def _material(case: DiskCase, ground: PackedMaterial) -> Material:
     """The material, by which the lattice has the wave speeds along x of the ground."""
-    if isinstance(case.packing, Square):
+    if is_square_lattice(ground):
         return case.material
     tensor, density = ground.material_tensor, ground.density
     p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
@@ -156,7 +157,7 @@ def _static(case: DiskCase, moduli: Moduli) -> Static | None:
     if case.static is None:
         return None
     update: dict[str, Any] = {"from_": None}
-    if (pressure := getattr(case.material, "locked_in", None)) is not None:
+    if (pressure := case.material.locked_in) is not None:
         both = pressure * (moduli.emod + moduli.pb_emod) / moduli.emod
         sxx, syy, sxy = case.static.stress or (0.0, 0.0, 0.0)
         update["stress"] = (sxx - both, syy - both, sxy)

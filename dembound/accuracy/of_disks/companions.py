@@ -10,8 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from dembound.accuracy.history import History, Motions
+from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.extended import bricks_needed, enlarged, movable_sides
+from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
 from dembound.accuracy.of_disks.pair import PairScenes, ratios, scenes_of_pair, sides_of_pair
 from dembound.accuracy.of_disks.places import middle_of_loads, middles_of_loads, patch_around, weights_at
 from dembound.accuracy.runner import Run, Runner, at_step
@@ -208,6 +209,6 @@ def _named(monitor: str, number: int) -> str:
 def needed_by(scene: DiskScene) -> dict[str, int]:
     """By side that may move, the bricks beyond it with which nothing returns; none where no side may."""
     try:
-        return bricks_needed(scene, movable_sides(scene.case))
+        return bricks_needed(scene, movable(scene.case))
     except CaseError:
         return {}

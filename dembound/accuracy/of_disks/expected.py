@@ -15,7 +15,6 @@ from dembound.accuracy.of_disks.near import errors_near_loads, wall_error
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
-from dembound.packings.square import Square
 
 UNKNOWN = 1.0
 """Error of a continuum whose error is not known: more than any bound."""
@@ -56,7 +55,7 @@ def of_sides(companions: Companions, scene: DiskScene, time_step: float, wider: 
 
 def _walls(case: DiskCase, scene: DiskScene, names: list[str]) -> Iterator[Cause]:
     """Walls of holes on a lattice, which are made of disks."""
-    if not case.hole or not isinstance(case.packing, Square):
+    if not case.hole or not case.packing.is_lattice:
         return
     size = wall_error(case, scene.ground.brick.mean_diameter)
     yield Cause("walls", "by the disks along the radius of the smallest hole", {name: _both(size) for name in names})

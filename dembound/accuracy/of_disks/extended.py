@@ -38,7 +38,7 @@ def extended_disks(case: DiskCase, most: int) -> Extended:
     if case.incident is not None:
         reason = "its wave comes through the ground beyond all sides; take --reference finest"
         raise CaseError([f"incident: the scene cannot be extended, as {reason}"], case.name)
-    moving = movable(case, set(case.driving))
+    moving = movable(case)
     scene = build(case)
     bricks = bricks_needed(scene, moving)
     packing = _with_more(case, bricks)
@@ -48,11 +48,6 @@ def extended_disks(case: DiskCase, most: int) -> Extended:
     sentence = sentence_of(case, f"the same scene {size}, {count:,} particles", moving)
     larger, inside = enlarged(scene, bricks)
     return Extended(larger, sentence, inside)
-
-
-def movable_sides(case: DiskCase) -> list[str]:
-    """The artificial sides that can move; raises CaseError if there are some, and none can."""
-    return movable(case, set(case.driving))
 
 
 def bricks_needed(scene: DiskScene, moving: Sequence[str]) -> dict[str, int]:

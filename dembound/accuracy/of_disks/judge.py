@@ -65,7 +65,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """The scene with more bricks beyond its sides."""
         return extended_disks(case, most)
 
-    def exact(self, case: DiskCase) -> Exact | None:
+    def exact(self, case: DiskCase) -> Exact[DiskCase] | None:
         """A plane wave, or one of the problems of `exact`; raises CaseError if loads are none of them."""
         if (plane := PlaneWave.of(case)) is not None:
             return plane
@@ -75,6 +75,10 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """Coarser disks, half the step, other sides and a box in the ground."""
         return disk_choices(case)
 
+    def hides_sides(self, case: DiskCase) -> bool:
+        """Whether it has holes, whose walls consist of disks."""
+        return bool(case.hole)
+
     def has_input_continuum(self, case: DiskCase) -> bool:
         """Whether waves enter through a continuum round disks that fill the scene."""
         return case.ground.size is None and any(case.side(side).waves for side in case.outside_sides)
@@ -83,7 +87,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """A warning that packings differ at random, if there are different bricks, and random ones among them."""
         packings = [case.packing for case in cases]
         bricks = {repr(packing.with_copies(1, 1).model_copy(update={"origin": (0.0, 0.0)})) for packing in packings}
-        if len(bricks) < 2 or not any(packing.packed_under_stress for packing in packings):
+        if len(bricks) < 2 or all(packing.is_lattice for packing in packings):
             return ()
         return (REALISATIONS,)
 

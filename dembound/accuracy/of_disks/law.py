@@ -26,6 +26,7 @@ from dembound.accuracy.differences import keeps
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.pair import ratios
+from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import HISTORY_KEYS, STRENGTH_KEYS
@@ -38,7 +39,6 @@ from dembound.errors import CaseError, DemboundError
 from dembound.kinds import with_changes
 from dembound.motion.kind import Plan
 from dembound.motion.paths import Source
-from dembound.packings.square import Square
 from dembound.running import plan
 from dembound.table import EVERYWHERE
 
@@ -63,7 +63,7 @@ class ElasticTwin:
     """
 
     case: DiskCase
-    planned: Plan
+    planned: Plan[DiskScene]
     factor: float
     diameter: float
     stress: float
@@ -99,24 +99,26 @@ class ElasticTwin:
         return f"the elastic law, which holds up to {self.factor:.3g} times these waves {size}"
 
 
-def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str], runner: Runner) -> ElasticTwin | None:
+def elastic_twin(
+    case: DiskCase, planned: Plan[DiskScene], most: float, kept: Sequence[str], runner: Runner
+) -> ElasticTwin | None:
     """The case under the elastic law if this holds with its own disks; None if not, or if it is not known.
 
     planned : of the case. most : particle-steps that the companion should take. kept : keys that do not change.
     """
-    if not _may_be_elastic(case):
+    if not _may_be_elastic(case, planned.scene):
         return None
     given = {key: value for key, value in case.material.given().items() if key not in HISTORY_KEYS}
-    strong = {"material": given | {"law": "elastic"}, "output.load_factor": True}
-    weak = {key: value for key, value in given.items() if key not in (*STRENGTH_KEYS, "pb_fa")} | {"law": "elastic"}
+    law = {"law": LAWS[case.material.law].linear}
+    strong = {"material": given | law, "output.load_factor": True}
+    weak = {key: value for key, value in given.items() if key not in (*STRENGTH_KEYS, "pb_fa")} | law
     try:
         watched = with_changes(case, strong)
         twins = [with_changes(case, {"material": weak} | change) for change in _without_stage(case)]
     except CaseError:  # a load that never ends, without a body at rest under it; local damping
         return None
-    assert isinstance(watched, DiskCase)
     twin = next((each for each in twins if keeps(case, each, kept)), None)
-    if not isinstance(twin, DiskCase):
+    if twin is None:
         return None
     try:
         factor, diameter = _factor(watched, planned, most, runner)
@@ -131,12 +133,12 @@ def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
     return math.hypot(*size) if source.box == EVERYWHERE else float(source.distance(place[None])[0])
 
 
-def _may_be_elastic(case: DiskCase) -> bool:
+def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
     """Whether the law has a history, of whose limits something is known with disks of other sizes."""
     if not LAWS[case.material.law].has_history or not case.material.elastic_start:
         return False
     pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
-    return isinstance(case.packing, Square) and not (case.static is not None and (case.hole or pushed))
+    return is_square_lattice(scene.ground) and not (case.static is not None and (case.hole or pushed))
 
 
 def _without_stage(case: DiskCase) -> list[dict[str, None]]:
@@ -160,16 +162,14 @@ def _turning_stress(case: DiskCase) -> float:
     return float(given + case.material.density * (weight @ case.size))
 
 
-def _diameter(planned: Plan) -> float:
+def _diameter(planned: Plan[DiskScene]) -> float:
     """Diameter (m) of the disks of a plan."""
-    assert isinstance(planned.scene, DiskScene)
     return planned.scene.ground.brick.mean_diameter
 
 
-def _factor(case: DiskCase, planned: Plan, most: float, runner: Runner) -> tuple[float, float]:
+def _factor(case: DiskCase, planned: Plan[DiskScene], most: float, runner: Runner) -> tuple[float, float]:
     """The load factor, and the diameter (m) of the disks with which it was found: as small as can be afforded."""
     own, scene = _diameter(planned), planned.scene
-    assert isinstance(scene, DiskScene)
     quiet = replace(case, output=case.output.model_copy(update={"snapshots": 0}))
     for ratio in (1.0, *ratios(case, scene)):
         if ratio > 1.0:

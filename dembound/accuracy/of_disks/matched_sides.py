@@ -59,9 +59,9 @@ def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Ref
     matched, wide = ({m: homogenised_beta(each, side, m) for m in table.factors} for each in (scene, end))
     known = {motion: factor for motion, factor in factors_in(scene, side).items() if math.isfinite(matched[motion])}
     # sides of narrow bodies have more disks for their length than those of a periodic one
-    equal = {f"beta_{motion}": factor * wide[motion] / matched[motion] for motion, factor in known.items()}
+    equal = {motion: factor * wide[motion] / matched[motion] for motion, factor in known.items()}
     end = with_boundaries(
-        end, replace(end.case, boundary={**end.case.boundary, side: table.model_copy(update=equal).at_rest()})
+        end, replace(end.case, boundary={**end.case.boundary, side: table.with_factors(equal).at_rest()})
     )
     measured = _energies(scene, end, side, time_step)
     found: dict[Motion, Reflected] = {}

@@ -14,21 +14,10 @@ from dembound.accuracy.of_disks.places import middle_of_forces
 from dembound.casefile.disks import DiskCase
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene
-from dembound.holes import Hole, Rectangle
-from dembound.packings.square import Square
-from dembound.table import Box
 
 NEAR, CURVED = 0.08, 0.6
 """Error of the motion along the ray over (κD)², κ = k + CURVED/r, with the RMS wave number k of S waves: measured along
 a force in rock within a factor of 1.6 at r of 4 to 14 disks, for k of 0.08 to 0.28 per disk (docs/error_bound.md)."""
-
-
-WALL = 0.7
-"""Error beside a round hole times its disks along the radius (docs/charts.md): 7 to 0.7 % with 10 to 80 of them."""
-
-STRAIGHT = 0.45
-"""Error beside a rectangle, whose walls have no steps, times the square of the disks along its smaller half: 4.7 and
-0.47 % with 3 and 9 of them (benchmarks/error_bound.py)."""
 
 
 def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
@@ -74,34 +63,4 @@ def _norm(values: np.ndarray) -> float:
 
 def wall_error(case: DiskCase, diameter: float) -> float:
     """Error of the motion beside the holes of a case, RMS over RMS, with disks of a diameter (m); 0 without holes."""
-    box = case.packing.box if isinstance(case.packing, Square) else None
-    return max((of_hole(hole, diameter) + misfit(hole, diameter, box) for hole in case.hole), default=0.0)
-
-
-def of_hole(hole: Hole, diameter: float) -> float:
-    """Error of the motion beside one hole, RMS over RMS; walls of a rectangle are taken to be between disks."""
-    along = _smaller_half(hole) / diameter
-    return STRAIGHT / along**2 if isinstance(hole, Rectangle) else WALL / along
-
-
-def misfit(hole: Hole, diameter: float, box: Box | None) -> float:
-    """How far the walls of a rectangle are from the nearest planes between disks of a lattice, over its smaller half.
-
-    box : left, bottom, right and top (m) of the lattice, beyond which there are no walls; None without a lattice. What
-    a hole does to waves grows with its size, by as large a part.
-    """
-    if box is None or not isinstance(hole, Rectangle):
-        return 0.0
-    apart = [
-        abs(cells - round(cells)) * diameter
-        for k, wall in enumerate(hole.box)
-        if box[k % 2] < wall < box[2 + k % 2]
-        for cells in [(wall - box[k % 2]) / diameter]
-    ]
-    return max(apart, default=0.0) / _smaller_half(hole)
-
-
-def _smaller_half(hole: Hole) -> float:
-    """Half the smaller side of the rectangle round a hole, m."""
-    left, bottom, right, top = hole.box
-    return 0.5 * min(right - left, top - bottom)
+    return max((hole.wall_error(diameter, case.packing.apart) for hole in case.hole), default=0.0)

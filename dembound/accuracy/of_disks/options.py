@@ -14,13 +14,13 @@ from dembound.accuracy.differences import keeps
 from dembound.accuracy.of_disks.arrangements import arrangements, may_widen
 from dembound.accuracy.of_disks.companions import Companions, needed_by
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import LAWS
 from dembound.disks import step_cost
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.errors import DemboundError
 from dembound.kinds import checked, with_changes
 from dembound.motion.kind import Plan
-from dembound.packings.square import Square
 from dembound.running import plan
 
 FACTORS = (5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25, 1.0, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25)
@@ -36,7 +36,7 @@ ROTATION = 2
 """Number of the rotation among the motions that are held."""
 
 EQUAL = 1e-6
-"""Relative difference of forces that count as equal."""
+"""Relative difference of forces, and of stiffnesses, that count as equal."""
 
 
 @dataclass(frozen=True)
@@ -48,8 +48,8 @@ class DiskOption:
     """
 
     case: DiskCase
-    planned: Plan
-    arrangement: Choice
+    planned: Plan[DiskScene]
+    arrangement: Choice[DiskCase]
     factor: float
     wider: float
     cost: float
@@ -57,7 +57,6 @@ class DiskOption:
     @property
     def scene(self) -> DiskScene:
         """The scene that is planned."""
-        assert isinstance(self.planned.scene, DiskScene)
         return self.planned.scene
 
     @cached_property
@@ -68,55 +67,54 @@ class DiskOption:
         return f"{self.arrangement.name}{wider}, {diameter}"
 
 
-def cost_of(planned: Plan) -> float:
+def cost_of(planned: Plan[DiskScene]) -> float:
     """CPU time of the steps, s."""
-    assert isinstance(planned.stepped, DiskScene)
     return 1e-9 * planned.steps * sum(step_cost.of_scene(planned.stepped).values())
 
 
-def with_diameter(companions: Companions, factor: float) -> Plan | None:
+def with_diameter(companions: Companions, factor: float) -> Plan[DiskScene] | None:
     """The given case with larger or smaller disks, planned; None if it cannot run or its loads have other forces."""
     given = companions.case
     try:
         case = given if factor == 1.0 else with_changes(given, {"packing": _larger(given, factor)})
-        planned = plan(case)
+        planned: Plan[DiskScene] = plan(case)
     except DemboundError:
         return None
-    assert isinstance(planned.scene, DiskScene)
     if factor > 1.0 and _is_narrow(planned.scene):
         return None
-    return planned if _same_forces(companions.scene, planned.scene) else None
+    same = _same_ground(companions.scene, planned.scene) and _same_forces(companions.scene, planned.scene)
+    return planned if same else None
 
 
 def disk_options(
-    companions: Companions, plain: Plan, factor: float, bound: float, kept: Sequence[str]
+    companions: Companions, plain: Plan[DiskScene], factor: float, bound: float, kept: Sequence[str]
 ) -> Iterator[DiskOption]:
     """All choices with disks of one diameter that keep the values of some keys; those that cannot run are left out.
 
     plain : the plan with the given sides and these disks.
     """
     scene = plain.scene
-    assert isinstance(scene, DiskScene)
     for arrangement in arrangements(scene.case, scene, bound):
         planned = _planned(scene.case, arrangement.changes)
         if planned is None:
             continue
-        found = DiskOption(_case_of(planned), planned, arrangement, factor, 0.0, cost_of(planned))
+        found = DiskOption(planned.scene.case, planned, arrangement, factor, 0.0, cost_of(planned))
         each = [found, *(_wider(found, companions) if may_widen(arrangement) else [])]
         yield from (choice for choice in each if keeps(companions.case, choice.case, kept))
 
 
 def may_change_diameter(case: DiskCase, kept: Sequence[str]) -> bool:
     """Whether disks only stand for the ground, on a lattice whose bonds do not break, and their radius is not kept."""
-    is_kept = any(key in ("packing", "packing.radius") for key in kept)
-    return isinstance(case.packing, Square) and case.material.law == "elastic" and not is_kept
+    sizes = {"packing", *(f"packing.{key}" for key in case.packing.scaled(1.0))}
+    return case.packing.is_lattice and not LAWS[case.material.law].has_history and sizes.isdisjoint(kept)
 
 
 def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
     """The table of a packing of larger disks in the same place."""
     packing: dict[str, Any] = {key: value for key, value in case.packing.given().items() if key != "bricks"}
     size = [round(length, 10) for length in case.packing.extent]
-    return packing | {"size": size, "radius": float(f"{factor * case.packing.radius:.12g}")}
+    sizes = {key: float(f"{length:.12g}") for key, length in case.packing.scaled(factor).items()}
+    return packing | {"size": size, **sizes}
 
 
 def _is_narrow(scene: DiskScene) -> bool:
@@ -125,6 +123,12 @@ def _is_narrow(scene: DiskScene) -> bool:
         return False
     across = [length for axis, length in enumerate(scene.case.size) if not scene.case.periodic[axis]]
     return min(across, default=np.inf) < NARROW * scene.ground.brick.mean_diameter
+
+
+def _same_ground(given: DiskScene, scene: DiskScene) -> bool:
+    """Whether disks of another size make a ground of the same stiffness, as they need not under any law."""
+    own, other = (each.ground.material_tensor for each in (given, scene))
+    return np.allclose(own, other, rtol=0.0, atol=EQUAL * float(np.abs(own).max()))
 
 
 def _same_forces(given: DiskScene, scene: DiskScene) -> bool:
@@ -137,18 +141,12 @@ def _same_forces(given: DiskScene, scene: DiskScene) -> bool:
     return True
 
 
-def _planned(case: DiskCase, changes: Any) -> Plan | None:
+def _planned(case: DiskCase, changes: Any) -> Plan[DiskScene] | None:
     """The changed case, planned; None if it cannot run."""
     try:
         return plan(with_changes(case, changes) if changes else case)
     except DemboundError:
         return None
-
-
-def _case_of(planned: Plan) -> DiskCase:
-    """The case of a plan."""
-    assert isinstance(planned.scene.case, DiskCase)
-    return planned.scene.case
 
 
 def _wider(plain: DiskOption, companions: Companions) -> Iterator[DiskOption]:
@@ -161,7 +159,7 @@ def _wider(plain: DiskOption, companions: Companions) -> Iterator[DiskOption]:
             case = companions.wider(plain.scene, needed, wider)
             extent = tuple(round(length, 10) for length in case.packing.extent)
             packing = case.packing.model_copy(update={"size": extent, "bricks": None})
-            case = checked(replace(case, packing=packing, run=own.run, name=own.name))  # type: ignore[assignment]
+            case = checked(replace(case, packing=packing, run=own.run, name=own.name))
         except DemboundError:
             return
         if case.packing.extent == last:

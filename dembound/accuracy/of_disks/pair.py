@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.accuracy.history import History, Motions
+from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import Coarser, coarser, largest_diameter
-from dembound.accuracy.of_disks.extended import bricks_needed, enlarged, movable_sides
+from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
 from dembound.accuracy.runner import Runner, at_step
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
@@ -126,12 +127,8 @@ def scenes_of_pair(case: DiskCase, scene: DiskScene, time_step: float, most: flo
 
 
 def sides_of_pair(case: DiskCase) -> list[str]:
-    """The sides whose error a pair gives: those that stand in for ground beyond them, but no continuum and no wave."""
-    return [
-        side
-        for side, table in case.boundary.items()
-        if table.is_artificial and not table.is_outside and side not in case.driving
-    ]
+    """The sides whose error a pair gives: those that may be farther away and send waves back."""
+    return [side for side, table in case.boundary.items() if table.may_move and not table.absorber]
 
 
 def ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
@@ -150,7 +147,7 @@ def _scenes(case: DiskCase, given: Coarser, most: float) -> tuple[DiskScene, Dis
     It is smaller where they would cost too much.
     """
     smaller = build(given.case)
-    bricks = bricks_needed(smaller, movable_sides(smaller.case))
+    bricks = bricks_needed(smaller, movable(smaller.case))
     steps = case.run.duration / choose_step(smaller)[0]
     allowed = most / steps - smaller.disk_count
     for times in (math.inf, *SMALLER):

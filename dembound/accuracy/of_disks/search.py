@@ -55,8 +55,7 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
     the companions.
     """
     _require_known(case)
-    planned = plan(case)
-    assert isinstance(planned.scene, DiskScene)
+    planned: Plan[DiskScene] = plan(case)
     most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
     runner = Runner()
     twin = elastic_twin(case, planned, most, kept, runner)
@@ -75,7 +74,7 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
 
 def _best(
     case: DiskCase,
-    planned: Plan,
+    planned: Plan[DiskScene],
     bound: float,
     kept: Sequence[str],
     most: float,
@@ -83,7 +82,7 @@ def _best(
     twin: ElasticTwin | None = None,
 ) -> Best:
     """The best choice under the law of a case, planned; twin : the same, if it is not that of the given case."""
-    companions = Companions(case, planned.scene, planned.time_step, most, runner)  # type: ignore[arg-type]
+    companions = Companions(case, planned.scene, planned.time_step, most, runner)
     moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
     if not _is_reached(planned) or not any(map(np.any, moved)):
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
@@ -114,7 +113,7 @@ def _require_known(case: DiskCase) -> None:
         raise CaseError(problems, case.name)
 
 
-def _is_reached(planned: Plan) -> bool:
+def _is_reached(planned: Plan[DiskScene]) -> bool:
     """Whether the fastest waves come to any monitor within the run."""
     scene, duration = planned.scene, planned.scene.case.run.duration
     front, places = planned.kind.front(scene, planned.time_step), monitored(scene)
@@ -228,7 +227,7 @@ class _Search:
         plain = self._with_diameter(factor)
         return [] if plain is None else list(disk_options(self.companions, plain, factor, self.bound, self.kept))
 
-    def _with_diameter(self, factor: float) -> Plan | None:
+    def _with_diameter(self, factor: float) -> Plan[DiskScene] | None:
         """The case with disks of another diameter, planned; None if it may not have them."""
         own = self.companions.scene.ground.brick.mean_diameter
         may_be = self.twin is None or self.twin.holds(factor * own)
@@ -239,7 +238,6 @@ class _Search:
         plain = self._with_diameter(factor)
         if plain is None:
             return False
-        assert isinstance(plain.scene, DiskScene)
         disks, _ = of_ground(self.companions, plain.scene, plain.time_step)
         self.of_disks[factor] = expected(disks, self.companions.recorded(plain.scene)).worst
         return self._keeps(self.of_disks[factor])

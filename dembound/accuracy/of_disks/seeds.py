@@ -16,6 +16,7 @@ from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import no_seed
 from dembound.accuracy.runner import Runner
 from dembound.casefile.disks import DiskCase
+from dembound.errors import CaseError
 from dembound.results.histories import Quantity
 
 PACKING = "packing"
@@ -29,11 +30,12 @@ def cause_of_packing(case: DiskCase, recorded: Motions, work: float) -> Causes:
     case : to the end of the run. work (particle-steps) : of the run. Raises CaseError for a packing without a seed, and
     the errors of runs.
     """
-    seed = getattr(case.packing, "seed", None)
-    if seed is None:
+    packing = case.packing.reseeded(1)
+    if packing is None and not case.packing.is_lattice:
+        raise CaseError([f'--second-seed: packing.pattern = "{case.packing.pattern}" has no other seed'], case.name)
+    if packing is None:
         raise no_seed(case)
     ended = {"until": type(case.run).model_fields["until"].default, "checkpoint": 0.0}
-    packing = case.packing.model_copy(update={"seed": seed + 1})
     other = replace(case, packing=packing, run=case.run.model_copy(update=ended))
     run = Runner().run(other)
     errors: dict[str, dict[str, np.ndarray | float]] = {}
@@ -43,5 +45,7 @@ def cause_of_packing(case: DiskCase, recorded: Motions, work: float) -> Causes:
             quantity: (own.values[quantity] - other_motion.values[quantity][:, :2]) / math.sqrt(2.0)
             for quantity in MOTIONS
         }
-    words = f"from a run with the seed {seed + 1}: the difference over √2"
+    given = case.packing.given()
+    seed = ", ".join(f"{key} {value}" for key, value in packing.given().items() if given.get(key) != value)
+    words = f"from a run with the {seed}: the difference over √2"
     return Causes([Cause(PACKING, words, errors, is_sample=True)], cost=run.work / work)

@@ -30,6 +30,21 @@ AXES: Sequence[Direction] = ((1.0, 0.0), (0.0, 1.0))
 DIAGONAL: Direction = (math.sqrt(0.5), math.sqrt(0.5))
 
 
+EQUAL = 1e-9
+"""Relative difference of contacts that count as equal."""
+
+
+def square_lattice(ground: PackedMaterial) -> PackedMaterial:
+    """The square lattice of the same material and mean diameter."""
+    return replace(ground, brick=Square(bricks=(1, 1), radius=0.5 * ground.brick.mean_diameter).pack(1.0))
+
+
+def is_square_lattice(ground: PackedMaterial) -> bool:
+    """Whether a packing is a square lattice itself: then larger disks of its material make the same ground."""
+    own, square = (np.sort(np.abs(each.brick.vectors), axis=0) for each in (ground, square_lattice(ground)))
+    return len(ground.brick.radii) == 1 and own.shape == square.shape and np.allclose(own, square, EQUAL, 0.0)
+
+
 def delay_of(
     ground: PackedMaterial, motion: Motion, directions: Sequence[Direction], path: float, speed: float, step: float
 ) -> Delay:
@@ -38,7 +53,7 @@ def delay_of(
     directions : unit vectors, of which that with the largest delay is taken. speed : of long waves, m/s. step : of the
     run, s; 0 for waves that are not stepped in time.
     """
-    lattice = replace(ground, brick=Square(bricks=(1, 1), radius=0.5 * ground.brick.mean_diameter).pack(1.0))
+    lattice = square_lattice(ground)
     phase = np.concatenate([[LONG, SHORT], np.linspace(LONG, math.pi, PHASES)[1:]])
     frequency, slowness = max(
         (_slowness(lattice, motion, direction, phase, step) for direction in directions),

@@ -213,7 +213,7 @@ def expected_tops(case: DiskCase, box: Box) -> tuple[float, float] | None:
 
 def least_element(case: DiskCase, diameter: float) -> float:
     """Smallest useful side (m) of elements beside disks of this mean diameter, m."""
-    return choice.least_size(case.outside.order, diameter, is_random=case.packing.packed_under_stress)
+    return choice.least_size(case.outside.order, diameter, is_random=not case.packing.is_lattice)
 
 
 def fastest(medium: Medium) -> float:

@@ -9,7 +9,6 @@ import numpy as np
 
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.model import as_kind
 from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.reflection.arrivals import Arrival, arrivals_of
@@ -58,7 +57,7 @@ class Measured:
 
 def measured_sides(case: DiskCase) -> list[str]:
     """The sides that represent the medium beyond; raises CaseError if there are none."""
-    sides = [side for side, table in case.boundary.items() if table.is_artificial or table.is_outside]
+    sides = [side for side, table in case.boundary.items() if table.is_artificial]
     if not sides:
         raise CaseError(["boundary: has no side that absorbs; choose another one with --side"])
     return sides
@@ -148,8 +147,8 @@ def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:
 
 def _matched(scene: DiskScene, side: str) -> DiskScene:
     """The scene with matched factors of the dashpots of a side."""
-    factors = {f"beta_{motion}": "matched" for motion in scene.case.side(side).factors}
-    table = scene.case.side(side).model_copy(update=factors)
+    table = scene.case.side(side)
+    table = table.with_factors(dict.fromkeys(table.factors, "matched"))
     return with_boundaries(scene, replace(scene.case, boundary={**scene.case.boundary, side: table}))
 
 
@@ -158,6 +157,6 @@ def _as_continuum(case: DiskCase, side: str) -> DiskScene | None:
     absorbing = {side, *(name for name, table in case.boundary.items() if table.is_artificial)}
     changes = {f"boundary.{name}": {"type": "outside"} for name in absorbing}
     try:
-        return build(as_kind(with_changes(case, changes), DiskCase, "is no case of disks"))
+        return build(with_changes(case, changes))
     except CaseError:
         return None

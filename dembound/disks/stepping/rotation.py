@@ -10,7 +10,7 @@ from dembound.disks.body import DiskBody
 def turns_freely(scene: DiskBody) -> bool:
     """Whether only dashpots resist the rigid rotation of a body."""
     held = scene.supports.prescribed.any() or scene.supports.stiffness.any()
-    periodic = any(table.type == "periodic" for table in scene.case.boundary.values())
+    periodic = any(table.is_periodic for table in scene.case.boundary.values())
     return bool(scene.free.all()) and scene.seam is None and not held and not periodic
 
 

@@ -92,7 +92,7 @@ def build_library(
     """
     if problems := list(problems_of(case)):
         raise CaseError(problems, case.name)
-    planned = plan(case)
+    planned: Plan[DiskScene] = plan(case)
     with progress_of(case.name) as progress:
         for warning in warnings_before(planned):
             progress.warned(warning)
@@ -135,19 +135,17 @@ def _of_disks(case: Case) -> DiskCase:
     return as_kind(case, DiskCase, "is the case of a bar")
 
 
-def _with_settings(planned: Plan) -> Plan:
+def _with_settings(planned: Plan[DiskScene]) -> Plan[DiskScene]:
     """The plan of the case with the settings of its continuum as keys, so that they do not depend on the waves."""
-    assert isinstance(planned.scene, DiskScene)
     if planned.scene.outside is None:
         return planned
     given = planned.scene.outside.settings.given
     return plan(with_changes(planned.scene.case, {f"outside.{key}": value for key, value in given.items()}))
 
 
-def _base(planned: Plan, spacing: float, duration: float, lead: int) -> DiskCase:
+def _base(planned: Plan[DiskScene], spacing: float, duration: float, lead: int) -> DiskCase:
     """The case with the step, the duration and the output of a library, and inputs that begin after all its runs."""
     case = planned.scene.case
-    assert isinstance(case, DiskCase)
     time_step = _time_step(case, planned.time_step, spacing)
     steps = round(spacing / time_step)
     stride = _largest_divisor(steps, max(1, round(case.output.history_interval / time_step)))
@@ -162,15 +160,14 @@ def _base(planned: Plan, spacing: float, duration: float, lead: int) -> DiskCase
         },
         "wave": {name: _triangle(spacing, 2.0 * (duration + lead * spacing)) for name in inputs_of(case)},
     }
-    return _of_disks(with_changes(case, changes))
+    return with_changes(case, changes)
 
 
-def _lead(planned: Plan, spacing: float) -> int:
+def _lead(planned: Plan[DiskScene], spacing: float) -> int:
     """Spacings that triangles begin after the run, and that records are zero after their first value.
 
     A wave of ``[incident]`` that passes the first disks before it passes its point would else begin within a run.
     """
-    assert isinstance(planned.scene, DiskScene)
     if (waves := planned.scene.ground_waves) is None:
         return 0
     return math.ceil(waves.grain * math.hypot(*waves.waves[0].slowness) / spacing)
@@ -190,7 +187,7 @@ def _settled(base: DiskCase, folder: Path) -> DiskCase:
     """The case with the settled state of the run without waves, if it has a static stage that is kept."""
     if base.static is None or base.static.from_ is not None or base.run.checkpoint == 0.0:
         return base
-    return _of_disks(with_changes(base, {"static.from": str(folder / REST)}))
+    return with_changes(base, {"static.from": str(folder / REST)})
 
 
 def _triangle(spacing: float, start: float) -> dict[str, Any]:

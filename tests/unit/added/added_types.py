@@ -6,12 +6,12 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from dembound.boundaries.driven import Driven
-from dembound.boundaries.viscous import Dashpots
+from dembound.boundaries.viscous import Dashpots, Viscous
 from dembound.holes import Hole
 from dembound.laws import Elastic
 from dembound.methods import Peridynamics
 from dembound.methods.bonds import Bonds
-from dembound.packings import Packing
+from dembound.packings import Packing, RandomBrick
 from dembound.packings.brick import Brick
 from dembound.table import quantity
 from dembound.waves.wave import Shape
@@ -26,6 +26,32 @@ class Linear(Elastic):
         """Those of the elastic law."""
         springs = super().springs(moduli, radius_i, radius_j)
         return replace(springs, bending=np.zeros_like(springs.bending))
+
+
+class Brittle(Linear):
+    """Breaks, and is the law without moments before."""
+
+    name: ClassVar[str] = "brittle"
+    has_history: ClassVar[bool] = True
+    linear = "linear"
+
+
+class Graded(Linear):
+    """Stiffer between larger disks."""
+
+    name: ClassVar[str] = "graded"
+
+    def springs(self, moduli, radius_i, radius_j):
+        """Those of the law without moments, bonds in proportion to the radius."""
+        springs = super().springs(moduli, radius_i, radius_j)
+        return replace(springs, bond_normal=springs.bond_normal * radius_i, bond_shear=springs.bond_shear * radius_i)
+
+
+class Forgetful(Linear):
+    """Breaks, and does not say which law it is before."""
+
+    name: ClassVar[str] = "forgetful"
+    has_history: ClassVar[bool] = True
 
 
 class Cone(Peridynamics):
@@ -55,9 +81,50 @@ class OtherInput(Dashpots, Driven):
                 supports.add(edge.nodes, component, drive=2.0 * damping, signal=waves[name].velocity)
 
 
+class Mattress(Dashpots):
+    """Absorbs, and holds every disk by a spring of the same stiffness, whatever its size."""
+
+    type: Literal["mattress"]
+    stiffness: float = quantity(..., unit="N/m", help="of the spring of a disk", gt=0.0)
+
+    def support(self, edge, medium, waves, supports):
+        """Dashpots and springs."""
+        for component, damping in enumerate(self.dampings(edge, medium)):
+            supports.add(edge.nodes, component, damping=damping, stiffness=self.stiffness)
+
+    def dashpots_alone(self):
+        """Without the springs."""
+        return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
+
+
+class Quilt(Mattress):
+    """A mattress that knows how stiff it is on disks of another size."""
+
+    type: Literal["quilt"]
+
+    def equal_springs(self, own, other):
+        """As stiff per length."""
+        per_length = [len(edge.nodes) / edge.length for edge, _ in (own, other)]
+        return self.model_copy(update={"stiffness": self.stiffness * per_length[1] / per_length[0]})
+
+
+class Whisper(Driven):
+    """Lets waves in by forces alone, and stands in for the ground beyond."""
+
+    type: Literal["whisper"]
+    is_artificial: ClassVar[bool] = True
+
+    def support(self, edge, medium, waves, supports):
+        """Forces that follow the wave."""
+        for component, name in enumerate(self.waves_by_axis(edge.axis)):
+            if name:
+                supports.add(edge.nodes, component, drive=1e6, signal=waves[name].velocity)
+
+
 class Hexagonal(Packing):
     """Equal disks that touch six neighbours without force; two in a brick."""
 
+    is_lattice: ClassVar[bool] = True
     regular_sides: ClassVar[tuple[str, ...]] = ("bottom", "top")
 
     pattern: Literal["hexagonal"]
@@ -80,6 +147,35 @@ class Hexagonal(Packing):
             stress=np.zeros(3),
             residual_ratio=0.0,
         )
+
+
+class Unsaid(Hexagonal):
+    """The same, of which nothing is said."""
+
+    is_lattice: ClassVar[bool] = False
+
+    pattern: Literal["unsaid"]
+
+
+class Drawn(Packing):
+    """A random packing whose seed has another name."""
+
+    pattern: Literal["drawn"]
+    draw: int = quantity(1, unit="1", help="number of the draw", ge=1)
+
+    @property
+    def brick_size(self):
+        """Ten diameters of both."""
+        return 20.0 * self.radius, 20.0 * self.radius
+
+    def pack(self, contact_modulus):
+        """That of pattern B."""
+        own = RandomBrick(radius=self.radius, radius_ratio=1.5, brick=self.brick_size, bricks=(1, 1), seed=self.draw)
+        return own.pack(contact_modulus)
+
+    def reseeded(self, by):
+        """Another draw."""
+        return self.model_copy(update={"draw": self.draw + by})
 
 
 class Gauss(Shape):

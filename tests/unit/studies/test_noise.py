@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from dembound.kinds import kind_of
 from dembound.motion.simulation import Simulation
 from dembound.studies.noise import DECIDED, GROWN, Course, LongRun, conserved, long_run, short_run
-from dembound.studies.trials import trials
 
 
 @pytest.fixture
@@ -14,7 +14,8 @@ def trial(bar):
 
     def make(changes: dict | None = None):
         side = {"type": "viscoelastic", "distance": 0.5}
-        return trials(bar({"boundary.right": side, "boundary.left": {"type": "free"}, **(changes or {})}))[0][0]
+        case = bar({"boundary.right": side, "boundary.left": {"type": "free"}, **(changes or {})})
+        return kind_of(case).trials(case)[0][0]
 
     return make
 

@@ -10,14 +10,13 @@ from dembound.accuracy.of_disks.exact import exact_motions, problem_of
 from dembound.accuracy.reference import Exact
 from dembound.boundaries import SIDES
 from dembound.boundaries.boundary import Boundary
-from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build
 from dembound.kinds import with_changes
 
 
 @dataclass(frozen=True)
-class Continuum(Exact):
+class Continuum(Exact[DiskCase]):
     """The exact motion of a problem of this folder, by the name of the problem.
 
     base : the case whose problem it is. Where rock goes on beyond a side of it, it does so for all choices: what a free
@@ -35,26 +34,18 @@ class Continuum(Exact):
         problem = problem_of(build(case))
         return cls(case, problem.name, problem.sentence, min(problem.until.values(), default=math.inf))
 
-    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
+    def motions(self, case: DiskCase, recorded: Motions) -> dict[str, History]:
         """The motion at the monitors' places; errors as of `exact_motions`."""
-        assert isinstance(case, DiskCase)
         _, motions = exact_motions(build(self._without_ends(case)), self.name)
         return {name: replace(motion, place=recorded[name].place) for name, motion in motions.items()}
 
     def _without_ends(self, case: DiskCase) -> DiskCase:
         """The case of a choice, with the sides of the base if it ends where the rock of the base goes on."""
-        if not any(_goes_on(self.base.side(side)) and _ends(case.side(side)) for side in SIDES):
+        if not any(self.base.side(side).is_artificial and _ends(case.side(side)) for side in SIDES):
             return case
-        endless = with_changes(case, {"boundary": {side: table.given() for side, table in self.base.boundary.items()}})
-        assert isinstance(endless, DiskCase)
-        return endless
-
-
-def _goes_on(side: Boundary) -> bool:
-    """Whether the rock goes on beyond a side."""
-    return side.is_artificial or side.is_outside
+        return with_changes(case, {"boundary": {side: table.given() for side, table in self.base.boundary.items()}})
 
 
 def _ends(side: Boundary) -> bool:
     """Whether the rock ends at a side, instead of going on or being repeated beyond."""
-    return not (_goes_on(side) or side.is_mirror or side.is_periodic)
+    return not (side.is_artificial or side.is_mirror or side.is_periodic)

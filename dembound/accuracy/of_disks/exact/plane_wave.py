@@ -6,16 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from dembound.accuracy.history import History, Motions, along
+from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.reference import Exact
 from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
-from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
-from dembound.disks.scene import build
+from dembound.disks.scene import build, ground_of
 
 
 @dataclass(frozen=True)
-class PlaneWave(Exact):
+class PlaneWave(Exact[DiskCase]):
     """A plane wave that enters at one side of a block of disks and leaves at the opposite one.
 
     It runs with the homogenised speed of the packing of each choice; whatever a choice has on the opposite side, the
@@ -38,9 +38,8 @@ class PlaneWave(Exact):
         ((motion, _),) = waves.items()
         return cls(side, motion) if all(_keeps_plane(case, side, motion)) else None
 
-    def motions(self, case: Case, recorded: Motions) -> dict[str, History]:
+    def motions(self, case: DiskCase, recorded: Motions) -> dict[str, History]:
         """The wave at the monitors' particles, at the same times."""
-        assert isinstance(case, DiskCase)
         scene, axis = build(case), normal_axis(self.side)
         speed = scene.ground.wave_speeds(axis)[0 if self.motion == "p" else 1]
         start = float(scene.positions[scene.edges[self.side].nodes, axis].mean())
@@ -56,11 +55,11 @@ class PlaneWave(Exact):
 def _keeps_plane(case: DiskCase, side: str, motion: Motion) -> Iterator[bool]:
     """Whether a plane wave stays plane, for each of the two sides along which it runs.
 
-    Free sides do so on a lattice only. Those of random packings are softer, also with rows of equal disks along them:
-    they slow the wave in a strip 20 disks high by up to 2 %.
+    Free sides do so on a square lattice only. Those of random packings are softer, also with rows of equal disks along
+    them: they slow the wave in a strip 20 disks high by up to 2 %.
     """
     across = 1 - normal_axis(side)
     held = motion == "p" and "xy"[across] in case.motion.held
     for lateral in ("bottom", "top") if across == 1 else ("left", "right"):
-        is_even = case.side(lateral).is_free and not case.packing.packed_under_stress
-        yield case.side(lateral).is_periodic or (held and is_even)
+        is_even = held and case.side(lateral).is_free and case.packing.is_lattice
+        yield case.side(lateral).is_periodic or (is_even and is_square_lattice(ground_of(case)))

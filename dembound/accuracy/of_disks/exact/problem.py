@@ -120,7 +120,7 @@ def hole_of(scene: DiskScene) -> Circle:
     for side in SIDES:
         table = case.side(side)
         surface = side == "top" and surface_of(scene) is not None
-        if not (table.is_artificial or table.is_outside or surface):
+        if not (table.is_artificial or surface):
             problems.append(f'boundary.{side}.type: is "{table.type}", must be a side beyond which the rock goes on')
     for place, each in numbered("hole", case.hole):
         reached = [

@@ -6,7 +6,7 @@ from small_cases import Tables, small
 
 from dembound.accuracy.of_disks.coarser import coarser, largest_diameter
 from dembound.disks.loads import forces_of
-from dembound.disks.matching import homogenised_beta
+from dembound.disks.matching import Held, homogenised_beta
 from dembound.disks.scene import build
 
 STEP = 1e-4
@@ -84,6 +84,17 @@ def test_springs_are_as_stiff(both):
     table = larger.case.side("bottom")
     assert (table.alpha_n, table.alpha_s) == (pytest.approx(2.0), pytest.approx(0.5))
     assert table.source == (5.0, 9.0)
+
+
+def test_springs_on_a_random_packing_are_as_stiff_per_length():
+    # αGΣD/(HL) of both, of which ΣD/H is another one for random disks; G is that of the dashpots' medium
+    packing = GROUND["packing"] | {"pattern": "B", "radius_ratio": 1.5, "brick": [6.0, 6.0], "seed": 1}
+    side = {"type": "viscoelastic", "distance": 10.0, "alpha_n": 2.0}
+    case = small(GROUND, changes={"packing": packing, "boundary": {"right": side}, "hole": [], "load": []})
+    finer = build(case)
+    larger = build(coarser(case, finer, STEP, 1.5).case)
+    assert abs(finer.edges["right"].diameter_sum_ratio - 1.0) > 0.05
+    np.testing.assert_allclose(Held.of(larger, "right").stiffness, Held.of(finer, "right").stiffness, rtol=1e-9)
 
 
 def test_cells_whose_mass_matters_are_whole_in_a_third_case():

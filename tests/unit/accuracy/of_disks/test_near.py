@@ -5,10 +5,12 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.near import CURVED, NEAR, STRAIGHT, errors_near_loads, misfit, of_hole, wall_error
+from dembound.accuracy.of_disks.near import CURVED, NEAR, errors_near_loads, wall_error
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
 from dembound.holes import Circle, Rectangle
+from dembound.holes.rectangle import STRAIGHT
+from dembound.packings import Square
 
 RATE = 2.0 * np.pi * 20.0
 TIME = np.linspace(0.0, 0.5, 2001)
@@ -74,25 +76,30 @@ def test_walls_of_circles_are_of_first_order_and_those_of_rectangles_of_second()
     """docs/charts.md: 7 % with 10 disks along the radius; docs/error_bound.md: 4.7 % with 3 along the smaller half."""
     circle = Circle.model_validate({"type": "circle", "name": "a", "centre": (0.0, 0.0), "radius": 10.0})
     long = Rectangle.model_validate({"type": "rectangle", "name": "b", "corners": (0.0, 0.0, 6.0, 20.0)})
-    assert of_hole(circle, 1.0) == pytest.approx(0.07)
-    assert of_hole(circle, 0.5) == pytest.approx(0.035)
-    assert of_hole(long, 1.0) == pytest.approx(0.05)
-    assert of_hole(long, 0.5) == pytest.approx(0.0125)
+
+    def between(axis: int, place: float) -> float:
+        return 0.0
+
+    assert circle.wall_error(1.0, between) == pytest.approx(0.07)
+    assert circle.wall_error(0.5, between) == pytest.approx(0.035)
+    assert long.wall_error(1.0, between) == pytest.approx(0.05)
+    assert long.wall_error(0.5, between) == pytest.approx(0.0125)
 
 
 def test_walls_that_are_not_between_disks_change_the_size_of_a_hole() -> None:
     """Disks of 1 m from the origin on: walls at 2, 8 and 20 m fit, one at 8.4 m is 0.4 m off, of a half of 3.2 m."""
-    box = (0.0, 0.0, 30.0, 30.0)
 
-    def hole(right: float, top: float = 20.0) -> Rectangle:
-        return Rectangle.model_validate({"type": "rectangle", "name": "b", "corners": (2.0, 2.0, right, top)})
+    def misfit(right: float, diameter: float = 1.0, top: float = 20.0, origin: float = 0.0) -> float:
+        corners = (2.0, 2.0, right, top)
+        hole = Rectangle.model_validate({"type": "rectangle", "name": "b", "corners": corners})
+        lattice = Square(radius=0.5 * diameter, size=(30.0, 30.0), origin=(origin, 0.0))
+        return hole.wall_error(diameter, lattice.apart) - hole.wall_error(diameter, lambda axis, place: 0.0)
 
-    assert misfit(hole(8.0), 1.0, box) == pytest.approx(0.0, abs=1e-12)
-    assert misfit(hole(8.4), 1.0, box) == pytest.approx(0.4 / 3.2)
-    assert misfit(hole(8.4), 1.0, (0.4, 0.0, 30.4, 30.0)) == pytest.approx(0.4 / 3.2)  # there the left one is off
-    assert misfit(hole(8.4), 0.4, box) == pytest.approx(0.0, abs=1e-12)
-    assert misfit(hole(8.0, top=31.5), 1.0, box) == pytest.approx(0.0, abs=1e-12)  # open at the surface
-    assert misfit(hole(8.4), 1.0, None) == 0.0  # no lattice
+    assert misfit(8.0) == pytest.approx(0.0, abs=1e-12)
+    assert misfit(8.4) == pytest.approx(0.4 / 3.2)
+    assert misfit(8.4, origin=0.4) == pytest.approx(0.4 / 3.2)  # there the left one is off
+    assert misfit(8.4, diameter=0.4) == pytest.approx(0.0, abs=1e-12)
+    assert misfit(8.0, top=31.5) == pytest.approx(0.0, abs=1e-12)  # open at the surface
 
 
 def test_an_error_beside_holes_is_that_of_their_walls_and_of_their_size() -> None:

@@ -7,8 +7,8 @@ from small_cases import SURROUNDED, small
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import step_limit
-from dembound.kinds import loads, with_changes
-from dembound.studies.trials import PARTICLES, UNLOADED, parts_of, trials
+from dembound.disks.trials import PARTICLES, UNLOADED
+from dembound.kinds import kind_of, loads, with_changes
 
 ROCK = """
 [bar]
@@ -33,6 +33,11 @@ wave = "pulse"
 [run]
 duration = 1e-3
 """
+
+
+def trials(case, **options):
+    """Those of the kind of body of a case."""
+    return kind_of(case).trials(case, **options)
 
 
 def test_sides_keep_their_dashpots_and_springs_but_not_their_waves(bar) -> None:
@@ -121,9 +126,9 @@ def test_a_continuum_has_noise_of_its_own_but_under_a_law_with_a_history() -> No
     linear = small(SURROUNDED, "surrounded")
     (trial,), words = trials(linear)
     assert words[0] == "12 m × 6 m, 72 disks and 430 nodes of a continuum"
-    assert list(parts_of(trial)) == ["body", "continuum"]
+    assert list(trial.parts) == ["body", "continuum"]
     full = with_changes(linear, {"material.law": "linearpbond"})
-    assert [list(parts_of(each)) for each in trials(full)[0]] == [["body", "continuum"], ["body"]]
+    assert [list(each.parts) for each in trials(full)[0]] == [["body", "continuum"], ["body"]]
 
 
 @pytest.mark.parametrize(
@@ -144,7 +149,7 @@ def test_the_column_beside_a_continuum_and_its_foot_are_kept(moves: dict[str, ob
     (trial,), words = trials(case)
 
     assert words[0] == "12 m × 6 m, 78 disks and 460 nodes of a continuum, with the free-field column"
-    assert list(parts_of(trial)) == ["column", "body", "continuum", "foot"]
+    assert list(trial.parts) == ["column", "body", "continuum", "foot"]
     assert not trial.scene.steady_load.any()
     assert len(trial.scene.supports.drive) == 0
     assert trial.limit == pytest.approx(step_limit(build(case)), rel=1e-6)

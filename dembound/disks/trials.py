@@ -1,0 +1,96 @@
+"""Bodies of disks at rest, under the linear law and their own, in which noise is stepped; see motion/trial.py."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
+from dembound.casefile.types import LAWS
+from dembound.disks import stability
+from dembound.disks.scene import DiskScene, build, ground_of
+from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.system import DiskSystem
+from dembound.motion.part import System
+from dembound.motion.trial import NOISE, Trial, at_rest, left_out
+
+PARTICLES = 2500
+"""Particles of a reduced copy, about; one brick may have more. 100,000 steps of them take some ten seconds."""
+
+NOTHING = Load.model_construct(name="nothing", acceleration=(0.0, 0.0))
+"""A load of zero on all of the ground, for which a case keeps its free-field column beside a continuum."""
+
+UNLOADED = (
+    "unloaded: contacts that nothing presses together open and close in the noise, so a larger step is stable than "
+    "under loads, which close them and bring the largest one down to that of the linear law"
+)
+"""About the largest step measured under a law with contacts that open."""
+
+
+def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
+    """A body of disks under the linear law, and under the case's own if that has a history.
+
+    Returns also how they differ from the case, one sentence each. full : the whole scene, instead of fewer copies of
+    the brick. Raises the errors of building a scene.
+    """
+    plain = replace(at_rest(case), static=None, monitor=(), incident=None)
+    whole = build(case)
+    if whole.outside is not None:  # whose settings were chosen from the waves
+        plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
+        plain = replace(plain, load=(NOTHING,) if whole.seam is not None else ())
+    words = left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
+    if not full:
+        plain, about = _reduced(plain)
+        words = [*about, *words]
+    own = LAWS[case.material.law]
+    linear = plain.material.model_copy(update={"law": own.linear})
+    scene = build(replace(plain, material=linear))
+    size = f"{scene.size[0]:.4g} m × {scene.size[1]:.4g} m, {scene.disk_count:,} disks"
+    if scene.continua:
+        size += f" and {sum(each.count for each in scene.continua):,} nodes of a continuum"
+    if scene.seam is not None:
+        size += ", with the free-field column"
+    found = [_under(scene, own.linear)]
+    if own.has_history:
+        opens = scene.ground.moduli.emod > 0.0 and case.material.locked_in is None
+        found.append(_under(build(plain), f"{own.name}{', unloaded' if opens else ''}"))
+        words += [f"noise of {NOISE:g} m/s, in which no bond breaks", *([UNLOADED] if opens else [])]
+    return found, [size, *words]
+
+
+def _under(scene: DiskScene, name: str) -> Trial:
+    """A body under its law."""
+    limit = stability.step_limit(scene)
+
+    def system(time_step: float) -> System:
+        nothing = np.zeros((3, scene.count))
+        start = None
+        if scene.has_history and scene.case.material.locked_in is not None:
+            start = Start(nothing, contact_lists(scene))  # what is locked in is balanced, also at cut faces
+        return DiskSystem(scene, time_step, start, load=nothing)
+
+    return Trial(name, scene, limit, stability.own_step(scene, limit), system, is_linear=not scene.has_history)
+
+
+def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
+    """The case with fewer copies of its brick under the same sides, if it has more than `PARTICLES`, and how in words.
+
+    Holes are left out: removing particles and contacts takes rows and stiffness from K, which cannot increase its
+    largest eigenvalue.
+    """
+    across, up = case.packing.copies
+    disks = len(ground_of(case).brick.radii)
+    most = max(1, PARTICLES // disks)
+    if across * up <= most:
+        return case, ["the whole scene"]
+    fewer_up = int(np.clip(round(up * np.sqrt(most / (across * up))), 1, up))
+    fewer = int(np.clip(most // fewer_up, 1, across)), fewer_up
+    words = [f"{fewer[0]} × {fewer[1]} of its {across} × {up} bricks, the same sides"]
+    stiffest = {side: table.stiffest(side, case.packing.extent) for side, table in case.boundary.items()}
+    if stiffest != case.boundary:
+        words.append("springs that depend on the distance of a source are those nearest to it")
+    words += ["no holes, whose free walls do not lower the limit"] * bool(case.hole)
+    return replace(case, boundary=stiffest, packing=case.packing.with_copies(*fewer), hole=()), words

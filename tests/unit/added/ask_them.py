@@ -1,0 +1,191 @@
+"""What calibration, estimates and choices make of the added types; prints it as JSON, see use_them.py."""
+
+import json
+import sys
+import warnings
+from dataclasses import replace
+from itertools import islice
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")
+    import dembound.kinds as kinds
+
+from dembound.accuracy.cause import Cause
+from dembound.accuracy.estimate import causes_of
+from dembound.accuracy.extended import extended
+from dembound.accuracy.history import History
+from dembound.accuracy.judges import judge_of
+from dembound.accuracy.of_disks.chart_choices import disk_choices
+from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.exact.plane_wave import PlaneWave
+from dembound.accuracy.of_disks.law import elastic_twin
+from dembound.accuracy.of_disks.near import wall_error
+from dembound.accuracy.of_disks.options import may_change_diameter, with_diameter
+from dembound.accuracy.runner import Runner, at_step
+from dembound.disks.matching import Held
+from dembound.disks.scene import build
+from dembound.errors import CaseError
+from dembound.running import plan
+from dembound.studies.calibration import calibrate
+
+GROUND = {
+    "packing": {"pattern": "A", "size": [20.0, 2.0], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "law": "linear"},
+    "boundary": {"left": {"type": "other_input", "wave_s": "bell"}, "right": {"type": "viscous"}},
+    "wave": {"bell": {"type": "gauss", "amplitude": 0.5, "width": 0.004}},
+    "monitor": [{"name": "middle", "position": [10.25, 1.25]}],
+    "run": {"duration": 0.03},
+}
+PERIODIC = {"type": "periodic"}
+STRIP = {"boundary.bottom": PERIODIC, "boundary.top": PERIODIC, "motion.held": ["x"]}
+ROCK = {"material.law": "elastic", "material.kratio": 2.0}
+ROUND = {side: {"type": "viscous"} for side in ("left", "right", "bottom", "top")}
+HEXAGONS = ROCK | {
+    "packing.pattern": "hexagonal",
+    "packing.size": [10.0, 10.392305],
+    "boundary": ROUND,
+    "load": [{"name": "push", "force": [1e6, 3e5], "region": [4.5, 4.5, 5.5, 5.5], "wave": "bell"}],
+    "monitor": [
+        {"name": "beside", "position": [7.6, 5.2]},
+        {"name": "above", "position": [3.1, 7.0]},
+        {"name": "right", "position": [9.9, 5.2]},
+        {"name": "top", "position": [5.0, 10.3]},
+    ],
+    "run.duration": 0.05,
+}
+DRAWN = ROCK | {
+    "packing": {"pattern": "drawn", "radius": 0.25, "size": [10.0, 5.0]},
+    "monitor": [{"name": "middle", "position": [5.0, 2.5]}],
+}
+B = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0], "seed": 1, "size": [10.0, 5.0]}
+SHAFT = {"type": "diamond", "name": "shaft", "centre": [2.0, 2.0], "half": 1.0}
+CAVE = {"type": "rectangle", "name": "cave", "corners": [1.0, 1.0, 2.0, 2.2]}
+
+
+def case(**changes: object) -> Any:
+    """The ground, changed."""
+    return kinds.with_changes(kinds.loads(tomli_w.dumps(GROUND)), changes)
+
+
+def run(made: Any) -> tuple[dict[str, History], int]:
+    """What the monitors of a run record along x and y, as an estimate reads it, and its work."""
+    done = Runner().run(made)
+    motions = {
+        name: replace(each, values={key: values[:, :2] for key, values in each.values.items()})
+        for name, each in done.motions.items()
+    }
+    return motions, done.work
+
+
+def estimated(made: Any) -> dict[str, Any]:
+    """Causes of a run's errors of velocities at its monitors, and what is said; or why there are none."""
+    try:
+        motions, work = run(made)
+        found = causes_of(made, motions, plan(made).time_step, work)
+    except CaseError as error:
+        return {"refused": list(error.problems)}
+    shares = {
+        cause.name: {name: cause.share(name, "velocity", own) for name, own in motions.items()} for cause in found.found
+    }
+    return {"causes": shares, "missing": list(found.missing)}
+
+
+def of_far_sides(made: Any) -> dict[str, float]:
+    """What the sides of a case add to the velocity of its monitors, by a run with all of them out of reach."""
+    step = plan(made).time_step
+    (own, _), (far, _) = (run(at_step(each, step)) for each in (made, extended(made).case))
+    added = {
+        name: own[name].values["velocity"] - far[name].at(each.time).values["velocity"] for name, each in own.items()
+    }
+    return {name: Cause("", "", {name: {"velocity": added[name]}}).share(name, "velocity", own[name]) for name in own}
+
+
+def held(made: Any) -> list[list[float]]:
+    """Springs per metre of the right side, of a case and of one with disks three times as large; or why not."""
+    scene = build(made)
+    try:
+        larger = build(coarser(made, scene, plan(made).time_step, 1.5).case)
+    except CaseError as error:
+        return [list(error.problems)]
+    return [Held.of(each, "right").stiffness.tolist() for each in (scene, larger)]
+
+
+def other_draw(made: Any) -> dict[str, Any]:
+    """How the motion of another packing was found, and its share; or why not."""
+    motions, work = run(made)
+    try:
+        (cause,) = judge_of(made).of_another_seed(made, motions, work).found
+    except CaseError as error:
+        return {"refused": list(error.problems)}
+    return {"words": cause.words, "share": cause.share("middle", "velocity", motions["middle"])}
+
+
+def larger(made: Any) -> list[Any]:
+    """Whether disks only stand for the ground, and the radius of disks half as large that make the same one."""
+    planned = plan(made)
+    found = with_diameter(Companions(made, planned.scene, planned.time_step, 1e6), 0.5)
+    return [may_change_diameter(made, ()), None if found is None else found.scene.case.packing.radius]
+
+
+springs = {"stiffness": 0.5 * 1e9 / 10.0 * 0.5}  # those of α = ½, E = 2 GPa, ν = 0 and L = 10 m on disks of 0.5 m
+viscoelastic = {"type": "viscoelastic", "young_modulus": 2e9, "distance": 10.0, "alpha_n": 0.5, "alpha_s": 0.5}
+sides = {
+    "viscoelastic": viscoelastic,
+    "quilt": {"type": "quilt", **springs},
+    "mattress": {"type": "mattress", **springs},
+    "viscous": {"type": "viscous"},
+}
+late = {"monitor.middle.position": [17.25, 1.25], "run.duration": 0.07}  # after the wave has come back
+of_sides = {name: case(**STRIP, **late, **{"boundary.right": table}) for name, table in sides.items()}
+hexagons, unsaid = case(**HEXAGONS), case(**HEXAGONS | {"packing.pattern": "unsaid"})
+drawn, b = case(**DRAWN), case(**DRAWN | {"packing": B})
+strong = {"law": "brittle", "contact_share": 0.0, "pb_ten": 1e9, "pb_coh": 1e9}  # bonds alone, which hold
+brittle = case(**STRIP, **{f"material.{key}": value for key, value in strong.items()})
+brittle_hexagons = kinds.with_changes(hexagons, {f"material.{key}": value for key, value in strong.items()})
+whisper = kinds.with_changes(case(**STRIP), {"boundary.left": {"type": "whisper", "wave_s": "bell"}})
+
+
+free = {
+    "motion.held": ["y"],
+    "boundary": {"left": {"type": "velocity", "wave_p": "bell"}, "right": {"type": "viscous"}},
+}
+rows = case(**free), case(**free, **ROCK | {"packing.pattern": "hexagonal", "packing.size": [20.0, 2.598076]})
+wide = {"pattern": "drawn", "radius": 0.25, "size": [20.0, 10.0]}
+
+
+def twin_of(made: Any) -> str | None:
+    """The law of a case that may replace its own."""
+    planned = plan(made)
+    found = elastic_twin(made, planned, 1e6, (), Runner())
+    return None if found is None else found.case.material.law
+
+
+json.dump(
+    {
+        "held": {name: held(made) for name, made in of_sides.items()},
+        "sides": {name: estimated(made) for name, made in of_sides.items()},
+        "calibrated": {name: calibrate(made, "right").result for name, made in of_sides.items()},
+        "whisper": estimated(whisper),
+        "twins": [twin_of(brittle), twin_of(brittle_hexagons)],
+        "linear": calibrate(brittle, "right").shortened,
+        "hexagonal": estimated(hexagons),
+        "far sides": of_far_sides(hexagons),
+        "unsaid": estimated(unsaid),
+        "larger": [larger(each) for each in (hexagons, unsaid, case(**STRIP, **{"material.law": "graded"}))],
+        "walls": [
+            wall_error(kinds.with_changes(made, {"hole": [hole]}), 0.5)
+            for made, hole in ((hexagons, CAVE), (unsaid, CAVE), (hexagons, SHAFT))
+        ],
+        "plane": [PlaneWave.of(each) is not None for each in rows],
+        "drawn": [[estimated(each), other_draw(each)] for each in (drawn, b)],
+        "no draw": other_draw(unsaid),
+        "charted": [changes for _, changes in islice(disk_choices(case(**DRAWN | {"packing": wide})), 2)],
+    },
+    sys.stdout,
+    default=lambda value: value.tolist() if isinstance(value, np.ndarray | np.generic) else str(value),
+)
