@@ -11,7 +11,7 @@ from dembound.casefile.magnitudes import sampling_warnings, waves_used
 from dembound.casefile.messages import places
 from dembound.casefile.model import Case
 from dembound.casefile.wave_uses import wave_use_warnings
-from dembound.meanings import GRAVITY, MEANINGS
+from dembound.meanings import GRAVITY, MEANINGS, Meaning
 from dembound.table import Table
 
 LIGHTEST = 1.6
@@ -37,9 +37,20 @@ def unlikely_in(path: str, table: Table, case: Case) -> Iterator[str]:
         numbers, key = _numbers(getattr(table, name)), ".".join(filter(None, (path, table.key_of(name))))
         if means is None or not numbers or (means in OF_STRENGTH and _has(case, "strength")):
             continue
-        doubts = (doubt for value in numbers if (doubt := MEANINGS[means].doubt(value, unit)))
-        if (found := next(doubts, None)) or (found := RULES[means](numbers, table, case) if means in RULES else None):
+        means_of, rule = MEANINGS[means], RULES.get(means)
+        doubts = (doubt for value in numbers if (doubt := means_of.doubt(value, unit)))
+        found = next(doubts, None) or _with_wave(numbers, means_of, unit, table, case)
+        if found := found or (rule(numbers, table, case) if rule is not None else None):
             yield f"{key}: {found}"
+
+
+def _with_wave(numbers: tuple[float, ...], means: Meaning, unit: str, table: Table, case: Case) -> str | None:
+    """What is unlikely about the numbers of a load times the peak of its wave."""
+    wave = case.wave.get(getattr(table, "wave", None) or "")
+    if wave is None or means.is_free:
+        return None
+    doubts = (means.doubt(value * wave.peak(), unit, given=False) for value in numbers)
+    return next((f"times the peak of wave.{table.wave} {doubt}" for doubt in doubts if doubt), None)  # type: ignore[attr-defined]
 
 
 OF_STRENGTH = {"pressure of a load"}

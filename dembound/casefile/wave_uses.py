@@ -1,4 +1,4 @@
-"""Warnings about waves that are used for two quantities, and about histories that begin or end away from zero."""
+"""Warnings about waves that are used for two quantities, and about histories that are probably wrong."""
 
 from collections.abc import Iterator
 
@@ -12,6 +12,7 @@ def wave_use_warnings(case: Case) -> Iterator[str]:
     """All of them, one line each."""
     yield from _two_quantities(case)
     yield from _jumps(case)
+    yield from _doubts(case)
 
 
 def users_of(case: Case, name: str) -> tuple[list[str], list[str]]:
@@ -35,6 +36,15 @@ def _two_quantities(case: Case) -> Iterator[str]:
             both = f"the velocity at {' and '.join(velocities)} and the factor of {' and '.join(factors)}"
             peak = f"{wave.peak():.4g}"
             yield f"wave.{name}: is {both}: its peak is {peak} m/s at the one and {peak} without unit at the other"
+
+
+def _doubts(case: Case) -> Iterator[str]:
+    """Measured histories whose units or samples are probably wrong, where they are used."""
+    for name, wave in case.wave.items():
+        velocities, _ = users_of(case, name)
+        factors = [getattr(load, "pressure", None) or 0.0 for load in case.load if load.wave == name]
+        for doubt in wave.doubts(None if velocities else factors[0]) if velocities or factors else ():
+            yield f"wave.{name}: {doubt}"
 
 
 def _jumps(case: Case) -> Iterator[str]:

@@ -133,9 +133,13 @@ def resume(
     from dembound.results.folder import Folder
     from dembound.running import resume_case
     from dembound.running.recorded import recorded_case
+    from dembound.running.unfinished import changes_since
 
     prepare_computing(threads)
     for folder in results:
+        if (folder / "run.h5").is_file():
+            for line in changes_since(folder):
+                err.print(f"warning: {line}")
         done = _watched(Folder.of(folder), partial(resume_case, folder, until))
         _print_results(done)
         if recorded_case(done / "run.h5").output.estimate:

@@ -2,7 +2,8 @@
 
 Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit``)::
 
-    /                       attributes: name, origin (the case's own name, whatever --name is), title, case (its text),
+    /                       attributes: name, origin (the case's own name, whatever --name is), source, the case file's
+                            place from the folder of results, source_digest, its SHA-256; title, case (its text),
                             keys (all, as JSON), kind ("disks", "bar"), version, size, time_step, step_limit, steps,
                             complete; of disks seed, of a bar loaded, which of its ends is, and ends, their types,
                             without ranges also density, section, youngs_modulus, wave_speed, attenuation; of a run that
@@ -43,6 +44,7 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import fields
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,6 +56,7 @@ from dembound.motion.scene import Scene
 from dembound.motion.trackers import Run
 from dembound.results.datasets import describe, make, write
 from dembound.results.reader import finite, snapshots_of
+from dembound.results.source import source_of
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -103,7 +106,8 @@ def begin_record(
     run : to be recorded, of whose whole scene all nodes are written. step_limit : s. sides : those with histories.
     ledger : its energy ledger, if it has one. stages : those before the run.
     """
-    describe(file, header_of(run) | {"step_limit": step_limit, "complete": False})
+    source = source_of(run.scene.whole.case, Path(file.filename).parent.parent)
+    describe(file, header_of(run) | source | {"step_limit": step_limit, "complete": False})
     _lay_out(file, run.scene.whole, sides, None if ledger is None else ledger.side_names)
     write_stages(file, stages)
 

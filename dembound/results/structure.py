@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from dembound.casefile.output import MOST_SNAPSHOTS
 from dembound.errors import RecordError
 from dembound.interrupts import look
+from dembound.results.source import DIGEST, PLACE
 
 if TYPE_CHECKING:
     import h5py
@@ -80,7 +81,7 @@ COLUMNS: Mapping[str, Shapes] = {
 """Columns of the groups of a run's record, and the shape of a row of each."""
 
 ATTRIBUTES: Mapping[str, tuple[str, tuple[int, ...]]] = {
-    **{name: (TEXTS, ()) for name in ("name", "title", "case", "keys", "kind", "version")},
+    **{name: (TEXTS, ()) for name in ("name", "title", "case", "keys", "kind", "version", PLACE, DIGEST)},
     **{name: (NUMBERS, ()) for name in ("time_step", "step_limit", "steps", "regular_steps", "complete")},
     "size": (NUMBERS, (2,)),
 }

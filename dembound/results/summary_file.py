@@ -1,10 +1,12 @@
 """Reading the summary of a run, ``summary.json``, which may have been changed by hand or come from elsewhere."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from dembound.errors import CaseError, RecordError
+from dembound.results.reader import open_record, text_of, understood
 
 FILE = "summary.json"
 
@@ -55,9 +57,22 @@ def _objects(found: Any) -> list[Summary]:
 def read_summary(folder: Path) -> dict[str, Any]:
     """The summary of a complete run in its folder.
 
-    Raises CaseError where there is none, RecordError as `read_json`, and for an entry that is asked for and missing.
+    Raises CaseError where there is none, RecordError as `read_json`, for an entry that is asked for and missing, and
+    for the summary of another run than that of the record beside it.
     """
     path = folder / FILE
     if not path.is_file():
         raise CaseError([f"{path}: is missing, the run is not complete"])
-    return read_json(path)
+    found = read_json(path)
+    if (record := folder / "run.h5").is_file():
+        _require_same_run(found, record, path)
+    return found
+
+
+def _require_same_run(summary: Mapping[str, Any], record: Path, path: Path) -> None:
+    """Raise RecordError if a summary and a record differ in the keys of their case or in the number of steps."""
+    with understood(record), open_record(record) as file:
+        there = {"steps": file.attrs.get("steps"), "keys": json.loads(text_of(file.attrs.get("keys", "null")))}
+    for name, value in there.items():
+        if value is not None and name in summary and summary[name] != value:
+            raise RecordError([f"{path}: is of another run than run.h5 beside it: their {name} differ"])

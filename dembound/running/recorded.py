@@ -13,6 +13,10 @@ from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.kinds import kind_of, loads
 from dembound.results.folder import Folder, problem_of
 from dembound.results.reader import open_record, text_of
+from dembound.results.source import DIGEST, PLACE, file_of, recorded_source
+
+RECORDED = ("origin", "kind", PLACE, DIGEST)
+"""Attributes of a record that say whose results it has."""
 
 
 def recorded_case(record: Path) -> Case:
@@ -39,19 +43,20 @@ def recorded_case(record: Path) -> Case:
 
 
 def require_replaceable(folder: Folder, case: Case) -> None:
-    """Raise CaseError if a run would replace the results of another case: of another origin, or another kind of body.
+    """Raise CaseError if a run would replace the results of another case: of another file, or another kind of body.
 
-    A case whose numbers have been changed is the same case. Records without an origin, of earlier versions, and those
-    that cannot be read are replaced.
+    A case whose numbers have been changed is the same case, and so is one whose file has been moved. Records without an
+    origin, of earlier versions, and those that cannot be read are replaced.
     """
     for path in (folder.final, folder.partial):
         if not (path / "run.h5").is_file():
             continue
         try:
             with open_record(path / "run.h5") as file:
-                there = {name: text_of(file.attrs[name]) for name in ("origin", "kind") if name in file.attrs}
+                texts = {name: text_of(file.attrs[name]) for name in RECORDED if name in file.attrs}
         except DemboundError:
             continue
+        there = {name: texts[name] for name in ("origin", "kind") if name in texts}
         own = {"origin": case.origin, "kind": kind_of(case).name}
         if different := [name for name in there if there[name] != own[name]]:
             whose = {"origin": "case {}", "kind": "a case of {}"}[different[0]]
@@ -59,6 +64,14 @@ def require_replaceable(folder: Folder, case: Case) -> None:
                 [
                     f"{path}: has results of {whose.format(there[different[0]])}, which this run of "
                     f"{whose.format(own[different[0]])} would replace; give another --name or --output, or remove them"
+                ]
+            )
+        source, file = recorded_source(texts, folder.final.parent), file_of(case)
+        if source is not None and file.is_file() and not file.samefile(source[0]):
+            raise CaseError(
+                [
+                    f"{path}: has results of {source[0]}, which this run of {file} would replace; give another --name "
+                    "or --output, or remove them"
                 ]
             )
 

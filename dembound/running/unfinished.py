@@ -12,8 +12,8 @@ from typing import Any
 import tomli_w
 
 from dembound.casefile import Case
-from dembound.errors import CaseError, RecordError
-from dembound.kinds import loads
+from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.kinds import load, loads
 from dembound.motion.scene import Scene
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
@@ -22,10 +22,14 @@ from dembound.results.folder import PARTIAL, Folder, with_name
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.new_record import require_laid_out
 from dembound.results.reader import increasing, open_record, text_of, understood
+from dembound.results.source import DIGEST, PLACE, recorded_source
 from dembound.running.recorded import case_of
 
 SILENCE = ("until", "silent_level", "silent_for")
 """Keys of ``[run]`` that end a run before its duration."""
+
+MOST_KEYS = 5
+"""Changed keys of a case that are listed."""
 
 FACTS: Mapping[str, tuple[type, ...]] = {
     **dict.fromkeys(("name", "case"), (str,)),
@@ -123,6 +127,24 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
     if until is not None:
         case = _lasting(case, until)
     return Unfinished(case, results, path, facts)
+
+
+def changes_since(folder: Path) -> list[str]:
+    """One line if the file of a run's case has changed since the run began, in more than when it ends; else none."""
+    with understood(folder / "run.h5"), open_record(folder / "run.h5") as file:
+        texts = {name: text_of(file.attrs[name]) for name in (PLACE, DIGEST) if name in file.attrs}
+        recorded = _lasting_any_time(json.loads(text_of(file.attrs["keys"])))
+    source = recorded_source(texts, folder.parent)
+    if source is None or not source[1]:
+        return []
+    try:
+        now = json.loads(json.dumps(load(source[0]).keys))
+        keys = [line.partition(":")[0] for line in differences(recorded, _lasting_any_time(now))]
+    except DemboundError as error:
+        keys = [str(error).splitlines()[0]]
+    listed = ", ".join(keys[:MOST_KEYS]) + ", …" * (len(keys) > MOST_KEYS)
+    of_it = f"{source[0]}: has changed since the run began ({listed}); the case as it was goes on"
+    return [f"{of_it}, dembound run begins the changed one"] if keys else []
 
 
 def _require_facts(facts: Mapping[str, Any], path: Path) -> None:

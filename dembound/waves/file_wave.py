@@ -1,7 +1,8 @@
 """A measured or computed velocity history, read from a text file."""
 
 import os
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -9,6 +10,7 @@ import numpy as np
 from pydantic import PrivateAttr, ValidationInfo, model_validator
 
 from dembound.table import LARGEST, SMALLEST, quantity
+from dembound.waves.record_doubts import doubts_of_header, doubts_of_samples
 from dembound.waves.spectrum import amplitude_spectrum, faded_frequency
 from dembound.waves.wave import NonZero, Wave
 
@@ -91,6 +93,14 @@ class FileWave(Wave):
         """First and last velocities of the record, beyond which it is zero, with their times."""
         times, velocities = self._samples()
         return ("begins", float(times[0]), float(velocities[0])), ("ends", float(times[-1]), float(velocities[-1]))
+
+    def doubts(self, factor: float | None) -> Iterator[str]:
+        """What the header of the file and its samples show of wrong units, lost samples and the like."""
+        of_velocity = factor is None
+        yield from doubts_of_header(
+            header_of(self._text), of_velocity=of_velocity, factor=self.scale * (1.0 if factor is None else factor)
+        )
+        yield from doubts_of_samples(*self._samples())
 
     def time_scale(self) -> float:
         """Length of the record, s, although single samples may vary much faster."""
@@ -179,6 +189,16 @@ def _numbers(text: str, is_csv: bool) -> tuple[list[tuple[int, str]], str | None
         lines, separator = [(number, line.replace(",", ".")) for number, line in lines], ";"
     has_header = bool(lines) and not any(_is_number(field) for field in lines[0][1].split(separator))
     return lines[has_header:], separator
+
+
+def header_of(text: str) -> str:
+    """The words above the numbers of a file."""
+    above = []
+    for line in text.splitlines():
+        if line.strip() and any(_is_number(field) for field in re.split(r"[\s,;]+", line.strip())):
+            break
+        above.append(line.strip("# \t"))
+    return " ".join(above)
 
 
 def _misfit(lines: Sequence[tuple[int, str]], separator: str | None) -> str:

@@ -2,6 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, ClassVar, Self
 
@@ -78,6 +79,13 @@ class Wave(Table, ABC):
     def ends(self) -> tuple[tuple[str, float, float], ...]:
         """Ends of a history of samples, where it may jump: "begins" or "ends", time (s), velocity (m/s); else none."""
         return ()
+
+    def doubts(self, factor: float | None) -> Iterator[str]:
+        """What is probably wrong with a measured history, in words; by default nothing.
+
+        factor : of the load whose factor the wave is, in Pa for a pressure; None where it is the velocity of a side.
+        """
+        return iter(())
 
     def dominant_period(self) -> float:
         """One over the dominant frequency, s; 0 for a step, infinite where nothing oscillates."""

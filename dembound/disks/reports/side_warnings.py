@@ -15,6 +15,7 @@ def side_warnings(scene: DiskScene) -> Iterator[str]:
     """All of them, one line each."""
     yield from _send_back(scene)
     yield from _take_from_waves(scene)
+    yield from _hold_monitors(scene)
 
 
 TAKEN = 0.1
@@ -63,3 +64,14 @@ def _take_from_waves(scene: DiskScene) -> Iterator[str]:
             f"{sides}: along wave {' and '.join(found.waves)} from {found.driven} no side moves as ground beyond it "
             f"would; at {place} about {100.0 * most:.0f} % of the velocity is wrong{least} (RMS); take {cure}"
         )
+
+
+def _hold_monitors(scene: DiskScene) -> Iterator[str]:
+    """Sides that hold the disk of a monitor still, so that there is nothing to see."""
+    for side, edge in scene.edges.items():
+        table = scene.case.side(side)
+        if table.waves or not {0, 1} <= {*table.prescribed(edge.axis), *scene.ground.held}:
+            continue
+        for name, particle in scene.monitors.items():
+            if particle in edge.nodes:
+                yield f"monitor.{name}: its disk is on boundary.{side}, which holds it still: its motion is zero"

@@ -1,0 +1,43 @@
+"""The case file that a record comes from: where it is from the folder of results, and whether it has changed since."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from dembound.casefile import Case
+
+PLACE, DIGEST = "source", "source_digest"
+"""Attributes of a record: the file's path relative to the folder that has the folder of results, and its SHA-256."""
+
+
+def file_of(case: Case) -> Path:
+    """The file that a case was read from, if there is one."""
+    return case.folder / f"{case.origin}.toml"
+
+
+def source_of(case: Case, results: Path) -> dict[str, str]:
+    """The attributes of a record in a folder within `results`; none for a case that is in no file."""
+    path = file_of(case)
+    if not path.is_file():
+        return {}
+    try:
+        place = Path(os.path.relpath(path.resolve(), results.resolve())).as_posix()
+    except ValueError:  # on another drive
+        return {}
+    return {PLACE: place, DIGEST: _digest(path)}
+
+
+def recorded_source(attributes: Mapping[str, Any], results: Path) -> tuple[Path, bool] | None:
+    """The case file of a record, and whether it has changed since; None if it is no longer there."""
+    if PLACE not in attributes or not (path := results / str(attributes[PLACE])).is_file():
+        return None
+    path = Path(os.path.normpath(path))
+    return path, _digest(path) != attributes.get(DIGEST)
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
