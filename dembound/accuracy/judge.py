@@ -16,6 +16,7 @@ from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.motion.scene import Scene
+from dembound.words import Entries
 
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)
@@ -85,9 +86,9 @@ class Judge(ABC, Generic[C, S]):
         """What errors of some cases beside a run of one of them include besides errors, a line each."""
         return ()
 
-    def proposals(self, scene: S) -> dict[str, str]:
-        """Lines for `dembound check` about cheaper cases, by name; by default none."""
-        return {}
+    def proposals(self, scene: S) -> Entries:
+        """Lines for `dembound check` about cheaper cases; by default none."""
+        yield from ()
 
 
 def no_seed(case: Case) -> CaseError:
