@@ -85,7 +85,7 @@ def _of_machine() -> Iterator[Memory]:
 
 
 def _of_groups(root: Path) -> Iterator[Memory]:
-    """Of the control groups of this process that have a limit, in either version of the interface."""
+    """Limit and use of the control groups of this process that have a limit, in either version of the interface."""
     for group in _groups(root):
         for limit, usage, dropped in (
             ("memory.max", "memory.current", "inactive_file"),

@@ -84,7 +84,7 @@ def as_toml(value: Any) -> Any:
 
 
 def every_key(value: Any) -> Any:
-    """The same with all keys, those that have not been given with their defaults; None for those without a value."""
+    """The table with all keys, those that have not been given with their defaults; None for those without a value."""
     if isinstance(value, Table):
         return {value.key_of(name): every_key(getattr(value, name)) for name in type(value).model_fields}
     if isinstance(value, Mapping):

@@ -12,9 +12,9 @@ import numpy as np
 
 from dembound.gauge.filters import Filters
 from dembound.gauge.gauge_io import Gauge, read_gauge
-from dembound.gauge.signal import Reading
+from dembound.gauge.reading.signal import Reading
+from dembound.gauge.reading.units import Bridge
 from dembound.gauge.treatment import Treatment
-from dembound.gauge.units import Bridge
 
 LENGTH, POSITION, SPEED, DECAY = 0.99, 0.6, 2740.0, 0.52
 DENSITY = 2620.0

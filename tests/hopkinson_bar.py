@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dembound.gauge.pulses import Setup, Signals
-from dembound.gauge.separation import Bar
+from dembound.gauge.hopkinson.pulses import Setup, Signals
+from dembound.gauge.hopkinson.separation import Bar
 
 SPEED, DENSITY, AREA = 5000.0, 7800.0, np.pi * 0.01**2
 MODULUS = DENSITY * SPEED**2

@@ -63,7 +63,7 @@ class BarBody(Scene):
         }
 
     def attributes_of_monitor(self, name: str) -> dict[str, Any]:
-        """Of the range of its node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m.
+        """At a monitor's node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m.
 
         And its strength, Pa, at the slowest and at the fastest strain rate, infinite without one.
 

@@ -33,7 +33,7 @@ class Spall:
         return self.time if self.began is None else self.began
 
     def describe(self) -> dict[str, Any]:
-        """As plain JSON values, rounded to twelve digits; further digits are rounding errors of steps and spacings."""
+        """The breaks as plain JSON values, rounded to twelve digits, as further digits are errors of rounding."""
         ranges = {"start": self.start, "end": self.end}
         times = {"time": self.time} | ({} if self.began is None else {"began": self.began})
         return {key: _short(time) for key, time in times.items()} | {
@@ -128,7 +128,7 @@ def crack_strain_rates(bonds: Bonds) -> dict[str, float] | None:
 
 
 def breaks_at_ends(found: Sequence[Spall], ends: Mapping[str, float]) -> dict[str, Spall]:
-    """Those that began at an end whose node is held: the bar has come off there, and no piece has off the bar.
+    """Breaks that began at an end whose node is held: there the bar has come off its support, and no piece off the bar.
 
     ends : side -> place (m) of those ends.
     """

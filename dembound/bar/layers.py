@@ -70,7 +70,7 @@ class EndLayer:
 
     @property
     def length(self) -> float:
-        """Its length, m."""
+        """Length of the layer, m."""
         return self.layer.nodes * self.spacing
 
     @property
@@ -103,7 +103,7 @@ class EndLayer:
         return np.where((len(self.inner) <= outer) & (outer < self.count), self.stiffness[:, None], 0.0)
 
     def endless(self, duration: float) -> EndLayer:
-        """The same with so many nodes, in which nothing decays, that nothing comes back within so many s."""
+        """The layer without decay, with so many nodes that nothing comes back within so many s."""
         count = 100 + math.ceil(duration * self.speed / self.spacing)
         return replace(self, layer=Layer(count, power=1.0, reflection=1.0))
 

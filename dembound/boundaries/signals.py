@@ -15,10 +15,10 @@ class Signals(Protocol):
 
     @property
     def count(self) -> int:
-        """Their number q."""
+        """Number q of the signals."""
 
     def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Their values (k, q) at times (k,) s of steps; velocities that ties see are half a step (s) behind."""
+        """Values (k, q) at times (k,) s of steps; velocities that ties see are half a step (s) behind."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class OneOf:
     number: int
 
     def __call__(self, times: np.ndarray, half_step: float = 0.0) -> np.ndarray:
-        """Its values (k,) at times (k,) s of steps, with half their length, s."""
+        """Values (k,) of the signal at times (k,) s of steps, with half their length, s."""
         return self.signals(times, half_step)[:, self.number]
 
 

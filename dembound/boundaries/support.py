@@ -182,7 +182,7 @@ class SupportBuilder:
         )
 
     def _shares(self, kept: np.ndarray) -> Shares:
-        """Those of the rows added by sides that are kept (a,)."""
+        """Shares of the rows added by sides that are kept (a,)."""
         columns = {
             name: self._column(name, kind)[kept]
             for kind, names in (

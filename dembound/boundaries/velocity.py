@@ -16,7 +16,7 @@ class Velocity(Driven):
     type: Literal["velocity"]
 
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:
-        """Both displacements."""
+        """The axes held: both."""
         return (0, 1)
 
     def at_rest(self) -> Boundary:

@@ -88,7 +88,7 @@ class Springs(Boundary):
         return np.outer(factors, self.shear_modulus(medium) * edge.widths / self.distances(edge))
 
     def stiffest(self, side: str, extent: tuple[float, float]) -> Boundary:
-        """The same side with the distance of the source from the nearest point of the side."""
+        """The side with the distance of the source from its nearest point, where its springs are stiffest."""
         if self.source is None:
             return self
         axis, far = normal_axis(side), side in ("right", "top")
@@ -125,7 +125,7 @@ class Viscoelastic(Dashpots, Springs):
             supports.add(edge.nodes, component, damping=dampings[component], stiffness=stiffnesses[component])
 
     def dashpots_alone(self) -> Viscous:
-        """The same side with its dashpots alone."""
+        """The side without its springs."""
         return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
 
@@ -163,6 +163,6 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
                 supports.add(edge.nodes, component, drive=stiffness, signal=waves[name].displacement)
 
     def dashpots_alone(self) -> ViscousInput:
-        """The same side with its dashpots alone."""
+        """The side without its springs."""
         shared = {*Dashpots.model_fields, *Driven.model_fields} - {"type"}
         return ViscousInput(type="viscous_input", **self.model_dump(include=shared))

@@ -86,7 +86,7 @@ class ViscousInput(Dashpots, Driven):
     type: Literal["viscous_input"]
 
     def at_rest(self) -> Boundary:
-        """The same dashpots without a wave."""
+        """These dashpots without a wave."""
         return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:

@@ -36,7 +36,7 @@ def reflected(impedance: complex, matched: complex) -> complex:
 
 
 def poor_factor(motion: Motion, share: float, beta: float, matched: float, wave: str | None) -> str:
-    """That a factor β sends back a share of the amplitude; wave : name of the one that enters there, if any."""
+    """A warning that a factor β sends back a share of the amplitude; wave : name of the one entering there, or None."""
     enters = f" and lets in {2.0 * beta / (matched + beta):.2g} times wave {wave}" if wave else ""
     return (
         f"sends back {100.0 * share:.0f} % of the amplitude of {motion.upper()} waves along its normal{enters}: "

@@ -77,7 +77,7 @@ def _edit(page: "_Page", place: Place, present: Any, wanted: Any) -> None:
 
 
 def _edit_list(page: "_Page", place: Place, present: Sequence[Any], wanted: Sequence[Any]) -> None:
-    """The same for a list of tables: those of the same names are compared with each other."""
+    """Edit a list of tables, each by comparison with the one of its name."""
     old, new = ([repr(each.get("name", each)) for each in tables] for tables in (present, wanted))
     steps = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
     for _, begin, end, first, last in reversed(steps):  # from the last, as numbers of earlier ones remain

@@ -31,7 +31,7 @@ def unlikely(case: Case) -> list[str]:
 
 
 def unlikely_in(path: str, table: Table, case: Case) -> Iterator[str]:
-    """Those of one table, without the tables in it; path : its place in the file, or "" for keys alone."""
+    """Unlikely values of one table, without the tables in it; path : its place in the file, or "" for keys alone."""
     for name in type(table).model_fields:
         means, unit = meaning_of(table, name)
         numbers, key = _numbers(getattr(table, name)), ".".join(filter(None, (path, table.key_of(name))))

@@ -87,7 +87,7 @@ def writable(path: Path | None) -> Path | None:
 
 
 def png(param: typer.CallbackParam, path: Path | None) -> Path | None:
-    """The same for a picture. Raises CaseError if its name does not end in ``.png``."""
+    """A picture to write, if its folder exists. Raises CaseError if its name does not end in ``.png``."""
     if path is not None and path.suffix.lower() != ".png":
         raise CaseError([f"{param.opts[0]}: is {path}, must end in .png"])
     return writable(path)
@@ -155,7 +155,7 @@ def changed(case: Case, changes: list[str] | None, name: str | None) -> Case:
 
 
 def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -> DiskCase:
-    """The same for commands that accept only disks."""
+    """Read a case for a command that accepts only disks."""
     from dembound.casefile.disks import DiskCase
     from dembound.casefile.model import as_kind
 

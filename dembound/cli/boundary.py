@@ -177,5 +177,5 @@ def _curves(found: Measured) -> list[Curves]:
 
 
 def _totals(beside: dict[str, Reflections], kind: str) -> dict[str, np.ndarray]:
-    """Those of a type that has some."""
+    """Energies sent back in all, by waves of one type."""
     return {name: each.total(kind) for name, each in beside.items() if kind in each.kinds}  # type: ignore[arg-type]

@@ -11,31 +11,9 @@ from rich.table import Table
 
 from dembound.cli.app import PICTURE, PictureTitle, app
 from dembound.cli.console import compact_table, err, out
+from dembound.cli.option_tables import with_tables
 from dembound.cli.results import results_file
-from dembound.cli.signal_options import (
-    FILE,
-    Band,
-    BridgeWiring,
-    Clipped,
-    Excitation,
-    Gain,
-    GaugeFactor,
-    HighPass,
-    LowPass,
-    Modulus,
-    NoBaseline,
-    NoDrift,
-    NoHum,
-    Notch,
-    Poisson,
-    Scale,
-    TimeColumn,
-    TimeUnit,
-    ValueUnit,
-    bridge_of,
-    reading_of,
-    treatment_of,
-)
+from dembound.cli.signal_options import FILE, SignalOptions
 
 if TYPE_CHECKING:
     from dembound.gauge.estimates import Estimate
@@ -46,6 +24,7 @@ MPA = 1e6
 
 
 @app.command("gauge", rich_help_panel="Results")
+@with_tables
 def gauge(
     record: Annotated[
         Path, typer.Argument(metavar="RECORD", help="Text file with columns of time and signal, or a run's results.")
@@ -79,24 +58,8 @@ def gauge(
         str | None,
         typer.Option(metavar="NAME|NUMBER", help="Column of the signal, if there are several.", rich_help_panel=FILE),
     ] = None,
-    time_column: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    unit: ValueUnit = None,
-    scale: Scale = 1.0,
-    clipped: Clipped = False,
-    gauge_factor: GaugeFactor = None,
-    bridge: BridgeWiring = "quarter",
-    excitation: Excitation = None,
-    gain: Gain = 1.0,
-    poisson: Poisson = None,
-    youngs_modulus: Modulus = None,
-    no_baseline: NoBaseline = False,
-    no_drift: NoDrift = False,
-    no_hum: NoHum = False,
-    low_pass: LowPass = None,
-    high_pass: HighPass = None,
-    band: Band = None,
-    notch: Notch = None,
+    *,
+    signal: SignalOptions,
 ) -> None:
     """Estimate from a gauge on a bar: wave speed, attenuation, and the stress at which the bar spalled.
 
@@ -107,12 +70,11 @@ def gauge(
     from dembound.results.reader import understood
 
     path = results_file(record) if record.is_dir() else record
-    wired = bridge_of(gauge_factor, bridge, excitation, gain, poisson)
-    reading = reading_of(column, time_column, time_unit, unit, wired, scale)
-    treatment = treatment_of(no_baseline, no_drift, no_hum, low_pass, high_pass, band, notch)
-    bar = (position, length, density)
+    bar, reading, treatment = (position, length, density), signal.reading(column), signal.treatment()
     with understood(path):
-        gauge = read_gauge(path, monitor, *bar, reading, treatment, youngs_modulus, may_be_clipped=clipped)
+        gauge = read_gauge(
+            path, monitor, *bar, reading, treatment, signal.youngs_modulus, may_be_clipped=signal.clipped
+        )
         found = evaluate(
             gauge,
             spall=spall,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,39 +12,16 @@ from rich.table import Table
 
 from dembound.cli.app import PICTURE, PictureTitle, app, writable
 from dembound.cli.console import compact_table, err, out
+from dembound.cli.option_tables import with_tables
 from dembound.cli.results import results_file
-from dembound.cli.signal_options import (
-    FILE,
-    Band,
-    BridgeWiring,
-    Clipped,
-    Excitation,
-    Gain,
-    GaugeFactor,
-    HighPass,
-    LowPass,
-    Modulus,
-    NoBaseline,
-    NoDrift,
-    NoHum,
-    Notch,
-    Poisson,
-    Scale,
-    TimeColumn,
-    TimeUnit,
-    ValueUnit,
-    bridge_of,
-    reading_of,
-    treatment_of,
-)
+from dembound.cli.signal_options import FILE, SignalOptions
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
-    from dembound.gauge.hopkinson import Specimen
-    from dembound.gauge.pulses import Faces
-    from dembound.gauge.signal import Reading, Signal
-    from dembound.gauge.slope_error import SlopeError
-    from dembound.gauge.treatment import Treatment
+    from dembound.gauge.hopkinson.pulses import Faces, Setup
+    from dembound.gauge.hopkinson.slope_error import SlopeError
+    from dembound.gauge.hopkinson.specimen import Specimen
+    from dembound.gauge.reading.signal import Signal
 
 BARS, PULSES = "Bars and specimen", "Pulses"
 """Panels of the help."""
@@ -60,7 +37,70 @@ def _of_bars(words: str) -> typer.models.OptionInfo:
     return typer.Option(help=words, rich_help_panel=BARS)
 
 
+@dataclass(frozen=True, kw_only=True)
+class BarOptions:
+    """The two bars and the specimen between them."""
+
+    wave_speed: Annotated[float, _of_bars("Of the bars (m/s).")]
+    density: Annotated[float, _of_bars("Of the bars (kg/m³).")]
+    bar_diameter: Annotated[float, _of_bars("Of both bars (m).")]
+    incident_gauge: Annotated[float, _of_bars("From the gauge to the specimen (m).")]
+    transmitted_gauge: Annotated[float, _of_bars("From the specimen to the gauge (m).")]
+    specimen_length: Annotated[float, _of_bars("Length of the specimen (m).")]
+    specimen_diameter: Annotated[float | None, _of_bars("Diameter of the specimen (m).")] = None
+    specimen_area: Annotated[float | None, _of_bars("Or its area (m²).")] = None
+    bar_length: Annotated[float | None, _of_bars("Of each bar (m), to stop before its end sends waves back.")] = None
+    attenuation: Annotated[float, _of_bars("Of the bars (1/m).")] = 0.0
+    dispersion: Annotated[
+        bool,
+        typer.Option("--dispersion-correction", help="Of round bars, with --poisson.", rich_help_panel=BARS),
+    ] = False
+
+    def setup(self, signal: SignalOptions, second_gauge: float | None) -> Setup:
+        """The setup of the test; raises CaseError for data that cannot be, and unless the specimen has one size."""
+        from dembound.gauge.hopkinson.pulses import Setup, circle_area
+
+        areas = [self.specimen_area] if self.specimen_area is not None else []
+        areas += [circle_area(self.specimen_diameter)] if self.specimen_diameter is not None else []
+        if len(areas) != 1:
+            raise CaseError(["--specimen-diameter: is needed, or --specimen-area, but not both"])
+        return Setup.of_round_bars(
+            *(self.wave_speed, self.density, self.bar_diameter, self.incident_gauge, self.transmitted_gauge),
+            *(self.specimen_length, *areas),
+            attenuation=self.attenuation,
+            poisson=signal.poisson,
+            modulus=signal.youngs_modulus,
+            disperse=self.dispersion,
+            second_gauge=second_gauge,
+            bar_length=self.bar_length,
+        )
+
+
+@dataclass(frozen=True)
+class PulseOptions:
+    """Where the pulses are in the signals, and a second gauge that separates them."""
+
+    second: Annotated[
+        Path | None,
+        typer.Option(help="Signal of another gauge on the incident bar, if pulses overlap.", rich_help_panel=PULSES),
+    ] = None
+    second_column: Annotated[
+        str | None, typer.Option(metavar="NAME|NUMBER", help="Its column or monitor.", rich_help_panel=PULSES)
+    ] = None
+    second_gauge: Annotated[float | None, typer.Option(help="From it to the specimen (m).", rich_help_panel=PULSES)] = (
+        None
+    )
+    incident_window: Window = None
+    reflected_window: Window = None
+    transmitted_window: Window = None
+    opposite: Annotated[
+        bool,
+        typer.Option("--opposite", help="The transmission bar's gauge has the other sign.", rich_help_panel=PULSES),
+    ] = False
+
+
 @app.command("hopkinson", rich_help_panel="Results")
+@with_tables
 def hopkinson(
     incident: Annotated[
         Path, typer.Argument(metavar="INCIDENT", help="Signal on the incident bar: text file, or a run's results.")
@@ -70,20 +110,7 @@ def hopkinson(
         typer.Argument(metavar="[TRANSMITTED]", help="Signal on the transmission bar; by default the same file."),
     ] = None,
     *,
-    wave_speed: Annotated[float, _of_bars("Of the bars (m/s).")],
-    density: Annotated[float, _of_bars("Of the bars (kg/m³).")],
-    bar_diameter: Annotated[float, _of_bars("Of both bars (m).")],
-    incident_gauge: Annotated[float, _of_bars("From the gauge to the specimen (m).")],
-    transmitted_gauge: Annotated[float, _of_bars("From the specimen to the gauge (m).")],
-    specimen_length: Annotated[float, _of_bars("Length of the specimen (m).")],
-    specimen_diameter: Annotated[float | None, _of_bars("Diameter of the specimen (m).")] = None,
-    specimen_area: Annotated[float | None, _of_bars("Or its area (m²).")] = None,
-    bar_length: Annotated[float | None, _of_bars("Of each bar (m), to stop before its end sends waves back.")] = None,
-    attenuation: Annotated[float, _of_bars("Of the bars (1/m).")] = 0.0,
-    dispersion: Annotated[
-        bool,
-        typer.Option("--dispersion-correction", help="Of round bars, with --poisson.", rich_help_panel=BARS),
-    ] = False,
+    bars: BarOptions,
     incident_column: Annotated[
         str | None,
         typer.Option(metavar="NAME|NUMBER", help="Its column, or monitor of results.", rich_help_panel=FILE),
@@ -91,79 +118,35 @@ def hopkinson(
     transmitted_column: Annotated[
         str | None, typer.Option(metavar="NAME|NUMBER", help="The same.", rich_help_panel=FILE)
     ] = None,
-    second: Annotated[
-        Path | None,
-        typer.Option(help="Signal of another gauge on the incident bar, if pulses overlap.", rich_help_panel=PULSES),
-    ] = None,
-    second_column: Annotated[
-        str | None, typer.Option(metavar="NAME|NUMBER", help="Its column or monitor.", rich_help_panel=PULSES)
-    ] = None,
-    second_gauge: Annotated[
-        float | None, typer.Option(help="From it to the specimen (m).", rich_help_panel=PULSES)
-    ] = None,
-    incident_window: Window = None,
-    reflected_window: Window = None,
-    transmitted_window: Window = None,
-    opposite: Annotated[
-        bool,
-        typer.Option("--opposite", help="The transmission bar's gauge has the other sign.", rich_help_panel=PULSES),
-    ] = False,
+    pulses: PulseOptions,
     equilibrium: Annotated[float, typer.Option(help="Largest difference of the forces over their mean.")] = 0.05,
     output: Annotated[Path | None, PICTURE] = None,
     title: PictureTitle = None,
     table: Annotated[
         Path | None, typer.Option(help="Table of the histories to write (CSV).", callback=writable)
     ] = None,
-    time_column: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    unit: ValueUnit = None,
-    scale: Scale = 1.0,
-    clipped: Clipped = False,
-    gauge_factor: GaugeFactor = None,
-    bridge: BridgeWiring = "quarter",
-    excitation: Excitation = None,
-    gain: Gain = 1.0,
-    poisson: Poisson = None,
-    youngs_modulus: Modulus = None,
-    no_baseline: NoBaseline = False,
-    no_drift: NoDrift = False,
-    no_hum: NoHum = False,
-    low_pass: LowPass = None,
-    high_pass: HighPass = None,
-    band: Band = None,
-    notch: Notch = None,
+    signal: SignalOptions,
 ) -> None:
     """Compute stress, strain and strain rate of a specimen in a split Hopkinson test from gauges on its bars.
 
     By one, two and three waves, with the time in which the specimen is in equilibrium.
     """
-    from dembound.gauge.hopkinson import specimen
-    from dembound.gauge.hopkinson_io import combined
-    from dembound.gauge.pulse_checks import doubts_of_pulses
-    from dembound.gauge.pulses import Setup, Windows, at_faces
-    from dembound.gauge.slope_error import doubts_of_slope, slope_error
+    from dembound.gauge.hopkinson.pulse_checks import doubts_of_pulses
+    from dembound.gauge.hopkinson.pulses import Windows, at_faces
+    from dembound.gauge.hopkinson.records import combined
+    from dembound.gauge.hopkinson.slope_error import doubts_of_slope, slope_error
+    from dembound.gauge.hopkinson.specimen import specimen
 
-    if (second_gauge is None) != (second is None and second_column is None):
+    has_second = pulses.second_gauge is not None
+    if has_second == (pulses.second is None and pulses.second_column is None):
         raise CaseError(["--second-gauge: needs --second or --second-column, and the other way round"])
-    area = _specimen_area(specimen_diameter, specimen_area)
-    setup = Setup.of_round_bars(
-        *(wave_speed, density, bar_diameter, incident_gauge, transmitted_gauge, specimen_length, area),
-        attenuation=attenuation,
-        poisson=poisson,
-        modulus=youngs_modulus,
-        disperse=dispersion,
-        second_gauge=second_gauge,
-        bar_length=bar_length,
-    )
-    wired = bridge_of(gauge_factor, bridge, excitation, gain, poisson)
-    reading = reading_of(None, time_column, time_unit, unit, wired, scale)
-    treatment = treatment_of(no_baseline, no_drift, no_hum, low_pass, high_pass, band, notch)
+    setup = bars.setup(signal, pulses.second_gauge)
     sources = [(incident, incident_column), (transmitted or incident, transmitted_column)]
-    if second_gauge is not None:
-        sources.append((second or incident, second_column))
-    strains = _strains(sources, reading, treatment, setup.modulus, clipped)
-    signals = combined(*strains, opposite=opposite)
-    windows = Windows(incident_window, reflected_window, transmitted_window)
+    if has_second:
+        sources.append((pulses.second or incident, pulses.second_column))
+    strains = _strains(sources, signal, setup.modulus)
+    signals = combined(*strains, opposite=pulses.opposite)
+    windows = Windows(pulses.incident_window, pulses.reflected_window, pulses.transmitted_window)
     faces = at_faces(signals, setup, windows)
     found = specimen(faces, setup, equilibrium)
     if found.equilibrium is None:
@@ -176,29 +159,15 @@ def hopkinson(
     _write(faces, found, output, title, table)
 
 
-def _specimen_area(diameter: float | None, area: float | None) -> float:
-    """The specimen's area, m², from one of both options."""
-    from dembound.gauge.pulses import circle_area
-
-    if (diameter is None) == (area is None):
-        raise CaseError(["--specimen-diameter: is needed, or --specimen-area, but not both"])
-    return area if diameter is None else circle_area(diameter)  # type: ignore[return-value]
-
-
-def _strains(
-    sources: Sequence[tuple[Path, str | None]],
-    reading: Reading,
-    treatment: Treatment | None,
-    modulus: float,
-    clipped: bool,
-) -> list[Signal]:
+def _strains(sources: Sequence[tuple[Path, str | None]], options: SignalOptions, modulus: float) -> list[Signal]:
     """The strains of gauges from files, or folders of results, and columns; prints the notes on them."""
-    from dembound.gauge.hopkinson_io import read_strain
+    from dembound.gauge.hopkinson.records import read_strain
 
-    strains = []
+    strains, treatment = [], options.treatment()
     for path, column in sources:
         file = results_file(path) if path.is_dir() else path
-        strains.append(read_strain(file, replace(reading, column=column), treatment, modulus, may_be_clipped=clipped))
+        reading = options.reading(column)
+        strains.append(read_strain(file, reading, treatment, modulus, may_be_clipped=options.clipped))
         for note in strains[-1].notes:
             out.print(note)
     return strains
@@ -213,7 +182,7 @@ def _write(faces: Faces, found: Specimen, picture: Path | None, title: str | Non
         save(plot_hopkinson(faces, found), picture, title)
         out.print(f"wrote {picture}")
     if table is not None:
-        from dembound.gauge.specimen_table import write_specimen
+        from dembound.gauge.hopkinson.specimen_table import write_specimen
 
         write_specimen(found, table)
         out.print(f"wrote {table}")

@@ -236,7 +236,7 @@ def ground_of(case: DiskCase) -> PackedMaterial:
 
 
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
-    """The same body under the boundaries of another case; only [boundary.*] and [wave.*] of that case are used."""
+    """The scene under the boundaries of another case; only [boundary.*] and [wave.*] of that case are used."""
     built_in = [
         ([edge.side for edge in half_edges(scene.edges, each.boundary)], each.free_field_sides, each.outside_sides)
         for each in (scene.case, case)

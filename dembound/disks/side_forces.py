@@ -41,7 +41,7 @@ class SideForces:
 
 
 def side_forces(scene: DiskBody) -> dict[str, SideForces]:
-    """Those of all sides of a body that are not periodic, by side."""
+    """Forces on all sides of a body that are not periodic, by side."""
     ends, part = _ends(scene)
     per_stress, as_built = _through(scene, ends)
     per_stress, as_built = per_stress * part[:, None], as_built * part

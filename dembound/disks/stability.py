@@ -55,7 +55,7 @@ def _largest_eigenvalue(scene: DiskScene) -> float:
 
 
 def _largest_with(scene: DiskScene, continua: Sequence[Surroundings]) -> float:
-    """The same of a scene with continua: their delays count as less mass, the dashpots of ties as more stiffness.
+    """Largest eigenvalue of a scene with continua: delays count as less mass, dashpots of ties as more stiffness.
 
     A dashpot ηK that is half a step behind counts as a spring of K·2η/Δt beside K. So the step is on both sides of the
     equation, and is found by iteration from below: each larger step makes the ties less stiff.

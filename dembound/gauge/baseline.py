@@ -32,7 +32,7 @@ QUIET = 0.01
 """Largest deviation of quiet samples from the baseline, over the largest value; with noise more."""
 
 MOST_QUIET_NOISE = 5.0
-"""The same in standard deviations of the smoothed noise."""
+"""The largest noise of a quiet part, in standard deviations of the smoothed noise."""
 
 FEWEST_QUIET = 20
 """Quiet samples that a baseline needs at least."""

@@ -14,7 +14,7 @@ from dembound.gauge.plausibility import (
     implausible_signal,
     implausible_size,
 )
-from dembound.gauge.recorded import (
+from dembound.gauge.reading.recorded import (
     BarMetadata,
     GaugeMetadata,
     bar_length,
@@ -24,7 +24,7 @@ from dembound.gauge.recorded import (
     loaded_end,
     recorded_gauge,
 )
-from dembound.gauge.signal import Reading, Signal, read_signal
+from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.gauge.treatment import Treatment, treated
 from dembound.results.reader import history_of, open_record
 
@@ -54,7 +54,7 @@ class Gauge:
     notes: tuple[str, ...] = ()
 
     def in_pascals(self, speed: float) -> "Gauge":
-        """The same with stresses in Pa: strains times E, by default ρc² with c = speed, m/s.
+        """The gauge with stresses in Pa: strains times E, by default ρc² with c = speed, m/s.
 
         Raises CaseError where they cannot be known, and for a modulus that is not that of the density and the speed.
         """

@@ -14,7 +14,7 @@ from dembound.gauge.baseline import Baseline
 from dembound.gauge.peaks import CREST, digit, smooth, white_noise, width_of
 
 SEED = 20160315
-"""Of the random numbers: the same signal always has the same errors."""
+"""Seed of the random numbers: the same signal always has the same errors."""
 
 MOST_DRAWS, FEWEST_DRAWS = 200, 40
 """Number of draws: of 200 a standard error is known to 5 %, of 40 to 11 %."""

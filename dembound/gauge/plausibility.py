@@ -40,7 +40,7 @@ PART_SPEED, PART_DECAY, PART_FALL = 0.003, 0.05, 0.005
 which a warning is due."""
 
 CAUSES = "look for another impact, lost samples, a jump of the baseline, an amplifier at its limit, AC coupling"
-"""Of passages that are not those of one pulse."""
+"""What to look for where passages are not those of one pulse."""
 
 NOISY = 0.015
 """Noise over the height of a wave from which strengths get a warning: it has raised them by 2 to 3 % there."""

@@ -7,7 +7,7 @@ import numpy as np
 from dembound.gauge.baseline import MAINS, Baseline, find_baseline
 from dembound.gauge.filters import Filters
 from dembound.gauge.noise import Noise, noise_of
-from dembound.gauge.signal import Signal
+from dembound.gauge.reading.signal import Signal
 from dembound.words import percent
 
 

@@ -35,5 +35,5 @@ class Hole(Table, ABC):
 
     @property
     def outline(self) -> Outline | None:
-        """Its rim, which a pressure on its wall needs; None if it has none that is a simple closed curve."""
+        """The rim of the hole, which a pressure on its wall needs; None unless it is a simple closed curve."""
         return None

@@ -46,6 +46,6 @@ class Polygon(Hole):
 
     @property
     def outline(self) -> PolygonOutline | None:
-        """Its edges; None if they cross or touch, as the ground is then not always on the same side."""
+        """Edges of the polygon; None if they cross or touch, as the ground is then not always on the same side."""
         outline = PolygonOutline(np.array(self.points))
         return None if outline.crosses_itself else outline

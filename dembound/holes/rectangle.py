@@ -40,6 +40,6 @@ class Rectangle(Hole):
 
     @property
     def outline(self) -> PolygonOutline:
-        """Its four edges."""
+        """The four edges of the rectangle."""
         x0, y0, x1, y1 = self.corners
         return PolygonOutline(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))

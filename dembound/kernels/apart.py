@@ -38,7 +38,7 @@ class _Needed(NamedTuple):
 
     @property
     def symbol(self) -> str:
-        """Its name in the machine code of callers."""
+        """Name of the function in the machine code of callers."""
         types_of = hashlib.sha256(repr(self.arguments).encode()).hexdigest()
         return f"{self.module}.{self.name}.{types_of}"
 

@@ -27,7 +27,7 @@ EXACT = FAST | {"fastmath": False}
 """Compiler options of functions whose results must be the same to the last bit on all processors."""
 
 EXACT_MAKES = EXACT | {"_nrt": True}
-"""The same for functions that create arrays."""
+"""`EXACT` for functions that create arrays."""
 
 PARALLEL = MAKES | {"parallel": True}
 """Compiler options of loops over particles and contacts."""

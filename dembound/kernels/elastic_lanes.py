@@ -138,8 +138,8 @@ def _move_blocks(rows, first, last, u, v, body, u_next):
 
 
 @njit(**FAST)
-def _move_blocks_and_more(rows, first, last, u, v, body, u_next, arms, result):
-    """The same with steady loads and local damping; result (3,) gets surface speed and works, see elastic.move_rows."""
+def _move_loaded_blocks(rows, first, last, u, v, body, u_next, arms, result):
+    """Move blocks under steady loads and local damping; result (3,): surface speed, works, see elastic.move_rows."""
     if first == last:
         return
     stray_forces(rows, first, last, u)
@@ -210,7 +210,7 @@ def _move_and_more(rows, u, v, body, u_next, fastest, arms, damped):
     result = np.zeros((CHUNKS, 3))
     for chunk in prange(CHUNKS):
         first, last = begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
-        _move_blocks_and_more(rows, first, last, u, v, body, u_next, arms, result[chunk])
+        _move_loaded_blocks(rows, first, last, u, v, body, u_next, arms, result[chunk])
         fastest[chunk] = result[chunk, 0]
         damped[chunk, 0] = result[chunk, 1]
         damped[chunk, 1] = result[chunk, 2]

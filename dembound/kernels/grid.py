@@ -106,7 +106,7 @@ def _sum_at(blocks, k, force):
 
 @njit(**WITHIN)
 def _sums_at(blocks, k, force):
-    """The same, and the part of it of elements that absorb."""
+    """Sums at a node, and the part of them of elements that absorb."""
     x, y, ax, ay = 0.0, 0.0, 0.0, 0.0
     for e in range(blocks.start[k], blocks.start[k + U(1)]):
         entry = blocks.entry[U(e)]

@@ -68,7 +68,7 @@ def place_of(rows, block):
 
 @njit(**INLINED)
 def next_place(rows, block, group, column, r):
-    """Those of a block, from those of the one before."""
+    """Places of a block, from those of the block before."""
     r += 1
     if r == rows.group_row[group + 1]:
         if block == rows.group_block[group + 1]:

@@ -63,7 +63,7 @@ def store(array: np.ndarray, i: int, values: np.ndarray) -> None:
 
 
 def splat(number: float) -> np.ndarray:
-    """The same number in all lanes."""
+    """One number in all lanes."""
     return np.full(LANES, float(number))
 
 
@@ -132,7 +132,7 @@ def combine(
 def combine_more(
     points: tuple, matrix: np.ndarray, given: np.ndarray, i: int, found: np.ndarray, j: int, stride: int
 ) -> None:
-    """The same added to what is in `found`."""
+    """Combine lanes and add the result to what is in `found`."""
     groups = int(stride) * np.arange(len(points))[:, None] + np.arange(LANES)
     found[int(j) + groups] += matrix.reshape(len(points), -1) @ given[int(i) + groups]
 

@@ -188,7 +188,7 @@ def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, li
 
 @njit(**FAST)
 def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limits, taken, lost):
-    """The same where normals and arms follow the motion, see pair_strain.updated_strain."""
+    """Forces of a pair of lanes whose normals and arms follow the motion, see pair_strain.updated_strain."""
     c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
     k = pairs.constants
     dx, dy = _apart(u, i, j)

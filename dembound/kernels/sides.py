@@ -21,7 +21,7 @@ PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED, POWER = range(7)
 
 @njit(**FAST, forceinline=True)
 def _dashpots(c, lines, constants, old, new, incident):
-    """Of dashpots, the sums of `_of_batch`: through them a wave of the velocity `incident` (m/s) enters.
+    """Sums of `_of_batch` of dashpots, through which a wave of the velocity `incident` (m/s) enters.
 
     Of a mean velocity v they absorb C(v − v_i)², the power of the outgoing wave, and C v_i² comes in.
     """
@@ -42,7 +42,7 @@ def _dashpots(c, lines, constants, old, new, incident):
 
 @njit(**FAST, forceinline=True)
 def _following(c, lines, constants, follow, old, new, followed, incident):
-    """The same of dashpots on velocities relative to those of twins, followed (k, 3) m/s."""
+    """Sums of `_of_batch` of dashpots on velocities relative to those of twins, followed (k, 3) m/s."""
     force = 0.0
     power = 0.0
     before = 0.0
@@ -61,7 +61,7 @@ def _following(c, lines, constants, follow, old, new, followed, incident):
 
 @njit(**FAST, forceinline=True)
 def _springs(c, lines, constants, nodes, u):
-    """The same of springs at displacements u (3, n), whose energy follows from these: the force alone."""
+    """Sums of `_of_batch` of springs at displacements u (3, n): the force alone, from which their energy follows."""
     force = 0.0
     for e in range(lines.size):
         force -= constants[e] * u[c, U(nodes[U(lines[e])])]
@@ -70,7 +70,7 @@ def _springs(c, lines, constants, nodes, u):
 
 @njit(**FAST, forceinline=True)
 def _exerted(kind, c, lines, constants, moved, across, signals, columns):
-    """The same of prescribed motion (the force needed, without ties), of drives (constants·signal), and of seams."""
+    """Sums of `_of_batch` of prescribed motion (the force needed, without ties), drives (constants·signal), seams."""
     force = 0.0
     power = 0.0
     before = 0.0

@@ -47,7 +47,7 @@ class Stiffness:
         return Stiffness(*(getattr(self, each.name)[contacts] for each in fields(self)))
 
     def times(self, factor: np.ndarray) -> "Stiffness":
-        """The same contacts with their stiffness multiplied by factors (b,)."""
+        """These contacts with their stiffness multiplied by factors (b,)."""
         return Stiffness(factor * self.normal, factor * self.shear, factor * self.bending, self.arm_i, self.arm_j)
 
 

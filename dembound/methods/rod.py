@@ -56,7 +56,7 @@ class Range:
 
     @property
     def nodes(self) -> slice:
-        """Its nodes among those of the bar."""
+        """Nodes of the rod among those of the bar."""
         return slice(self.first, self.last + 1)
 
     @property

@@ -205,7 +205,7 @@ class Ledger(Tracker):
 
     @property
     def side_columns(self) -> np.ndarray:
-        """The same of every side, (k, s, 3), in the order of `SideEntry`."""
+        """Energies of every side, (k, s, 3), in the order of `SideEntry`."""
         return np.array(self.sides).reshape(len(self.sides), len(self.side_names), 3)
 
     def memory(self) -> Arrays:

@@ -75,7 +75,7 @@ class Tie(ABC):
 
     @abstractmethod
     def bundle(self, supported: np.ndarray) -> NamedTuple:
-        """Its arrays for the kernels; supported (s,) are all nodes of the support table, ascending."""
+        """Arrays of the part for the kernels; supported (s,) are all nodes of the support table, ascending."""
 
     def memory(self) -> Arrays:
         """All arrays that change during a run, by name; by default none."""
@@ -175,7 +175,7 @@ class System:
         return {name: (np.concatenate([known[name][0] for known in each]), unit) for name, (_, unit) in each[0].items()}
 
     def snapshot_beside(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """The same of the nodes after those that are recorded as particles, values (m, …); by default none."""
+        """Values of the nodes after those that are recorded as particles, values (m, …); by default none."""
         return {}
 
     def contact_forces(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:

@@ -45,17 +45,17 @@ class Samples(NamedTuple):
 
     @classmethod
     def between(cls, step: int, later: int, every: int, sides: int) -> Samples:
-        """Those of the steps from `step` on and before `later`, to be filled; none if every is 0."""
+        """Rows of the steps from `step` on and before `later`, to be filled; none if every is 0."""
         first, last = (-(-of // max(1, every)) for of in (step, later))
         return cls(every, first, np.empty((last - first if every > 0 else 0, sides, 5)))
 
     def before(self, later: int) -> Samples:
-        """Those before a step, such as the last one that was done."""
+        """Rows before a step, such as the last one that was done."""
         return self._replace(record=self.record[: max(0, -(-later // max(1, self.every)) - self.first)])
 
     @property
     def steps(self) -> np.ndarray:
-        """Their steps, (rows,)."""
+        """Steps of the rows, (rows,)."""
         return self.every * (self.first + np.arange(len(self.record)))
 
 
@@ -254,7 +254,7 @@ def _has_loads(scene: Scene) -> bool:
 def _bearers(
     edges: list[Edge], known: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Of each side nodes (q,) and the shares (2, q) of the steady forces on them, along x and y, that belong to it.
+    """For each side nodes (q,) and the shares (2, q) of the steady forces on them, along x and y, that belong to it.
 
     The force on a node of several sides is the sum of what each side would exert with the mean traction of its other
     nodes, which are on no other side, and of a rest, which belongs to the side along whose normal it is. Under a

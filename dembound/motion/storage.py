@@ -24,12 +24,12 @@ class Storage(NamedTuple):
 
 
 def paraview_bytes(files: ParaView, vtu: float, vtkhdf: float) -> float:
-    """Of the files for ParaView that a case asks for, from what is in those of one form and of the other."""
+    """Bytes of the files for ParaView that a case asks for, from what is in those of one form and of the other."""
     return vtu * (files != "vtkhdf") + vtkhdf * (files != "vtu")
 
 
 def mesh_bytes(points: float, point_data: float, cells: float, corners: int, cell_data: float) -> float:
-    """Of a VTU file with so many points and cells, from the bytes of data for each.
+    """Bytes of a VTU file with so many points and cells, from the bytes of data for each.
 
     Of cells there are the numbers of their corners (4 bytes), where they end (4) and their types (8).
     """

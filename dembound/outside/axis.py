@@ -37,7 +37,7 @@ class Axis:
 
     @property
     def length(self) -> float:
-        """Of all cells, m."""
+        """Length of all cells, m."""
         return float(self.edges[-1])
 
     @cached_property
@@ -53,7 +53,7 @@ class Axis:
 
     @property
     def thickness(self) -> tuple[float, float]:
-        """Of the layers before and after, m."""
+        """Thickness of the layers before and after, m."""
         before, after = self.layer
         return float(np.sum(self.sizes[:before])), float(np.sum(self.sizes[len(self.sizes) - after :]))
 

@@ -28,7 +28,7 @@ class Medium:
 
     @classmethod
     def isotropic(cls, density: float, p_wave_speed: float, s_wave_speed: float) -> "Medium":
-        """Of density (kg/m³) and wave speeds (m/s)."""
+        """A medium of density (kg/m³) and wave speeds (m/s)."""
         p, s = density * p_wave_speed**2, density * s_wave_speed**2
         return cls(density, p, p, p - 2.0 * s, s)
 

@@ -25,7 +25,7 @@ class Around(NamedTuple):
     top: int = 0
 
     def along(self, axis: int) -> tuple[int, int]:
-        """Those before and after along x (axis 0) or y (1)."""
+        """Layers before and after along x (axis 0) or y (1)."""
         return (self.left, self.right) if axis == 0 else (self.bottom, self.top)
 
 
@@ -140,7 +140,7 @@ class Mesh:
 
     @cached_property
     def axes(self) -> tuple[Axis, Axis]:
-        """Its columns and its rows."""
+        """Columns and rows of the mesh."""
         x, y = (
             Axis(self.rule, np.array(sizes), self.layer.along(axis), self.periodic[axis])
             for axis, sizes in enumerate((self.widths, self.heights))

@@ -54,7 +54,7 @@ class PlaneWave:
         return self.delay + places @ np.array(self.slowness)
 
     def shifted(self, by: float) -> PlaneWave:
-        """The same wave, later by a time, s."""
+        """The wave, later by a time, s."""
         return replace(self, delay=self.delay + by)
 
     def flux(self, medium: Medium) -> np.ndarray:

@@ -168,7 +168,7 @@ class DensePacking(Packing):
 
     @property
     def expected_disks(self) -> float:
-        """The same for radii that are uniform within their range."""
+        """Expected number of disks whose radii are uniform within their range."""
         smallest, largest = radius_range(self.radius, self.radius_ratio)
         return super().expected_disks * self.radius**2 * 3.0 / (smallest**2 + smallest * largest + largest**2)
 

@@ -13,7 +13,7 @@ from dembound.table import quantity
 
 
 class EdgedBrick(DensePacking):
-    """As pattern B, with one regular row along x = 0 and one along y = 0 of every brick (Z section 2.3.1).
+    """Pattern C: as B, with one regular row along x = 0 and one along y = 0 of every brick (Z section 2.3.1).
 
     The rows share the disk at the origin and are held on their lines while the core is packed around them.
     """

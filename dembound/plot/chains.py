@@ -17,7 +17,7 @@ from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
 from dembound.results.reader import open_record, snapshot_of, snapshots_of
 
 COLUMN = "contacts/normal_force"
-"""Of a snapshot."""
+"""Dataset of a snapshot with the forces drawn."""
 
 KILO = 1e3
 """Newtons in a kilonewton."""
@@ -41,7 +41,7 @@ PUSH, PULL = COLOURS[0], COLOURS[1]
 """Colours of compression and tension."""
 
 SHADE = "#E3E3E3"
-"""Of the disks."""
+"""Colour of the disks."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from matplotlib.tri import Triangulation
 from dembound.plot.disks import EMPTY, Window, colours_within
 
 GROUP = "continuum"
-"""Of a record, and of its snapshots."""
+"""Group of the continuum in a record and in its snapshots."""
 
 FINEST_CELL, FINEST_ELEMENT = 2.0, 10.0
 """Pixels: where cells are narrower elements have their mean colours, elements that are narrower have no outline."""
@@ -55,7 +55,7 @@ class Continuum:
         return Window(low, self.elements[:, 2:].max(axis=0) - low)
 
     def moved(self, displacements: np.ndarray | None) -> Self:
-        """The same with the cells where displacements (m, 2) m of the nodes move them; None: not at all."""
+        """The mesh with its cells where displacements (m, 2) m of the nodes move them; None: not at all."""
         return self if displacements is None else replace(self, corners=self.corners + displacements[self.nodes])
 
 

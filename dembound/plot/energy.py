@@ -36,7 +36,7 @@ BAR_COLUMNS = COLUMNS | {
     "damping": "taken by attenuation",
     "law_switch": "in: added by a change of method",
 }
-"""The same for a bar."""
+"""Lines of the ledger of a bar."""
 
 OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
     "came_in": ("in: through the {}", {"marker": "^"}),
@@ -141,7 +141,7 @@ def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[En
 
 
 def _not_negligible(lines: list[EnergyLine]) -> list[EnergyLine]:
-    """Those of the lines that exceed a small share of the largest."""
+    """Lines that exceed a small share of the largest."""
     largest = [float(np.abs(line.values).max(initial=0.0)) for line in lines]
     return [line for line, each in zip(lines, largest, strict=True) if each > line.least * max(largest)]
 

@@ -67,7 +67,7 @@ class Disks:
 
     @property
     def part_windows(self) -> list[Window]:
-        """Of the disks of a free-field column, if there is one, and of the body."""
+        """Windows of the disks of a free-field column, if there is one, and of the body."""
         parts = [slice(0, self.column), slice(self.column, None)]
         return [Window.around(self.positions[part], self.radii[part]) for part in parts if len(self.radii[part])]
 

@@ -15,7 +15,7 @@ MPA = 1e6
 """Pascals in a megapascal."""
 
 MEASURED = {"Pa": ("stress", "MPa", MPA), "strain": ("strain", "µε", 1e-6), "V": ("signal", "V", 1.0)}
-"""Of what a gauge measures: its name, and the name and size of the unit in pictures."""
+"""By the unit of what a gauge measures: its name, and the name and size of the unit in pictures."""
 
 STEPS = (-1.5, -1.0, -0.5, 0.0, 0.5)
 """Times of the stresses near the free end, relative to that of the spall, in travel times from there to the end."""

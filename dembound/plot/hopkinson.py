@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dembound.gauge.hopkinson import Specimen
-from dembound.gauge.pulses import Faces
+from dembound.gauge.hopkinson.pulses import Faces
+from dembound.gauge.hopkinson.specimen import Specimen
 from dembound.plot.style import COLOURS, REFERENCE, new_figure, styled
 
 MPA, MICRO = 1e6, 1e-6

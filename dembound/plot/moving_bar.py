@@ -14,10 +14,10 @@ from dembound.plot.bar import FIELDS, read_course
 from dembound.plot.style import COLOURS, REFERENCE, lay_out, new_figure, outside_legend, pixels_of, set_pixels, styled
 
 MARGIN = 0.05
-"""Of the vertical axes, over the range of the values."""
+"""Margin of the vertical axes over the range of the values."""
 
 WIDTH = 11.0
-"""Of a frame in inches."""
+"""Width of a frame, inches."""
 
 
 class MovingBar:

@@ -24,7 +24,7 @@ TRUE_TO = 0.1
 """Largest distance of two points of a line, in mean diameters; corners are cut by half of it at most."""
 
 MOST_POINTS = 20_000
-"""Of one outline."""
+"""The most points drawn of one outline."""
 
 FIRST = 256
 """Points from which the lengths of an outline's pieces are estimated."""

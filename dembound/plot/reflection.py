@@ -18,7 +18,7 @@ SHOWN = (0.0, 30.0, 60.0)
 """Angles (degrees) for which shares are drawn against frequency, or the nearest ones that were computed."""
 
 GREYS = ("#000000", "#606060", "#A8A8A8")
-"""Their colours: the lines against angle have all others."""
+"""Colours of lines against frequency: the lines against angle have all others."""
 
 
 class Curves(NamedTuple):

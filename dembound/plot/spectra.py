@@ -230,7 +230,7 @@ def _on_logarithmic_axes(panels: np.ndarray) -> None:
 
 
 def _those(histories: Sequence[Histories], names: Sequence[str]) -> list[Histories]:
-    """Of each run the histories of some monitors, as far as it has them."""
+    """For each run the histories of some monitors, as far as it has them."""
     return [{name: run[name] for name in names if name in run} for run in histories]
 
 

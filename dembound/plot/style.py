@@ -43,7 +43,7 @@ COMPRESSION = 2
 """Level of compression of pictures: half the time of the usual one, and a fifth more bytes."""
 
 FEWEST_NUMBERS = 3
-"""Of an axis: with fewer neither its scale nor its zero can be read."""
+"""The fewest numbers along an axis: with fewer neither its scale nor its zero can be read."""
 
 NUMBERED = ((1.0,), (1.0, 2.0, 5.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0))
 """Multiples of powers of ten that a logarithmic axis has as numbers: the first that are enough."""
@@ -177,7 +177,7 @@ def point_style(index: int) -> dict[str, Any]:
 
 
 def open_point_style(index: int) -> dict[str, Any]:
-    """The same with hollow markers and dashes, so that rows show that lie on each other."""
+    """Style of points with hollow markers and dashes, so that rows show that lie on each other."""
     return point_style(index) | {"linestyle": DASHES[index % len(DASHES)], "markersize": 6.0, "fillstyle": "none"}
 
 

@@ -60,7 +60,7 @@ def columns_of(figure: Figure) -> Iterator[Column]:
 
 
 def _of(line: Line2D, lines: Sequence[Line2D]) -> str:
-    """Of which of several lines x values are: of its run, or if runs have several lines of its name and its run."""
+    """To which of several lines x values belong: its run; if runs have several lines, its name and its run."""
     if len(lines) == 1:
         return ""
     is_only_one = [each.get_label() for each in lines].count(line.get_label()) == 1

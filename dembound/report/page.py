@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_FRAMES = 40
-"""Of a scene; of more snapshots some are chosen evenly."""
+"""The most frames of a scene; of more snapshots some are chosen evenly."""
 
 FRAME_DOTS = 105
 """Pixels of an inch of a frame."""
@@ -224,7 +224,7 @@ def _drawn(draw: Callable[[], Figure]) -> Picture:
 
 
 def _components(records: Sequence[Path]) -> list[Any]:
-    """Those of x and y along which the velocity is visible at any monitor, or the larger if both are zero."""
+    """Components, x or y, along which the velocity is visible at any monitor, or the larger if both are zero."""
     histories = [read_histories(record, "velocity") for record in records]
     if not any(histories):
         raise CaseError([f"{', '.join(map(str, records))}: has no monitors to show"])

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 MOST_POINTS = 2000
-"""Of a line of a chart; of more, the smallest and the largest of several in a row are kept."""
+"""The most points of a line; of more, the smallest and the largest of several in a row are kept."""
 
 DIGITS = 6
-"""Of the numbers of a chart."""
+"""Digits of the numbers of a chart."""
 
 FRAME_QUALITY = 80
-"""Of frames of a scene in WebP's scale up to 100; other pictures are compressed without loss."""
+"""Quality of frames of a scene in WebP's scale up to 100; other pictures are compressed without loss."""
 
 
 @dataclass(frozen=True)

@@ -133,7 +133,7 @@ def _seconds(time: float | None) -> str:
 
 
 def sides(runs: Sequence[ReportedRun]) -> Table | None:
-    """Of each side its type, its factors, and the energies that came in and that it took; None without summaries."""
+    """Table of the sides: type, factors, and the energies that came in and that it took; None without summaries."""
     rows = []
     for run in runs:
         tables = run.summary.get("boundaries", {})
@@ -212,7 +212,7 @@ def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
 
 
 def _estimated(run: ReportedRun) -> Entries:
-    """Those of one run."""
+    """Estimated errors of one run."""
     if KEY in run.summary:
         yield from entries(run.summary[KEY])
 

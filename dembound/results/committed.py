@@ -31,7 +31,7 @@ PAGE = 4096
 """Bytes of a page, the unit of the log."""
 
 HEADER = struct.Struct("<4sQQI")
-"""Of a log: `MAGIC`, size of the file, number of pages, CRC-32 of what follows: page numbers, then pages."""
+"""Header of a log: `MAGIC`, size of the file, number of pages, CRC-32 of what follows: page numbers, then pages."""
 
 MAGIC = b"dbl1"
 

@@ -14,7 +14,7 @@ CHUNK_BYTES = 2**20
 """Largest size of a chunk, the unit in which HDF5 reads, and of which it has one checksum each."""
 
 GROWING_BYTES = 2**13
-"""The same of a dataset that grows, whose last chunk is written again and again."""
+"""Bytes of a chunk of a dataset that grows, whose last chunk is written again and again."""
 
 Columns = Iterable[tuple[str, tuple[int, ...], str, str]]
 """Datasets of a group: their names, widths of a row, types and units."""

@@ -56,7 +56,7 @@ def _state_of(path: Path) -> tuple[int, ...]:
 
 @contextmanager
 def reading(path: Path) -> Iterator[h5py.File]:
-    """The same, of a record that has been open before and whose columns need not be compared again.
+    """Open a record that has been open before, and whose columns need not be compared again.
 
     Raises RecordError when it cannot be read, and for everything that damaged contents raise inside the statement,
     which should therefore do little but read. Errors of the operating system about other files are passed on.
@@ -262,7 +262,7 @@ def cracks_until(file: h5py.File, time: float) -> dict[str, np.ndarray]:
 
 
 def until(cracks: dict[str, np.ndarray], time: float) -> dict[str, np.ndarray]:
-    """Those of the cracks, columns as by `cracks_until`, that have happened at a time in s."""
+    """The cracks, columns as by `cracks_until`, that have happened at a time in s."""
     broken = cracks["time"] <= time
     return {name: column[broken] for name, column in cracks.items()}
 
@@ -304,7 +304,7 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
 
 
 def side_energies_of(file: h5py.File) -> dict[str, dict[str, np.ndarray]]:
-    """Of every side of an open record energies (k,) that came in, were absorbed, and are stored in springs."""
+    """Energies (k,) at every side of an open record that came in, were absorbed, and are stored in springs."""
     sides = file.get("energy/sides", {})
     return {side: {name: finite(dataset) for name, dataset in group.items()} for side, group in sides.items()}
 

@@ -31,7 +31,7 @@ def at_times(time: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.nda
 
 
 def _column(time: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """The same of one column; wanted : between the first and the last sample."""
+    """Values of one column at other times; wanted : between the first and the last sample."""
     from scipy.interpolate import CubicSpline
 
     jumps = _jumps(values)

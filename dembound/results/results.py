@@ -167,7 +167,7 @@ class Results:
 
     @property
     def side_energies(self) -> dict[str, dict[str, np.ndarray]]:
-        """Of every side ``came_in``, ``absorbed`` and ``stored``, (k,) at the times of the energy ledger."""
+        """Energies of every side: ``came_in``, ``absorbed`` and ``stored``, (k,) at the times of the energy ledger."""
         with open_record(self._record) as file:
             return side_energies_of(file)
 

@@ -64,7 +64,7 @@ def _describe_end(planned: Plan, run: Run) -> dict[str, Any] | None:
 
 
 def end_in_words(summary: Mapping[str, Any]) -> list[str]:
-    """That a run ended early, as one sentence; none for a whole run."""
+    """One sentence on a run that ended early; none for a whole run."""
     if (ended := summary["ended"]) is None:
         return []
     return [f"ended at {ended['time']:.4g} s, all monitors silent: {100.0 * ended['saved']:.0f} % of the steps saved"]

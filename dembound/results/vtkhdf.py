@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import meshio
 
 VERSION = (2, 0)
-"""Of the format."""
+"""Version of the format."""
 
 CELL_TYPES = {"vertex": 1, "line": 3, "quad": 9}
 """VTK's numbers of the types of cells."""

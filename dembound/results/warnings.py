@@ -155,5 +155,5 @@ def _braked(scene: Scene, pieces: np.ndarray) -> np.ndarray:
 
 
 def _largest_component(velocity: np.ndarray) -> np.ndarray:
-    """Of velocities (k, 2) the component (k,) with the largest value."""
+    """The component (k,) of velocities (k, 2) with the largest value."""
     return velocity[:, int(np.abs(velocity).max(axis=0).argmax())]

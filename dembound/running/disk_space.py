@@ -45,7 +45,7 @@ def results_bytes(planned: Plan) -> dict[str, float]:
 
 
 def bytes_left(planned: Plan, written: float = 0.0) -> dict[str, float]:
-    """The same of what is still to be written by a run that has written so many bytes; all keys have an equal share."""
+    """Bytes still to be written by a run that has written so many bytes; all keys have an equal share."""
     sizes = results_bytes(planned)
     share = max(0.0, 1.0 - written / sum(sizes.values()))
     return {key: share * size for key, size in sizes.items()}

@@ -42,7 +42,7 @@ LARGE = 1e9
 """Bytes of results whose size is logged before the run."""
 
 RESUMED_SECTIONS = ("settle", "step", "record")
-"""Those that a resumed run does not repeat."""
+"""Parts of a run that a resumed run does not repeat."""
 
 
 def run_case(
@@ -261,7 +261,7 @@ class _Job:
 
 
 def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
-    """The same warnings, after the progress has received each."""
+    """Warnings as they come, after the progress has received each."""
     for warning in warnings:
         progress.warned(warning)
     return warnings

@@ -88,7 +88,7 @@ def require_stages(planned: Plan) -> None:
 
 
 def _require_stages(kind: Kind[Any, Any], stepped: Scene) -> None:
-    """The same for the scene that is stepped."""
+    """Require that the scene that is stepped can have the stages of its case."""
     if (source := kind.stages_from(stepped.case)) is not None:
         for name in kind.stage_names(stepped):
             settled_state(source / STAGES, name, kind.stage_keys(stepped))

@@ -40,10 +40,10 @@ LARGEST_RATIO = 1.99
 
 
 HOMOGENISED_DIGITS = 5
-"""Of β from the brick alone, which agrees with plane waves within 0.01 %."""
+"""Digits known of β from the brick alone, which agrees with plane waves within 0.01 %."""
 
 MOST_DIGITS = 6
-"""Of β from passes; the peaks they compare have rounding errors beyond."""
+"""The most digits known of β from passes; the peaks they compare have rounding errors beyond."""
 
 PAST = 0.99
 """Largest velocity of the side at the end of a pass over its peak; AFTER its peak a cosine is at 0.905."""

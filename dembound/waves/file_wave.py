@@ -88,12 +88,12 @@ class FileWave(Wave):
         return self.start + self._times[-1]
 
     def ends(self) -> tuple[tuple[str, float, float], ...]:
-        """Its first and last velocities, beyond which it is zero, with their times."""
+        """First and last velocities of the record, beyond which it is zero, with their times."""
         times, velocities = self._samples()
         return ("begins", float(times[0]), float(velocities[0])), ("ends", float(times[-1]), float(velocities[-1]))
 
     def time_scale(self) -> float:
-        """Its length, although single samples may vary much faster."""
+        """Length of the record, s, although single samples may vary much faster."""
         return self.duration() - self.start
 
     def moved(self, here: Path, there: Path) -> dict[str, str]:

@@ -76,7 +76,7 @@ class Wave(Table, ABC):
         return self.start
 
     def ends(self) -> tuple[tuple[str, float, float], ...]:
-        """Of a history of samples, where it may jump: "begins" or "ends", time (s), and velocity (m/s); else none."""
+        """Ends of a history of samples, where it may jump: "begins" or "ends", time (s), velocity (m/s); else none."""
         return ()
 
     def dominant_period(self) -> float:

@@ -12,9 +12,9 @@ import numpy as np
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step
 from dembound.casefile.bar import BarCase
-from dembound.gauge.hopkinson import specimen
-from dembound.gauge.pulses import Setup, Signals, at_faces
-from dembound.gauge.separation import Bar
+from dembound.gauge.hopkinson.pulses import Setup, Signals, at_faces
+from dembound.gauge.hopkinson.separation import Bar
+from dembound.gauge.hopkinson.specimen import specimen
 from dembound.kinds import load, with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation

@@ -19,11 +19,11 @@ from hopkinson_bar import (
 )
 
 from dembound.errors import CaseError
-from dembound.gauge.hopkinson import EQUILIBRIUM, slope_of, specimen
-from dembound.gauge.pulse_checks import doubts_of_pulses, travel_speed
-from dembound.gauge.pulses import Windows, at_faces, found_windows
-from dembound.gauge.separation import Bar, moved
-from dembound.gauge.slope_error import SlopeError, doubts_of_slope, slope_error
+from dembound.gauge.hopkinson.pulse_checks import doubts_of_pulses, travel_speed
+from dembound.gauge.hopkinson.pulses import Windows, at_faces, found_windows
+from dembound.gauge.hopkinson.separation import Bar, moved
+from dembound.gauge.hopkinson.slope_error import SlopeError, doubts_of_slope, slope_error
+from dembound.gauge.hopkinson.specimen import EQUILIBRIUM, slope_of, specimen
 
 
 def found_of(given, setup=SETUP, windows=None):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,8 +45,12 @@ class Record:
     def __init__(self, path: Path) -> None:
         self.path = path
 
-    def get(self, key: str) -> Run | None:
-        """The results of the case with this digest; None if it has not been run."""
+    def get(self, key: str, monitors: Iterable[str] = (), quantity: str = "velocity") -> Run | None:
+        """The results of the case with this digest; None if it has not been run.
+
+        Raises RecordError for results that no run writes, and for those of a run without a failure that lack the
+        quantity at one of these monitors.
+        """
         if not self.path.is_file():
             return None
         with open_record(self.path) as file:
@@ -60,6 +65,9 @@ class Record:
                 raise _damaged(group, "attribute failure or work")
             found = Run(**values)
             found.motions = {name: _read_history(inner, found) for name, inner in group["gauges"].items()}
+            for name in () if found.failure else monitors:
+                if name not in found.motions or quantity not in found.motions[name].values:
+                    raise _damaged(group, f"{quantity} at {name}")
             found.findings = {
                 name: Finding(float(value[()]), text_of(value.attrs["unit"]))
                 for name, value in _scalars(group["findings"]).items()

@@ -147,7 +147,7 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
     choices, left_out = choices_of(case, named)
     if len(choices) == 1 and _wanted_reference(case, options) == "finest":
         raise CaseError([f"--vary: {choices[0].name} is the only valid choice, which would be its own reference"])
-    runs = _Runs(record_in(folder, resume), shown)
+    runs = _Runs(record_in(folder, resume), shown, options.wanted.quantity)
     outcomes = runs.all_of(choices, options.repeats or case.chart.repeats)
     if all(outcome.failure for outcome in outcomes):
         raise RunError("\n".join(f"{c.name}: {o.failure}" for c, o in zip(choices, outcomes, strict=True)))
@@ -197,8 +197,8 @@ def _point(line: Line) -> Point:
 class _Runs:
     """Runs cases as far as the record does not have their results."""
 
-    def __init__(self, record: Record, shown: Shown) -> None:
-        self._record, self._shown = record, shown
+    def __init__(self, record: Record, shown: Shown, quantity: str) -> None:
+        self._record, self._shown, self._quantity = record, shown, quantity
         self._runner = Runner(record, shown)
 
     def all_of(self, choices: Sequence[Choice], repeats: int) -> list[Run]:
@@ -219,7 +219,9 @@ class _Runs:
 
     def one(self, name: str, case: Case, inside: Box | None = None) -> Run:
         """The outcome of a case, without costs if it has to be run; inside : where its findings are looked for."""
-        if (known := self._record.get(digest(case))) is not None:  # damage ends the chart, and is no failed choice
+        monitors = [monitor.name for monitor in case.monitor]
+        known = self._record.get(digest(case), monitors, self._quantity)
+        if known is not None:  # damage ends the chart, and is no failed choice
             return known
         try:
             return self._runner.run(case, name, inside)

@@ -81,7 +81,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return case.ground.size is None and any(case.side(side).waves for side in case.outside_sides)
 
     def cautions(self, cases: Sequence[DiskCase]) -> tuple[str, ...]:
-        """That packings differ at random, if there are different bricks, and random ones among them."""
+        """A warning that packings differ at random, if there are different bricks, and random ones among them."""
         packings = [case.packing for case in cases]
         bricks = {repr(packing.with_copies(1, 1).model_copy(update={"origin": (0.0, 0.0)})) for packing in packings}
         if len(bricks) < 2 or not any(packing.packed_under_stress for packing in packings):

@@ -33,7 +33,7 @@ NARROW = 10.0
 """Fewest larger disks across a body between free edges."""
 
 ROTATION = 2
-"""Of the motions that are held."""
+"""Number of the rotation among the motions that are held."""
 
 EQUAL = 1e-6
 """Relative difference of forces that count as equal."""

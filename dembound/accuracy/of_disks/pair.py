@@ -54,7 +54,7 @@ class Pair:
 
     @cached_property
     def scenes(self) -> list[DiskScene]:
-        """Those that are run: if it matters, also the smaller one with whole cells at its sides, see `Coarser`."""
+        """The scenes that are run: if it matters, also the smaller one with whole cells at its sides, see `Coarser`."""
         whole = [build(self.given.with_whole_cells)] if self.given.weight > 0.0 else []
         return [self.smaller, self.larger, *whole]
 

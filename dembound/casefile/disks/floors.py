@@ -26,12 +26,12 @@ def floors(holes: Sequence[Hole], packing: Packing, ground: Ground, boundary: Ma
 
 
 def lowered(found: Mapping[str, Floor], boundary: Mapping[str, Any]) -> dict[str, Floor]:
-    """Those floors at sides beyond which a continuum is as high; an invalid side is None."""
+    """Floors at sides beyond which a continuum is as high; an invalid side is None."""
     return {side: floor for side, floor in found.items() if (table := boundary.get(side)) and table.is_outside}
 
 
 def lowered_in(tables: Mapping[str, Any]) -> dict[str, Floor]:
-    """The same for the tables of a case; one that is invalid on its own, or an entry that is, is None."""
+    """Lowered floors from the tables of a case; a table that is invalid on its own, or such an entry, is None."""
     packing, ground, boundary = (tables[key] for key in ("packing", "ground", "boundary"))
     holes = [hole for hole in tables["hole"] if hole]
     return lowered(floors(holes, packing, ground, boundary), boundary) if packing and ground else {}

@@ -44,7 +44,7 @@ class CutBonds:
 
     @classmethod
     def of(cls, ground: PackedMaterial, cut: CutContacts, positions: np.ndarray) -> CutBonds:
-        """Those of cut contacts of a body with disks at these positions (n, 2) m."""
+        """Bonds of the cut contacts of a body with disks at these positions (n, 2) m."""
         law, kind, second = ground.stiffness, cut.contact_type, cut.is_second
         arms = np.where(second, [law.arm_j[kind], law.arm_i[kind]], [law.arm_i[kind], law.arm_j[kind]])
         vectors = cut.vectors(ground.brick).T
@@ -81,7 +81,7 @@ class CutBonds:
         return np.stack([fx, fy, bending + self.arm * (nx * fy - ny * fx)])
 
     def between(self, sides: Sequence[float]) -> CutBonds:
-        """Those with the motion half-way between where they are and the sides of the continuum.
+        """Bonds that see the motion half-way between where they are and the sides of the continuum.
 
         sides : left and right (x), lower and upper (y), m. A component along the normal is moved by the strain along
         it, one across by the shear strain, so that no rotation strains a tie.
@@ -99,12 +99,12 @@ class CutBonds:
         return replace(self, corrector=corrector)
 
     def read_at(self, point: np.ndarray) -> CutBonds:
-        """The same with the continuum's motion at other points (t, 2) m: c has the way from there."""
+        """These bonds with the continuum's motion at other points (t, 2) m: c has the way from there."""
         corrector = self.corrector + _uniform((self.point - point).T)
         return replace(self, point=point, corrector=corrector)
 
     def numbered_from(self, first: int) -> CutBonds:
-        """The same where the body's first disk is that of this number."""
+        """These bonds where the body's first disk has this number."""
         return replace(self, particle=self.particle + first)
 
 

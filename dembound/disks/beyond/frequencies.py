@@ -40,7 +40,7 @@ def mean_frequency_of(wave: Wave) -> float:
 
 
 def _mean_of(signal: Signal) -> float:
-    """The same of a signal; nan without energy."""
+    """Mean frequency of a signal, Hz; nan without energy."""
     frequencies, energy = choice.energies(signal)
     return float(frequencies @ energy / energy.sum()) if energy.sum() > 0.0 else math.nan
 

@@ -53,7 +53,7 @@ class GroundWaves:
     grain: float
 
     def near(self, places: np.ndarray) -> NearPlaces:
-        """The same near places (k, 2) m."""
+        """The waves near places (k, 2) m alone."""
         spans = []
         for wave in self.waves:
             delays, more = wave.delays(places), 0.5 * self.grain * float(np.hypot(*wave.slowness))
@@ -203,7 +203,7 @@ def reference_point(case: DiskCase) -> tuple[float, float]:
 
 
 def _beyond(medium: Medium, table: IncidentWave) -> str:
-    """That an angle is not below the critical one."""
+    """A problem in words: an angle that is not below the critical one."""
     sign = float(np.copysign(1.0, table.angle))
     critical = sign * critical_angle(medium, table.type, sign)
     return (

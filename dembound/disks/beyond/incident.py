@@ -68,7 +68,7 @@ class Part(NamedTuple):
         return factors + self.moved
 
     def shared(self, sharing: Sharing) -> Part:
-        """The same forces on other disks, too."""
+        """These forces on other disks, too."""
         row, which = np.nonzero(self.node[:, None] == sharing[0])
         rows = np.concatenate([np.arange(len(self.node)), row])
         node = np.concatenate([self.node, sharing[1][which]])
@@ -85,7 +85,7 @@ def parts_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int)
 
 
 def _part_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> Part:
-    """Those of a few ties."""
+    """The forces that enter through a few ties."""
     bonds = wall.bonds
     disk, own, place = np.unique(bonds.particle, return_index=True, return_inverse=True)
     edges = _at_edges(bonds, positions, wall.mesh.sides)

@@ -59,7 +59,7 @@ class ElementSizes(NamedTuple):
         sides: Sequence[str],
         periodic: tuple[bool, bool],
     ) -> ElementSizes:
-        """Those of a body with a continuum beyond some sides.
+        """Sizes of the elements of a body with a continuum beyond some sides.
 
         Raises CaseError if no size is given and nothing in the case makes waves.
         """
@@ -92,7 +92,7 @@ class Level(NamedTuple):
 
     @classmethod
     def of(cls, ground: PackedMaterial, body: Assembly, floor: Floor, side: str) -> Level:
-        """That beyond a side of a body in front of a floor; disks of the body on it that remain are below."""
+        """The level beyond a side of a body in front of a floor; disks of the body on it that remain are below."""
         near, rounding = float(np.abs(ground.brick.vectors[:, 0]).max()), ON_IT * ground.brick.mean_diameter
         x, y = body.positions.T
         highest = float(y[x < x.min() + near if side == "left" else x > x.max() - near].max())
@@ -129,7 +129,7 @@ class Rim(NamedTuple):
         size: ElementSizes,
         floors: Mapping[str, Floor],
     ) -> Rim:
-        """That of a body with a continuum beyond some sides, and with floors at its left and right side.
+        """The rim of a body with a continuum beyond some sides, and with floors at its left and right side.
 
         Raises CaseError if no element of the least useful height fits between a body and the surface above it.
         """
@@ -188,7 +188,7 @@ class Outline(NamedTuple):
         periodic: tuple[bool, bool],
         floors: Mapping[str, Floor] = NO_FLOORS,
     ) -> Outline:
-        """That of a body which is periodic along some axes, with floors at its left and right side.
+        """The outline of a body that is periodic along some axes, with floors at its left and right side.
 
         Raises CaseError for settings with which there is no mesh.
         """

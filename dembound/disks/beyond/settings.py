@@ -51,7 +51,7 @@ class Settings(NamedTuple):
 
     @property
     def given(self) -> dict[str, float]:
-        """As keys of the table, for a case with these settings, whatever its waves."""
+        """These settings as keys of the table, for a case that is to have them whatever its waves."""
         own = {"element": self.element, "margin": self.margin, "layers": self.layers}
         return own | {"reflection": self.absorption.reflection}
 
@@ -75,7 +75,7 @@ class Settings(NamedTuple):
 
 
 def settings_of(case: DiskCase, medium: Medium, diameter: float, box: Box, sides: Sequence[str]) -> Settings:
-    """Those of a case for the continuum on some sides of a box (left, bottom, right, top; m).
+    """Settings that a case gives for the continuum on some sides of a box (left, bottom, right, top; m).
 
     diameter : mean one of the disks, m.
 

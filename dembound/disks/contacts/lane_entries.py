@@ -33,7 +33,7 @@ class Ends:
 
     @classmethod
     def of(cls, assembly: Assembly, slot: np.ndarray, row_of: np.ndarray) -> "Ends":
-        """Those of an assembly with its disks in slots (n,); row_of (2b,) : line of each contact for either disk."""
+        """Entries of an assembly with its disks in slots (n,); row_of (2b,) : line of each contact for either disk."""
         slot, row_of = slot.astype(np.int32), row_of.astype(np.int32)
         i, j = assembly.pairs.T
         kind = 2 * assembly.contact_type

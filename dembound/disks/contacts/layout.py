@@ -59,12 +59,12 @@ def _plan(part: Assembly) -> RowPlan | None:
 
 
 def with_supports(rows: Rows, slots: np.ndarray) -> Rows:
-    """The same contacts where the disks in some slots (k,) are supported."""
+    """These contacts where the disks in some slots (k,) are supported."""
     return rows if isinstance(rows, NeighbourTable) else with_special(rows, slots)
 
 
 def with_special(rows: LaneRows, slots: np.ndarray) -> LaneRows:
-    """The same rows with special blocks where some slots (k,) are."""
+    """These rows with special blocks where some slots (k,) are."""
     special = rows.special.copy()
     blocks = np.unique(slots // LANES)
     special[blocks[blocks < len(special)]] = True

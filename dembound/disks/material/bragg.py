@@ -41,7 +41,7 @@ MOST_DISKS = 5_000
 
 
 class Coupling(NamedTuple):
-    """Of the slower wave along an axis with that in the opposite direction.
+    """How the slower wave along an axis couples with that in the opposite direction.
 
     wavenumber : k, rad/m. frequency : at which copies send it back in step, Hz. per_length : κ, 1/m.
     """
@@ -57,7 +57,7 @@ class Coupling(NamedTuple):
 
 
 def coupling(ground: PackedMaterial, axis: int, number: int) -> Coupling:
-    """That of the wave along an axis (0 x, 1 y) of which so many half lengths are as long as the brick."""
+    """Coupling of the wave along an axis (0 x, 1 y) of which so many half lengths are as long as the brick."""
     from scipy.sparse import diags
     from scipy.sparse.linalg import splu
 

@@ -21,7 +21,7 @@ def strength_of(material: Material) -> Limits:
 
 
 def limits_of(material: Material) -> Limits:
-    """The same as its law has them; bonds without limits for a law without history."""
+    """Limits of contacts as their law has them; bonds without limits for a law without history."""
     strength = strength_of(material)
     if not LAWS[material.law].has_history:
         return strength._replace(tension=np.inf, cohesion=np.inf)

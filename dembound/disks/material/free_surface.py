@@ -27,7 +27,7 @@ SLENDER = 2.0
 depth y at least as exp(−2πy/width)."""
 
 FAINT = 1e-9
-"""See `Network.relaxed`: in packings without bonds a disk at a surface may have one contact only."""
+"""Springs against single motions, see `Network.relaxed`: without bonds a disk at a surface may have one contact."""
 
 LEAST_MASS = 0.5
 """Part of its medium's mass that a node keeps where a skin is stiff, of negative depth."""
@@ -63,7 +63,7 @@ def skin_depths(brick: Brick, stiffness: Stiffness, tensor: np.ndarray, axis: in
 
 
 def cut_at(brick: Brick, height: float) -> Brick:
-    """The same packing in bricks that end at a height (m) above the lower edge of one of its bricks.
+    """The packing in bricks that end at a height (m) above the lower edge of one of its bricks.
 
     Disks centred on it are above. Its rows along y = 0 are rows inside of it.
     """

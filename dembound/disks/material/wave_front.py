@@ -18,7 +18,7 @@ SHARE = 0.98
 """Largest share of the stability limit in this computation; at the limit, group speeds of single waves are infinite."""
 
 INDEX = np.array([[0, 2], [3, 1]])
-"""Of the displacement gradient ∂u_a/∂b in homogenised matrices, see homogenise.GRADIENTS."""
+"""Index of the displacement gradient ∂u_a/∂b in homogenised matrices, see homogenise.GRADIENTS."""
 
 
 def front_of(ground: PackedMaterial, safety: float) -> Front:

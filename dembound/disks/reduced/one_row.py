@@ -67,7 +67,7 @@ class OneRow(DiskScene):
         return values[self.like]
 
     def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:
-        """Of a side of the whole scene, see `Scene.side_peaks`."""
+        """Peaks at a side of the whole scene, see `Scene.side_peaks`."""
         return self.of.side_peaks(side, peaks[np.searchsorted(self.tracked, self.like[self.of.tracked])])
 
     @cached_property
@@ -125,7 +125,7 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
 
 
 def _counterparts(assembly: Assembly, row: Assembly, axis: int) -> np.ndarray | None:
-    """Of each disk (n,) the row's disk that is a copy of the same one in the same brick; None where one has none."""
+    """For each disk (n,) the row's disk that is a copy of the same one in its brick; None if any disk has none."""
     along, kinds = 1 - axis, int(assembly.brick_particle.max()) + 1
     wanted, there = (each.tile[:, along].astype(np.int64) * kinds + each.brick_particle for each in (assembly, row))
     order = np.argsort(there)

@@ -147,7 +147,7 @@ def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:
 
 
 def _matched(scene: DiskScene, side: str) -> DiskScene:
-    """The same scene with matched factors of the dashpots of a side."""
+    """The scene with matched factors of the dashpots of a side."""
     factors = {f"beta_{motion}": "matched" for motion in scene.case.side(side).factors}
     table = scene.case.side(side).model_copy(update=factors)
     return with_boundaries(scene, replace(scene.case, boundary={**scene.case.boundary, side: table}))

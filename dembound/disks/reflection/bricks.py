@@ -129,7 +129,7 @@ class LastBrick:
         springs: np.ndarray | None = None,
         kept: Sequence[int] | np.ndarray = (),
     ) -> Condensed:
-        """It condensed to its interface, and behind that, ascending, to others (k,) of its 3n degrees of freedom.
+        """The brick condensed to its interface and, behind it, ascending, to others (k,) of its 3n degrees of freedom.
 
         mass, moves, damping, springs : (3, n) kg and kg·m², bool, and of dashpots and springs to what is fixed.
 
@@ -145,7 +145,7 @@ class LastBrick:
 
 
 def _missing(side: str) -> CaseError:
-    """That the last brick cannot be condensed to its interface."""
+    """The error for a last brick that cannot be condensed to its interface."""
     return CaseError([f"boundary.{side}: holds or leaves out disks at the inner side of its last brick; take longer"])
 
 

@@ -76,7 +76,7 @@ class Body(NamedTuple):
     moves: np.ndarray
 
     def numbers(self, disks: np.ndarray) -> np.ndarray:
-        """Those degrees of freedom of some disks that move."""
+        """Numbers of the moving degrees of freedom of some disks."""
         every = (np.arange(3)[:, None] * self.within.disks + disks).ravel()
         return every[self.moves[every]]
 

@@ -63,7 +63,7 @@ class Reflections:
         return tuple(self.same)
 
     def total(self, kind: Kind) -> np.ndarray:
-        """Both together (f, a)."""
+        """P and S together (f, a)."""
         return self.same[kind] + self.converted[kind]
 
 
@@ -109,7 +109,7 @@ class Meter:
 
     @classmethod
     def of(cls, side: str, time_step: float, *scenes: DiskScene) -> Meter:
-        """That of a side with supports, or a free one; scenes : of the same packing, see `bricks.end_scene`.
+        """The meter of a side with supports, or of a free one; scenes : of the same packing, see `bricks.end_scene`.
 
         Raises CaseError for a scene in which disks of the end are missing.
         """

@@ -73,7 +73,7 @@ class Grid:
 
     @classmethod
     def of(cls, scene: DiskScene, axis: int) -> Grid:
-        """That of a scene for a wave along an axis."""
+        """The coarse grid of a scene for a wave along an axis."""
         order, gradients = ([0, 1], [0, 1, 2, 3]) if axis == 1 else ([1, 0], [1, 0, 3, 2])
         ground, box = scene.ground, np.array(scene.case.packing.box)
         size = (box[2:] - box[:2])[order]

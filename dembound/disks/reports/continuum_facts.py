@@ -95,7 +95,7 @@ def _levels(outside: Surroundings) -> str:
 
 
 def _less(depth: float) -> str:
-    """That the continuum ends below or above a floor, if it does."""
+    """In words how far a continuum ends below or above a floor; empty if it ends there."""
     if abs(depth) < SHOWN:
         return ""
     return f" (the continuum {abs(depth):.3f} m {'below' if depth > 0.0 else 'above'} that)"
@@ -118,7 +118,7 @@ def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -
 
 
 def _as_small(scene: DiskScene, error: float) -> str:
-    """That elements chosen for a case are not small enough for its accuracy, as smaller ones gain nothing."""
+    """In words that elements are too large for the accuracy of a case, as smaller ones shorten the step; or empty."""
     keys = scene.case.outside
     if keys.element is not None or error <= LEEWAY * keys.accuracy:
         return ""
@@ -177,7 +177,7 @@ def _lengths(outside: Surroundings, count: int) -> str:
 
 
 def _reflections(outside: Surroundings, signals: Sequence[Signal]) -> tuple[list[float], list[float]]:
-    """Of P and S waves at `ANGLES`, at the lowest dominant frequency of the waves; of several axes the largest."""
+    """Reflections of P and S waves at `ANGLES`, at the lowest dominant frequency; of several axes the largest."""
     body = outside.body
     lowest = min((signal.wave.dominant_frequency() for signal in signals), default=math.inf)
     found = []

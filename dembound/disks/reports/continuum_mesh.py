@@ -72,7 +72,7 @@ class Across(NamedTuple):
 
     @classmethod
     def of(cls, columns: Arrays) -> Across:
-        """That of a record; empty for a continuum that is not periodic."""
+        """Points of a record's continuum that meet across a period; empty for one that is not periodic."""
         position, node = columns["continuum/position"], columns["continuum/node"].astype(np.int64)
         low, high = (columns["continuum/element"][:, None, None, end] for end in (slice(0, 2), slice(2, 4)))
         is_last = np.zeros((1, *node.shape[1:], 2), dtype=np.bool_)

@@ -187,7 +187,7 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
 
 
 def _entering_speeds(scene: DiskScene) -> dict[str, tuple[str, float]]:
-    """Of every wave that enters its slowest way: "P waves along x" or so, and their speed (m/s)."""
+    """For every wave that enters its slowest part in words, such as "P waves along x", and the speed (m/s)."""
     found: dict[str, tuple[str, float]] = {}
     ways: list[tuple[int, str, str]] = [
         (normal_axis(side), motion, name) for side, each in scene.case.driving.items() for motion, name in each.items()

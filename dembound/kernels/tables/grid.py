@@ -70,7 +70,7 @@ class Blocks(NamedTuple):
 
 
 ALONG = 4
-"""See Absorber.axes."""
+"""Factor of the axis along a layer in `Absorber.axes`."""
 
 
 class Absorber(NamedTuple):

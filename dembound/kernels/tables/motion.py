@@ -46,7 +46,7 @@ class Followers(NamedTuple):
     rest: np.ndarray
 
     def in_slots(self, slot: np.ndarray) -> "Followers":
-        """The same by the slots (n,) of particles."""
+        """The table by the slots (n,) of particles."""
         twin = np.where(self.twin < 0, self.twin, slot[self.twin])
         return self._replace(member=slot[self.member], twin=twin, node=slot[self.node])
 

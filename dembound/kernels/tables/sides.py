@@ -47,7 +47,7 @@ class Sides(NamedTuple):
 
     @classmethod
     def none(cls) -> "Sides":
-        """Of no side."""
+        """The table of no side."""
         number, value = np.zeros(0, dtype=np.int64), np.zeros(0)
         return cls(
             kind=number,

@@ -20,7 +20,7 @@ class Seam(NamedTuple):
 
 
 class SeamEnds(NamedTuple):
-    """The same for a column under the history-dependent law: start (k + 1,) rows of its contact ends, end (e,).
+    """Ends of a seam for a column under the history-dependent law: start (k + 1,) rows of its contact ends, end (e,).
 
     force : (4, b) of its contacts, see Contacts.
     """

@@ -70,7 +70,7 @@ class Library:
 
     @cached_property
     def _rest_of_runs(self) -> np.ndarray:
-        """The same for as long as the runs."""
+        """Motion at rest, for as long as the runs."""
         if not is_at_rest(self.case):
             return self._motion(REST)
         return np.zeros((len(self.time) + self.lead * self._per_spacing, len(self.monitors), WIDTH))

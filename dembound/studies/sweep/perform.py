@@ -137,11 +137,11 @@ class Begun(Progress):
             self._path.touch()
 
     def settling(self, steps: int, ratio: float) -> None:
-        """Of a static stage."""
+        """Report the progress of a static stage."""
         self.make()
 
     def running(self, run: Run, steps: int) -> None:
-        """Of the run itself."""
+        """Report the progress of the run itself."""
         self.make()
 
 

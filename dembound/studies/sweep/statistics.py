@@ -48,7 +48,7 @@ def statistic(group: Mapping[str, Any], quantity: str, values: Sequence[float]) 
 
 
 def statistics(members: Sequence[Member], outcomes: Sequence[Outcome | None]) -> Iterator[Statistic]:
-    """Of every group of members and every quantity, in the order of the members."""
+    """Statistics of every group of members and every quantity, in the order of the members."""
     groups: list[tuple[Mapping[str, Any], list[Outcome]]] = []
     for member, outcome in zip(members, outcomes, strict=True):
         found = next((each for group, each in groups if group == member.group), None)

@@ -56,7 +56,7 @@ class Swept:
 
     @property
     def states(self) -> list[str]:
-        """Of every member: done, or why it is not."""
+        """State of every member: done, or why it is not."""
         return [MISSING if each is None else each.failure or "done" for each in self.outcomes]
 
     @property

@@ -7,7 +7,7 @@ from gauge_records import drift, hum, noise, offset, signal
 from dembound.gauge.baseline import find_baseline, quiet_samples
 from dembound.gauge.filters import Filters
 from dembound.gauge.noise import noise_of
-from dembound.gauge.signal import Signal
+from dembound.gauge.reading.signal import Signal
 from dembound.gauge.treatment import Treatment, treated
 
 TIME, VALUES = signal().T

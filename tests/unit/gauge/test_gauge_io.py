@@ -8,7 +8,7 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.gauge.gauge_io import BarMetadata, read_free_end, read_gauge
-from dembound.gauge.signal import Reading
+from dembound.gauge.reading.signal import Reading
 
 BAR = {"position": 0.6, "length": 0.99}
 VELOCITY = np.interp(np.arange(400), [0, 100, 140, 240, 270], [0.0, 0.0, 10.0, 4.0, 8.0])

@@ -3,8 +3,8 @@
 import pytest
 
 from dembound.errors import CaseError
-from dembound.gauge.pulses import Setup
-from dembound.gauge.separation import Bar
+from dembound.gauge.hopkinson.pulses import Setup
+from dembound.gauge.hopkinson.separation import Bar
 
 BARS = (5000.0, 8000.0, 0.02)
 LENGTHS = (1.0, 0.8, 0.01, 2e-4)

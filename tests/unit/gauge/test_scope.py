@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.gauge.signal import Reading, read_signal
-from dembound.gauge.units import Bridge
+from dembound.gauge.reading.signal import Reading, read_signal
+from dembound.gauge.reading.units import Bridge
 
 TIMES, VALUES = [-1e-3, -0.5e-3, 0.0, 0.5e-3], [0.001, -0.002, 0.003, -0.004]
 """In s and V."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.exact.pochhammer import wavenumber
-from dembound.gauge.separation import FADED, Bar, moved, separated
+from dembound.gauge.hopkinson.separation import FADED, Bar, moved, separated
 
 TIME = 1e-6 * np.arange(4000)
 SPEED, WAY = 5000.0, 0.5

@@ -3,8 +3,8 @@
 import numpy as np
 from hopkinson_bar import SETUP, signals
 
-from dembound.gauge.hopkinson import specimen
-from dembound.gauge.pulses import at_faces
+from dembound.gauge.hopkinson.pulses import at_faces
+from dembound.gauge.hopkinson.specimen import specimen
 from dembound.plot.hopkinson import plot_hopkinson
 
 

@@ -112,7 +112,7 @@ def surface_of(scene: DiskScene) -> float | None:
 
 
 def hole_of(scene: DiskScene) -> Circle:
-    """The one hole of a scene; raises CaseError unless it is one circle, in linear rock that goes on around it."""
+    """The only hole of a scene; raises CaseError unless it is one circle, in linear rock that goes on around it."""
     case = scene.case
     problems = [*law_problems(case), *motion_problems(case)]
     if len(case.hole) != 1 or not isinstance(case.hole[0], Circle):

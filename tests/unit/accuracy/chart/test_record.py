@@ -85,6 +85,18 @@ def test_a_run_that_is_a_link_to_itself_is_refused(record) -> None:
         record.get("loop")
 
 
+def test_a_run_without_a_monitor_or_a_quantity_that_is_compared_is_refused(record) -> None:
+    assert record.get(KEY, ["top"], "stress").work > 0
+    with h5py.File(record.path, "a") as file:
+        del file[f"{GAUGE}/stress"]
+    with pytest.raises(RecordError, match="stress at top"):
+        record.get(KEY, ["top"], "stress")
+    with h5py.File(record.path, "a") as file:
+        del file[GAUGE]
+    with pytest.raises(RecordError, match="velocity at top"):
+        record.get(KEY, ["top"])
+
+
 def test_whole_numbers_are_read_as_numbers(record) -> None:
     with h5py.File(record.path, "a") as file:
         replaced(f"{GAUGE}/time", np.arange(4))(file)

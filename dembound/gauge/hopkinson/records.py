@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.gauge.hopkinson.pulses import Signals
 from dembound.gauge.noise import undithered
 from dembound.gauge.plausibility import implausible_signal
-from dembound.gauge.pulses import Signals
-from dembound.gauge.recorded import is_record
-from dembound.gauge.signal import Reading, Signal, read_signal
+from dembound.gauge.reading.recorded import is_record
+from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.gauge.treatment import Treatment, treated
 from dembound.results.reader import history_of, open_record
 from dembound.words import percent

@@ -7,8 +7,8 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.estimates import FEWEST
-from dembound.gauge.scope import Columns, read_columns
-from dembound.gauge.units import (
+from dembound.gauge.reading.scope import Columns, read_columns
+from dembound.gauge.reading.units import (
     AS_THEY_ARE,
     Bridge,
     Unit,

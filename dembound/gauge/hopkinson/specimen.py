@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.gauge.estimates import FEWEST
+from dembound.gauge.hopkinson.pulses import Faces, Setup
 from dembound.gauge.peaks import denoised
-from dembound.gauge.pulses import Faces, Setup
 
 EQUILIBRIUM = 0.05
 """Largest |F_1 − F_2| over their mean in equilibrium."""

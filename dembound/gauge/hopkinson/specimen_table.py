@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dembound.gauge.hopkinson import Specimen
+from dembound.gauge.hopkinson.specimen import Specimen
 from dembound.results.replacing import replacing
 
 HEAD = (

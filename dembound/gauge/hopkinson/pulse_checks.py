@@ -10,10 +10,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from dembound.gauge.estimates import Estimate
-from dembound.gauge.hopkinson import Specimen
+from dembound.gauge.hopkinson.pulses import Faces, Setup, Signals, Windows, found_windows
+from dembound.gauge.hopkinson.slope_error import unbalanced
+from dembound.gauge.hopkinson.specimen import Specimen
 from dembound.gauge.peaks import denoised, white_noise
-from dembound.gauge.pulses import Faces, Setup, Signals, Windows, found_windows
-from dembound.gauge.slope_error import unbalanced
 from dembound.words import percent
 
 BALANCED = 0.015

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.gauge.hopkinson.separation import Bar, moved, separated
 from dembound.gauge.peaks import CREST, noise_left, smooth, white_noise, width_of
 from dembound.gauge.plausibility import implausible_modulus, implausible_size
-from dembound.gauge.separation import Bar, moved, separated
 
 ONSET = 0.02
 """Share of its largest value at which the incident pulse begins; with noise five standard deviations of it."""
@@ -244,7 +244,7 @@ def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Windo
 
 
 def _outside(time: np.ndarray, starts: Sequence[float]) -> str:
-    """That pulses begin before or behind a record, or that nothing of them is left, by the times (3,) s they begin."""
+    """Problems of pulses that begin (times (3,) s) before or behind a record, or of which nothing is left."""
     whole = f"the record is from {time[0]:.6g} to {time[-1]:.6g} s"
     names = ("incident", "reflected", "transmitted")
     late = [f"{name} at {at:.6g} s" for name, at in zip(names, starts, strict=True) if at >= time[-1]]

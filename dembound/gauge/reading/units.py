@@ -69,7 +69,7 @@ def value_unit(name: str) -> Unit | None:
 
 
 def required_time_unit(name: str) -> float:
-    """The same as `time_unit`; raises CaseError for other texts."""
+    """A unit of time by `time_unit`; raises CaseError for a text that is none."""
     found = time_unit(name)
     if found is None:
         raise CaseError([f"--time-unit: is {name}, must be s, ms, µs (us) or ns"])
@@ -77,7 +77,7 @@ def required_time_unit(name: str) -> float:
 
 
 def required_value_unit(name: str) -> Unit:
-    """The same as `value_unit`; raises CaseError for other texts."""
+    """A unit of values by `value_unit`; raises CaseError for a text that is none."""
     found = value_unit(name)
     if found is None:
         raise CaseError(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from dembound.errors import CaseError
-from dembound.gauge.units import time_unit, value_unit
+from dembound.gauge.reading.units import time_unit, value_unit
 
 SIGNS = str.maketrans({"−": "-", "∞": "inf"})
 """Characters of numbers that float() does not read."""

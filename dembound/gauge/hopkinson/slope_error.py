@@ -19,14 +19,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.gauge.estimates import FEWEST
-from dembound.gauge.hopkinson import Specimen, slope_of, specimen
+from dembound.gauge.hopkinson.pulses import Faces, Setup
+from dembound.gauge.hopkinson.specimen import Specimen, slope_of, specimen
 from dembound.gauge.noise import rounding
 from dembound.gauge.peaks import CREST, smooth, white_noise, width_of
-from dembound.gauge.pulses import Faces, Setup
 from dembound.words import percent
 
 SEED, DRAWS = 0, 40
-"""Of the noise: a standard error is known to 11 % from 40 slopes."""
+"""Seed and number of draws of the noise: a standard error is known to 11 % from 40 slopes."""
 
 NO_NOISE = 1e-9
 """Noise over the largest strain below which it is rounding."""

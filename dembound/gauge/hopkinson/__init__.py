@@ -1,0 +1,1 @@
+"""Split Hopkinson tests: pulses cut from signals on both bars; stress, strain and strain rate of the specimen."""
