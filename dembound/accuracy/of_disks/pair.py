@@ -54,7 +54,7 @@ class Pair:
 
     @cached_property
     def scenes(self) -> list[DiskScene]:
-        """Those that are run: if it matters, also the smaller one with whole cells at its sides, see `Coarser`."""
+        """The scenes that are run: if it matters, also the smaller one with whole cells at its sides, see `Coarser`."""
         whole = [build(self.given.with_whole_cells)] if self.given.weight > 0.0 else []
         return [self.smaller, self.larger, *whole]
 
@@ -97,7 +97,7 @@ def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float, ru
 
 
 def pair_of(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
-    """The same, not run."""
+    """The pair of `run_pair` before its runs."""
     for ratio in ratios(case, scene):
         given = coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter)
         pair = _with_far_sides(given, ratio, most)
