@@ -199,7 +199,7 @@ def versions(runs: Sequence[ReportedRun]) -> Table:
 
 
 def _version(run: ReportedRun) -> Entries:
-    """Entries of a run."""
+    """Version, seed and resumptions of a run."""
     yield "dembound", str(run.results.attributes.get("version", NONE))
     yield "seed", str(run.results.attributes.get("seed", NONE))
     if resumed := [f"step {each['step']:,}" for each in run.summary.get("resumed", [])]:

@@ -97,7 +97,7 @@ def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float, ru
 
 
 def pair_of(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
-    """The same, not run."""
+    """The pair of `run_pair` before its runs."""
     for ratio in ratios(case, scene):
         given = coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter)
         pair = _with_far_sides(given, ratio, most)
