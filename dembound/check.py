@@ -11,7 +11,8 @@ from dembound.motion.proposals import proposals
 from dembound.motion.ram import has_in_words, in_words
 from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
-from dembound.running import disk_facts, disk_warnings, plan, require_stages, warnings_before
+from dembound.running import plan, require_stages, space_in_words, space_warnings, warnings_before
+from dembound.words import Entries, percent
 
 TRIAL_STEPS, TRIALS = 20, 3
 
@@ -25,26 +26,29 @@ def check(case: Case, results: Path = Path("results")) -> tuple[dict[str, str], 
 
     planned = plan(case)
     require_stages(planned)
-    own = planned.kind.facts(planned.scene, planned.time_step)
-    warnings = [*warnings_before(planned), *disk_warnings(planned, results)]
-    cheaper = judge_of(case).proposals(planned.scene)
-    return _run_facts(planned, results) | own | cheaper | proposals(planned), warnings
+    facts = [
+        *_run_facts(planned, results),
+        *planned.kind.facts(planned.scene, planned.time_step),
+        *judge_of(case).proposals(planned.scene),
+        *proposals(planned),
+    ]
+    return dict(facts), [*warnings_before(planned), *space_warnings(planned, results)]
 
 
-def _run_facts(planned: Plan, results: Path) -> dict[str, str]:
+def _run_facts(planned: Plan, results: Path) -> Entries:
     """Steps, memory, space on the disk and time, and the reductions of the scene."""
     scene = planned.stepped
-    facts = {
-        "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
-        f"{planned.step_limit:.6g} s",
-        "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}",
-        "memory": f"about {in_words(scene.largest_memory)} at its peak{_here()}",
-        "disk": disk_facts(planned, results),
-        "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}, "
-        f"without {', '.join(['building', *planned.kind.not_estimated(scene.case), 'pictures'])}",
-    }
-    reductions = {"reduced": "; ".join(scene.reduced), "not reduced": "; ".join(planned.refused)}
-    return facts | {name: words for name, words in reductions.items() if words}
+    step, limit = planned.time_step, planned.step_limit
+    yield "time step", f"{step:.4g} s, {step / limit:.3f} of the limit {limit:.6g} s"
+    yield "steps", f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}"
+    yield "memory", f"about {in_words(scene.largest_memory)} at its peak{_here()}"
+    yield "disk", space_in_words(planned, results)
+    left_out = ", ".join(["building", *planned.kind.not_estimated(scene.case), "pictures"])
+    time_needed = f"{duration_in_words(_estimate(planned))} with {counted(scene.threads, 'thread')}"
+    yield "estimated time", f"{time_needed}, without {left_out}"
+    for name, reductions in (("reduced", scene.reduced), ("not reduced", planned.refused)):
+        if reductions:
+            yield name, "; ".join(reductions)
 
 
 def _here() -> str:
@@ -59,7 +63,7 @@ def _until_silent(planned: Plan) -> str:
         return ""
     rule = silent_rule(planned.scene, planned.kind.sources(planned.scene))
     return (
-        f", or until all monitors are below {100.0 * rule.level:.3g} % of their peaks for {rule.hold:.3g} s, after "
+        f", or until all monitors are below {percent(rule.level, 3)} of their peaks for {rule.hold:.3g} s, after "
         f"{rule.earliest:.3g} s"
     )
 
@@ -73,11 +77,6 @@ def duration_in_words(seconds: float) -> str:
             count = seconds / length
             return f"about {count:.0f} {unit}" if count >= 9.5 else f"about {count:.2g} {unit}"
     return f"about {round(seconds, -1 if seconds >= 19.5 else 0):.0f} s"
-
-
-def _threads_in_words(count: int) -> str:
-    """How many threads a run uses."""
-    return f"with {counted(count, 'thread')}"
 
 
 def _estimate(planned: Plan) -> float:

@@ -17,6 +17,7 @@ from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.motion.scene import Scene
 from dembound.results.histories import Quantity
+from dembound.words import Entries
 
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)
@@ -92,9 +93,9 @@ class Judge(ABC, Generic[C, S]):
         """What errors of some cases beside a run of one of them include besides errors, a line each."""
         return ()
 
-    def proposals(self, scene: S) -> dict[str, str]:
-        """Lines for `dembound check` about cheaper cases, by name; by default none."""
-        return {}
+    def proposals(self, scene: S) -> Entries:
+        """Lines for `dembound check` about cheaper cases; by default none."""
+        yield from ()
 
 
 def no_seed(case: Case) -> CaseError:

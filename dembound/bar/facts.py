@@ -16,6 +16,7 @@ from dembound.casefile.bar.range import BarRange
 from dembound.casefile.magnitudes import stress_in_words, waves_used
 from dembound.casefile.messages import counted, show
 from dembound.exact.dispersion import cells_per_wavelength
+from dembound.words import Entries
 
 ERROR = 0.01
 """Error of the phase speed that the shortest wavelength may have without a warning."""
@@ -24,44 +25,38 @@ PERCENT = f"{100.0 * ERROR:g} %"
 """`ERROR` in percent, as text."""
 
 
-def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
+def bar_facts(scene: BarScene, time_step: float) -> Entries:
     """Facts about a bar and its method, ready to print."""
-    bar = describe_bar(scene)
     case = scene.case
     apart = " and ".join(f"{size:g}" for size in dict.fromkeys(part.spacing for part in case.bar.parts))
-    facts = {
-        "nodes": f"{scene.count:,}, {apart} m apart",
-        "method": method_in_words(case),
-        "Courant number": f"{time_step / unit_step(scene):.4g}",
-        "bar": f"{case.bar.length:g} m long",
-    }
+    yield "nodes", f"{scene.count:,}, {apart} m apart"
+    yield "method", method_in_words(case)
+    yield "Courant number", f"{time_step / unit_step(scene):.4g}"
     if case.bar.range:
-        parts = zip(case.bar.range, case.bar.starts, case.bar.parts, strict=True)
-        facts |= {f"range {given.name}": _range_in_words(given, start, part) for given, start, part in parts}
+        yield "bar", f"{case.bar.length:g} m long"
+        for given, start, part in zip(case.bar.range, case.bar.starts, case.bar.parts, strict=True):
+            yield f"range {given.name}", _range_in_words(given, start, part)
     else:
-        facts["bar"] += f", section {bar['section']:.4g} m², density {bar['density']:g} kg/m³"
-        facts["stiffness"] = f"E = {case.bar.modulus / 1e9:.4g} GPa, c = {case.bar.speed:.4g} m/s"
-        facts["strength"] = _strength_in_words(case.bar)
-        if case.bar.fracture_energy is not None:
-            facts["cracks"] = _cracks_in_words(case.bar)
-        if case.bar.strength_rates is not None:
-            facts["strain rates"] = _rates_in_words(case.bar)
-        if case.bar.attenuation > 0.0:
-            facts["attenuation"] = f"α = {case.bar.attenuation:g} 1/m"
+        yield from _bar_facts(scene)
     for side in scene.edges:
-        facts[f"{side} end"] = side_in_words(describe_end(scene, side)) + _echo_in_words(scene, side, time_step)
+        yield f"{side} end", side_in_words(describe_end(scene, side)) + _echo_in_words(scene, side, time_step)
     for load in case.load:
-        facts[f"load {load.name}"] = (
-            f"{_pressure(load.pressure, case.wave[load.wave].peak())} times wave {load.wave}, "
-            f"on {counted(load.nodes, 'node')} at the {load.side} end"
-        )
+        pressure = f"{_pressure(load.pressure, case.wave[load.wave].peak())} times wave {load.wave}"
+        yield f"load {load.name}", f"{pressure}, on {counted(load.nodes, 'node')} at the {load.side} end"
     for name, node in scene.monitors.items():
-        facts[f"monitor {name}"] = f"node {node} at {scene.positions[node, 0]:.4g} m"
+        yield f"monitor {name}", f"node {node} at {scene.positions[node, 0]:.4g} m"
     for name, (cells, needed) in cells_of_waves(scene, time_step).items():
-        facts[f"wave {name}"] = (
-            f"{cells:.3g} cells in its shortest wavelength, {needed:.3g} needed for an error of {PERCENT}"
-        )
-    return facts
+        words = f"{cells:.3g} cells in its shortest wavelength, {needed:.3g} needed for an error of {PERCENT}"
+        yield f"wave {name}", words
+
+
+def _bar_facts(scene: BarScene) -> Entries:
+    """Length, section and material of a bar that is the same all along."""
+    described, bar = describe_bar(scene), scene.case.bar
+    section = f"section {described['section']:.4g} m², density {described['density']:g} kg/m³"
+    yield "bar", f"{bar.length:g} m long, {section}"
+    yield "stiffness", f"E = {bar.modulus / 1e9:.4g} GPa, c = {bar.speed:.4g} m/s"
+    yield from _material_facts(bar)
 
 
 def _echo_in_words(scene: BarScene, side: str, time_step: float) -> str:
@@ -101,47 +96,34 @@ def _range_in_words(given: BarRange, start: float, part: Bar) -> str:
     words = [
         f"{start:.4g} to {start + part.length:.4g} m, section {part.area:.4g} m²",
         f"ρ = {part.density:g} kg/m³, c = {part.speed:.4g} m/s, ρcA = {part.density * part.speed * part.area:.4g} kg/s",
-        _strength_in_words(part),
+        *(text for _, text in _material_facts(part)),
     ]
-    words += [_cracks_in_words(part)] * (part.fracture_energy is not None)
-    words += [_rates_in_words(part)] * (part.strength_rates is not None)
-    words += [f"α = {part.attenuation:g} 1/m"] * (part.attenuation > 0.0)
     words += [f"starts at {given.velocity:g} m/s"] * (given.velocity != 0.0)
     if given.interface == "contact":
         words.append("touches the range on its left" + f" once a gap of {given.gap:g} m is closed" * (given.gap > 0.0))
     return "; ".join(words)
 
 
-def _strength_in_words(bar: Bar) -> str:
-    """Stress and stretch at which the bar breaks."""
-    stretch = bar.breaking_stretch
-    if np.isinf(stretch):
-        return "unbreakable"
-    return f"{stretch * bar.modulus / 1e6:.4g} MPa, critical stretch {stretch:.4g}"
-
-
-def _cracks_in_words(bar: Bar) -> str:
-    """Fracture energy, opening at which a crack bears nothing, and the lengths that follow from them."""
-    if bar.fracture_energy is None:
-        return ""
-    length = bar.characteristic_length
-    opening = bar.fracture.opening(bar.breaking_stretch * bar.modulus)
-    return (
-        f"G_f = {bar.fracture_energy:g} J/m², open at w_c = 2G_f/σ_t = {opening * 1e6:.4g} µm, characteristic length "
-        f"EG_f/σ_t² = {length * 1e3:.4g} mm, spacing at most {COARSEST * length * 1e3:.4g} mm"
+def _material_facts(bar: Bar) -> Entries:
+    """The stress and stretch at which a bar breaks, how its cracks open, its strain rates, and its attenuation."""
+    stretch, strength = bar.breaking_stretch, bar.breaking_stretch * bar.modulus
+    yield (
+        "strength",
+        "unbreakable" if np.isinf(stretch) else f"{strength / 1e6:.4g} MPa, critical stretch {stretch:.4g}",
     )
-
-
-def _rates_in_words(bar: Bar) -> str:
-    """Strength at the slowest and at the fastest strain rate."""
-    if bar.strength_rates is None:
-        return ""
-    slowest, fastest = bar.strength_rates
-    strength = bar.breaking_stretch * bar.modulus
-    return (
-        f"strength from {strength / 1e6:.4g} MPa at {slowest:g} 1/s to {bar.largest_strength / 1e6:.4g} MPa at "
-        f"{fastest:g} 1/s"
-    )
+    if bar.fracture_energy is not None:
+        length, opening = bar.characteristic_length, bar.fracture.opening(strength)
+        yield (
+            "cracks",
+            f"G_f = {bar.fracture_energy:g} J/m², open at w_c = 2G_f/σ_t = {opening * 1e6:.4g} µm, characteristic "
+            f"length EG_f/σ_t² = {length * 1e3:.4g} mm, spacing at most {COARSEST * length * 1e3:.4g} mm",
+        )
+    if bar.strength_rates is not None:
+        slowest, fastest = (f"{rate:g} 1/s" for rate in bar.strength_rates)
+        largest = f"{bar.largest_strength / 1e6:.4g} MPa"
+        yield "strain rates", f"strength from {strength / 1e6:.4g} MPa at {slowest} to {largest} at {fastest}"
+    if bar.attenuation > 0.0:
+        yield "attenuation", f"α = {bar.attenuation:g} 1/m"
 
 
 def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, float]]:

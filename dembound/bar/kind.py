@@ -31,6 +31,7 @@ from dembound.motion.trackers import Run
 from dembound.motion.trial import Trial
 from dembound.results.reader import has_monitors
 from dembound.table import Box
+from dembound.words import Entries
 
 if TYPE_CHECKING:
     import meshio
@@ -94,7 +95,7 @@ class Bars(Kind[BarCase, BarScene]):
         finest = min(part.spacing for part in scene.rod.ranges)
         return finest, finest
 
-    def facts(self, scene: BarScene, time_step: float) -> dict[str, str]:
+    def facts(self, scene: BarScene, time_step: float) -> Entries:
         """The bar, its method and what acts on it."""
         return bar_facts(scene, time_step)
 

@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from dembound.words import percent
+
 GAINED = 1e-3
 """Share of the energy that breaking bonds may add instead of removing it; above it the run reports it."""
 
@@ -33,7 +35,7 @@ def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
             "take a smaller bar.spacing or run.courant"
         )
     if error := summary["energy"]["relative_error"]:
-        facts.append(f"energy closes to {100.0 * error:.2g} %")
+        facts.append(f"energy closes to {percent(error)}")
     return facts
 
 

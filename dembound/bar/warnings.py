@@ -26,6 +26,7 @@ from dembound.casefile.magnitudes import (
     time_warnings,
 )
 from dembound.casefile.unlikely import unlikely_in
+from dembound.words import percent
 
 FADED = 0.01
 """Share of a wave that attenuation leaves along the whole bar, below which hardly anything arrives."""
@@ -116,7 +117,7 @@ def _fades(case: BarCase) -> Iterator[str]:
     left = math.exp(-sum(part.attenuation * part.length for part in case.bar.parts))
     if left < FADED:
         yield (
-            f"bar.attenuation: leaves {100.0 * left:.2g} % of a wave along the bar of {case.bar.length:g} m; is it in "
+            f"bar.attenuation: leaves {percent(left)} of a wave along the bar of {case.bar.length:g} m; is it in "
             "1/m? 1 dB/m is 0.115 1/m"
         )
 
@@ -168,7 +169,7 @@ def _loads_at_dashpots(case: BarCase) -> Iterator[str]:
             taken = beyond / (impedance + beyond)
             stress = stress_in_words((1.0 - taken) * abs(load.pressure) * case.wave[load.wave].peak())
             yield (
-                f"load.{load.name}: is on an end that absorbs: boundary.{load.side} takes {100.0 * taken:.3g} % of it, "
+                f"load.{load.name}: is on an end that absorbs: boundary.{load.side} takes {percent(taken, 3)} of it, "
                 f"and up to {stress} enters the bar; on a free end all of it does"
             )
 
@@ -191,7 +192,7 @@ def _loads_spread_too_far(case: BarCase) -> Iterator[str]:
             entering = share * abs(load.pressure) * wave.peak()
             yield (
                 f"load.{load.name}.nodes: is {load.nodes}, {wide:.3g} m, so long beside its wave that only "
-                f"{100.0 * share:.2g} % of its peak enters, {stress_in_words(entering)}; take fewer nodes"
+                f"{percent(share)} of its peak enters, {stress_in_words(entering)}; take fewer nodes"
             )
 
 

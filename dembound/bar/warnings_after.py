@@ -18,6 +18,7 @@ from dembound.casefile.bar import BarCase
 from dembound.casefile.magnitudes import stress_in_words
 from dembound.results.reader import open_record, snapshots_of
 from dembound.results.warnings import energy_warnings, still_moving
+from dembound.words import percent
 
 if TYPE_CHECKING:
     import h5py
@@ -146,6 +147,6 @@ def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
     tension = max(0.0, *(float(np.max(group["stress"][:])) for group in groups))
     if tension < NOTHING * strength:
         yield (
-            f"bar: the largest tension reached is {stress_in_words(tension)}, {100.0 * tension / strength:.2g} % of "
+            f"bar: the largest tension reached is {stress_in_words(tension)}, {percent(tension / strength)} of "
             f"the strength, {stress_in_words(strength)}; nothing can break"
         )

@@ -8,6 +8,7 @@ import numpy as np
 
 from dembound.casefile import Case
 from dembound.waves import Wave
+from dembound.words import percent
 
 FAR = 1000.0
 """Ratio of two times above which one of them is probably in another unit.
@@ -97,7 +98,7 @@ def _too_early(wave: Wave) -> Iterator[str]:
     if np.ptp(velocities) > MISSED * wave.peak():
         largest = int(np.abs(velocities).argmax())
         yield (
-            f"reaches {100.0 * abs(velocities[largest]) / wave.peak():.3g} % of its peak at {before[largest]:.4g} s, "
+            f"reaches {percent(abs(velocities[largest]) / wave.peak(), 3)} of its peak at {before[largest]:.4g} s, "
             f"before the run begins at t = 0, and this part is left out; give start = {wave.start - begin:.6g}"
         )
 
@@ -108,7 +109,7 @@ def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:
     reached = _share_reached(wave, duration)
     if reached < SMALL_PART:
         yield (
-            f"reaches {100.0 * reached:.2g} % of its peak, which comes at {wave.peak_time():g} s, "
+            f"reaches {percent(reached)} of its peak, which comes at {wave.peak_time():g} s, "
             f"within the run of {duration:g} s"
         )
     if FAR * duration < length < math.inf:
@@ -174,7 +175,7 @@ def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, 
     if stresses:
         place, (what, stress) = max(stresses.items(), key=lambda item: item[1][1])
         if stress < WEAK * strength:
-            yield f"{place}: {what} is {stress_in_words(stress)}, {100.0 * stress / strength:.2g} % of {against}"
+            yield f"{place}: {what} is {stress_in_words(stress)}, {percent(stress / strength)} of {against}"
 
 
 def large_velocity(place: str, velocity: float, speed: float, reason: str, waves: str = "waves") -> Iterator[str]:
@@ -182,7 +183,7 @@ def large_velocity(place: str, velocity: float, speed: float, reason: str, waves
     if velocity > LARGE_STRAIN * speed:
         yield (
             f"{place}: particles move at up to {velocity:.3g} m/s, {waves} run at {speed:.4g} m/s, so strains are "
-            f"v/c = {100.0 * velocity / speed:.2g} %; {reason}"
+            f"v/c = {percent(velocity / speed)}; {reason}"
         )
 
 
@@ -190,7 +191,7 @@ def large_stress(place: str, what: str, stress: float, modulus: float, reason: s
     """A stress (Pa) that is a large part of the stiffness (Pa); what : the stress in words; reason : as above."""
     if stress > LARGE_STRAIN * modulus:
         yield (
-            f"{place}: {what}, {stress_in_words(stress)}, is {100.0 * stress / modulus:.2g} % of the stiffness, "
+            f"{place}: {what}, {stress_in_words(stress)}, is {percent(stress / modulus)} of the stiffness, "
             f"{stress_in_words(modulus)}, and so are strains; {reason}"
         )
 

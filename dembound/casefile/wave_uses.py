@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from dembound.casefile.model import Case
+from dembound.words import percent
 
 CUT = 0.02
 """Share of its peak by which a history may jump at its ends; of 0.02 the waves that the jump sends have 1/2500."""
@@ -61,7 +62,7 @@ def _jumps(case: Case) -> Iterator[str]:
         ]
         if ends:
             listed = " and ".join(
-                f"{end} at {value:.4g}{unit}, {100.0 * abs(value) / wave.peak():.2g} % of its peak, at {time:.4g} s"
+                f"{end} at {value:.4g}{unit}, {percent(abs(value) / wave.peak())} of its peak, at {time:.4g} s"
                 for end, time, value in ends
             )
             yield f"wave.{name}: {listed}, a jump from or to 0 beyond it; lead its file to 0 there, or shift its values"

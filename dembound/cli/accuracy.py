@@ -10,6 +10,7 @@ import typer
 
 from dembound.cli.console import out
 from dembound.errors import CaseError, NotAccurateError
+from dembound.words import percent
 
 if TYPE_CHECKING:
     from dembound.accuracy.best import Best
@@ -58,8 +59,8 @@ def bound_of(error: str | None, keep: Sequence[str] | None) -> float | None:
 
 def name_within(name: str, bound: float) -> str:
     """The name of the results of a case that is run within an error bound: ``bar_1pct``, ``bar_0_3pct``."""
-    percent = f"{Decimal(f'{100.0 * bound:.6g}'):f}"
-    return f"{name}_{percent.replace('.', '_')}pct"
+    number = f"{Decimal(f'{100.0 * bound:.6g}'):f}"
+    return f"{name}_{number.replace('.', '_')}pct"
 
 
 def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequence[str] | None) -> Case:
@@ -77,9 +78,8 @@ def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequen
     lines = _lines(best)
     if not best.holds:
         found = f"the best of {best.tried} choices has {in_words(best.error)}"
-        raise NotAccurateError(
-            "\n".join([f"--error: no choice keeps {100.0 * bound:.3g} %; {found}: {lines[0]}", *lines[1:]])
-        )
+        said = f"--error: no choice keeps {percent(bound, 3)}; {found}: {lines[0]}"
+        raise NotAccurateError("\n".join([said, *lines[1:]]))
     for line in lines:
         out.print(f"{case.name}: {line}", markup=False)
     return best.case

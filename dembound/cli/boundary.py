@@ -15,6 +15,7 @@ from dembound.cli.app import PICTURE, PictureTitle, Settings, Side, app, load_di
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import INTERVAL, compact_table, err, out
 from dembound.machine import one_thread_for_matrices
+from dembound.words import percent
 
 if TYPE_CHECKING:
     import numpy as np
@@ -131,8 +132,8 @@ def _overview(found: Measured, title: str) -> Table:
 
 
 def _percent(share: float) -> str:
-    """A share in per cent with three digits."""
-    return f"{100.0 * share:.3g} %" if share > LEAST else "0 %"
+    """A share in per cent with three digits; 0 for rounding errors."""
+    return percent(share if share > LEAST else 0.0, 3)
 
 
 def _sentences(found: Measured) -> list[str]:

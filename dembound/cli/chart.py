@@ -137,21 +137,16 @@ def _print(charted: Charted) -> None:
 
 
 def _cells(charted: Charted, number: int, line: Line) -> list[str]:
-    """Numbers of a choice as text."""
+    """Numbers of a choice as text; rounding errors are 0."""
+    from dembound.accuracy.chart.front import ROUNDING
+
     if line.outcome.failure:
         return ["failed"]
     worst = line.errors[0]
     mark = "ref." if number in charted.reference.own else "*" if number in charted.front else ""
     mark += "†" if line.apart > 0.0 else ""
-    numbers = _percent(worst.rms), _percent(worst.peak), f"{line.cpu:.3g}", f"{line.wall:.3g}"
-    return [*numbers, f"{line.outcome.work:.3g}", mark]
-
-
-def _percent(error: float) -> str:
-    """A relative error in per cent; 0 for rounding errors."""
-    from dembound.accuracy.chart.front import ROUNDING
-
-    return f"{100.0 * error:.3g}" if error > ROUNDING else "0"
+    shares = (100.0 * error if error > ROUNDING else 0.0 for error in (worst.rms, worst.peak))
+    return [*(f"{number:.3g}" for number in (*shares, line.cpu, line.wall, line.outcome.work)), mark]
 
 
 def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:

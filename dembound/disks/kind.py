@@ -37,6 +37,7 @@ from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run, Tracker
 from dembound.motion.trial import Trial
 from dembound.table import Box
+from dembound.words import Entries
 
 if TYPE_CHECKING:
     import meshio
@@ -132,7 +133,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Width and height (m) of a brick, of which a scene is tiled."""
         return scene.case.packing.brick_size
 
-    def facts(self, scene: DiskScene, time_step: float) -> dict[str, str]:
+    def facts(self, scene: DiskScene, time_step: float) -> Entries:
         """Packing, law, loads and boundaries."""
         return disk_facts(scene)
 

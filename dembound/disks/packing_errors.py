@@ -12,27 +12,25 @@ from dembound.disks.material import bragg
 from dembound.disks.scene import DiskScene
 from dembound.outside import choice
 from dembound.outside.choice import Signal
+from dembound.words import Entries, percent
 
 LEAST_SHOWN = 1e-5
 """Share of the velocity below which what copies send back is not printed."""
 
 
-def packing_facts(scene: DiskScene, signals: Sequence[Signal]) -> dict[str, str]:
+def packing_facts(scene: DiskScene, signals: Sequence[Signal]) -> Entries:
     """Facts about a scene with a continuum and signals that do not jump."""
-    facts = {"dispersion of the disks": _dispersion(scene, signals)}
+    yield "dispersion of the disks", _dispersion(scene, signals)
     if copies := _copies(scene, signals):
-        facts["copies of the brick"] = copies
-    return facts
+        yield "copies of the brick", copies
 
 
 def _dispersion(scene: DiskScene, signals: Sequence[Signal]) -> str:
     """What remains as the disks are a lattice."""
     accuracy = scene.case.outside.accuracy
     ties, across = lattice_errors(scene, signals)
-    more = f"; more than outside.accuracy = {in_percent(accuracy)}" if max(ties, across) > accuracy else ""
-    return (
-        f"{in_percent(ties)} returned by the ties, {in_percent(across)} of the velocity over the scene's length{more}"
-    )
+    more = f"; more than outside.accuracy = {percent(accuracy)}" if max(ties, across) > accuracy else ""
+    return f"{percent(ties)} returned by the ties, {percent(across)} of the velocity over the scene's length{more}"
 
 
 def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
@@ -47,9 +45,9 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
     if share < LEAST_SHOWN:
         return ""
     accuracy = case.outside.accuracy
-    more = f"; more than outside.accuracy = {in_percent(accuracy)}, shorter bricks send back less"
+    more = f"; more than outside.accuracy = {percent(accuracy)}, shorter bricks send back less"
     return (
-        f"send back up to {in_percent(share)} of the velocity over the ground's length, which a continuum does not"
+        f"send back up to {percent(share)} of the velocity over the ground's length, which a continuum does not"
         f"{more if share > accuracy else ''}"
     )
 
@@ -76,8 +74,3 @@ def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = 
         found.append([math.sqrt(float(np.sum(energy * np.minimum(e, 1.0) ** 2) / energy.sum())) for e in errors])
     ties, across = np.max(found, axis=0).tolist()
     return ties, across
-
-
-def in_percent(share: float) -> str:
-    """A share with two digits, as "0.13 %", at most 100 %."""
-    return f"{100.0 * share:.2g} %" if share < 0.995 else "100 %"

@@ -9,6 +9,7 @@ from dembound.gauge.findings import Findings
 from dembound.gauge.passages import first_return
 from dembound.gauge.peaks import NOISE_FACTOR, SMALLEST, positive_peaks, white_noise, width_of
 from dembound.meanings import MEANINGS
+from dembound.words import percent
 
 LONGEST = 100.0
 """Length of a bar, m, above which millimetres were meant."""
@@ -217,14 +218,14 @@ def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[st
     allowed = min(max(SCATTER * np.hypot(np.nan_to_num(speed.error), first.error) / first.value, CLOSE), FAR)
     if off > FAR:
         yield (
-            f"the returns give {speed.value:.5g} m/s, the first passages {first.value:.5g} m/s: {100.0 * off:.2g} % "
+            f"the returns give {speed.value:.5g} m/s, the first passages {first.value:.5g} m/s: {percent(off)} "
             f"apart: these are not the returns of one pulse; {CAUSES}, check --position and --length, "
             "and try --peaks 2"
         )
     elif off > allowed:
         yield (
-            f"the returns give {speed.value:.5g} m/s, the first passages {first.value:.5g} m/s: {100.0 * off:.2g} % "
-            f"apart, must be within {100.0 * allowed:.2g} %; check --position and --length"
+            f"the returns give {speed.value:.5g} m/s, the first passages {first.value:.5g} m/s: {percent(off)} "
+            f"apart, must be within {percent(allowed)}; check --position and --length"
         )
 
 
@@ -246,7 +247,7 @@ def raised_by_noise(noise: float, crest: float) -> Iterator[str]:
     """Message if noise of this standard deviation raises a strength, a largest value, of a wave of this height."""
     if noise > NOISY * crest:
         yield (
-            f"the noise is {100.0 * noise / crest:.2g} % of the wave and makes the strength too large, by about as "
+            f"the noise is {percent(noise / crest)} of the wave and makes the strength too large, by about as "
             "much: use --low-pass"
         )
 
@@ -267,7 +268,7 @@ def as_doubtful(found: Findings) -> Iterator[str]:
 def uncertain_speed(speed: Estimate) -> Iterator[str]:
     """Message about an estimated wave speed with a large standard error."""
     if speed.points and not speed.error <= UNCERTAIN_SPEED * speed.value and not np.isnan(speed.error):
-        yield f"the wave speed is uncertain, its standard error is {100.0 * speed.error / speed.value:.2g} %"
+        yield f"the wave speed is uncertain, its standard error is {percent(speed.error / speed.value)}"
 
 
 def uncertain_decay(decay: Estimate | None) -> Iterator[str]:

@@ -8,6 +8,7 @@ from dembound.gauge.baseline import MAINS, Baseline, find_baseline
 from dembound.gauge.filters import Filters
 from dembound.gauge.noise import Noise, noise_of
 from dembound.gauge.reading.signal import Signal
+from dembound.words import percent
 
 
 @dataclass(frozen=True)
@@ -45,12 +46,12 @@ def _in_words(found: Baseline | None, signal: Signal) -> str:
         return "baseline: not removed, as no part of the record is quiet"
     largest = float(np.abs(signal.values - found.values).max())
     if not found.worthwhile:
-        return f"baseline: nothing to remove, {100.0 * np.abs(found.values).max() / largest:.2g} % of the signal"
+        return f"baseline: nothing to remove, {percent(np.abs(found.values).max() / largest)} of the signal"
     parts = ", ".join(found.names)
     ends = dict.fromkeys(f"{value:.4g}" for value in (found.values.min(), found.values.max()))
     size = f"{' to '.join(ends)} {signal.unit}".rstrip()
     there = f"{found.quiet.sum()} quiet samples"
     if found.before:
         there += f", {found.before} of them before {signal.time[found.before - 1]:.6g} s"
-    share = 100.0 * float(np.abs(found.values).max()) / largest
-    return f"baseline: removed {parts}, {size}, {share:.3g} % of the signal ({there})"
+    share = float(np.abs(found.values).max()) / largest
+    return f"baseline: removed {parts}, {size}, {percent(share, 3)} of the signal ({there})"

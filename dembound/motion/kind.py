@@ -24,6 +24,7 @@ from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run, Tracker
 from dembound.motion.trial import Trial
 from dembound.table import Box
+from dembound.words import Entries
 
 if TYPE_CHECKING:
     import meshio
@@ -210,8 +211,8 @@ class Kind(ABC, Generic[C, S]):
         """Lengths (m) along x and y by which a scene can be longer or shorter."""
 
     @abstractmethod
-    def facts(self, scene: S, time_step: float) -> dict[str, str]:
-        """Facts about a case with a time step (s), as text by name; printed by `dembound check`."""
+    def facts(self, scene: S, time_step: float) -> Entries:
+        """Facts about a case with a time step (s); printed by `dembound check`."""
 
     def not_estimated(self, case: C) -> list[str]:
         """What steps of a run the time estimate from a trial of the first ones does not include, in words."""

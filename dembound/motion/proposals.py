@@ -10,6 +10,7 @@ from dembound.motion.kind import Plan
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.motion.silence import monitored
 from dembound.table import EVERYWHERE
+from dembound.words import Entries
 
 GAIN = 0.9
 """Share of the duration, or of a length, down to which there is nothing worth a proposal."""
@@ -51,7 +52,7 @@ class WaveScene:
         return [source for source in self.sources if all_of_them or source.is_local]
 
 
-def proposals(planned: Plan) -> dict[str, str]:
+def proposals(planned: Plan) -> Entries:
     """Lines for `dembound check`, by name: only where the monitors need less than the case has, and when echoes come.
 
     No shorter run is proposed where the end of the motion is not known from wave speeds: with steady loads, waves that
@@ -60,7 +61,7 @@ def proposals(planned: Plan) -> dict[str, str]:
     """
     scene = planned.scene
     if not scene.case.monitor or not (sources := planned.kind.sources(scene)):
-        return {}
+        return
     across = [axis for axis in (0, 1) if axis in planned.stepped.uniform_axes or scene.size[axis] == 0.0]
     seen = WaveScene(
         planned,
@@ -73,15 +74,12 @@ def proposals(planned: Plan) -> dict[str, str]:
     asked = scene.case.run.duration
     passed = _passed(seen)
     needed = passed if passed is not None and passed < GAIN * asked else asked
-    lines = {}
     if needed < asked:
-        lines["shorter run"] = (
-            f"the slowest waves, and what sides reflect of them, have passed all monitors by {needed:.3g} s; "
-            f"run.duration is {asked:g} s"
-        )
-    lines |= {"echoes": "; ".join(_echoes(seen, needed))}
-    lines |= {"smaller scene": "; ".join(_smaller(seen, needed))}
-    return {name: line for name, line in lines.items() if line}
+        passed_by = f"the slowest waves, and what sides reflect of them, have passed all monitors by {needed:.3g} s"
+        yield "shorter run", f"{passed_by}; run.duration is {asked:g} s"
+    for name, lines in (("echoes", _echoes(seen, needed)), ("smaller scene", _smaller(seen, needed))):
+        if line := "; ".join(lines):
+            yield name, line
 
 
 def _passed(seen: WaveScene) -> float | None:

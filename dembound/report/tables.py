@@ -12,6 +12,7 @@ from dembound.report.runs import ReportedRun
 from dembound.results.estimates import KEY, entries
 from dembound.results.reader import laws_in_words, open_record
 from dembound.results.summary import end_in_words
+from dembound.words import Entries, percent
 
 NONE = "–"
 """What stands where a run has no such entry."""
@@ -26,13 +27,9 @@ class Table:
     rows: Sequence[Sequence[str]]
 
 
-Entries = Mapping[str, str]
-"""Rows of a run by their names."""
-
-
 def beside(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedRun], Entries]) -> Table:
     """A table with a column for each run, and a row for each entry that any of them has."""
-    found = [entries(run) for run in runs]
+    found = [dict(entries(run)) for run in runs]
     names = dict.fromkeys(name for each in found for name in each)
     rows = [[name, *(each.get(name, NONE) for each in found)] for name in names]
     return Table(title, ["", *(run.name for run in runs)], rows)
@@ -40,10 +37,10 @@ def beside(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedR
 
 def overview(runs: Sequence[ReportedRun]) -> Table:
     """What each run is, and how it ended."""
-    return beside("Runs", runs, lambda run: dict(_overview(run)))
+    return beside("Runs", runs, _overview)
 
 
-def _overview(run: ReportedRun) -> Iterator[tuple[str, str]]:
+def _overview(run: ReportedRun) -> Entries:
     """Entries of a run."""
     attributes, summary = run.results.attributes, run.summary
     if run.has_histories_alone:
@@ -66,7 +63,7 @@ def _overview(run: ReportedRun) -> Iterator[tuple[str, str]]:
         yield "outcome", "; ".join(outcome)
     cracks = summary["cracks"]
     yield "broken bonds", f"{cracks['tension']:,} in tension, {cracks['shear']:,} in shear"
-    yield "largest error of the energy balance", percent(summary["energy"]["relative_error"])
+    yield "largest error of the energy balance", percent(summary["energy"]["relative_error"], 3)
 
 
 def _contents(run: ReportedRun) -> Iterator[str]:
@@ -144,8 +141,8 @@ def sides(runs: Sequence[ReportedRun]) -> Table | None:
             table = tables.get(side, {})
             factors = [f"{letter} = {table[key]:.5g}" for key, letter in FACTORS.items() if key in table]
             amounts = [_joules(energy[column], run) for column in ("came_in", "absorbed", "stored")]
-            share = energy["absorbed_share"]
-            rows.append([side, run.name, table.get("type", NONE), ", ".join(factors) or NONE, *amounts, percent(share)])
+            taken = NONE if (share := energy["absorbed_share"]) is None else percent(share, 3)
+            rows.append([side, run.name, table.get("type", NONE), ", ".join(factors) or NONE, *amounts, taken])
     heads = ["side", "run", "type", "factors", "came in", "absorbed", "stored in springs", "absorbed of all"]
     return Table("Sides", heads, rows) if rows else None
 
@@ -156,10 +153,10 @@ FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
 
 def energies(runs: Sequence[ReportedRun]) -> Table | None:
     """The last entries of the energy ledgers; None without summaries."""
-    return _or_none(beside("Energy at the end", runs, lambda run: dict(_energies(run))))
+    return _or_none(beside("Energy at the end", runs, _energies))
 
 
-def _energies(run: ReportedRun) -> Iterator[tuple[str, str]]:
+def _energies(run: ReportedRun) -> Entries:
     """Entries of a run."""
     ledger = run.summary.get("energy")
     if ledger is None:
@@ -170,7 +167,7 @@ def _energies(run: ReportedRun) -> Iterator[tuple[str, str]]:
             yield words, _joules(ledger[column], run)
     left = sum(ledger.get(column, 0.0) for column in ("kinetic", "contact", "bond", "stepping"))
     if ledger["supplied"] > 0.0:
-        yield "left in the body, of all that was supplied", percent(left / ledger["supplied"])
+        yield "left in the body, of all that was supplied", percent(left / ledger["supplied"], 3)
 
 
 def _joules(energy: float, run: ReportedRun) -> str:
@@ -181,10 +178,10 @@ def _joules(energy: float, run: ReportedRun) -> str:
 
 def time_split(runs: Sequence[ReportedRun]) -> Table | None:
     """Seconds by part of each run, rate and memory; None without summaries."""
-    return _or_none(beside("Where the time went", runs, lambda run: dict(_time(run))))
+    return _or_none(beside("Where the time went", runs, _time))
 
 
-def _time(run: ReportedRun) -> Iterator[tuple[str, str]]:
+def _time(run: ReportedRun) -> Entries:
     """Entries of a run."""
     summary = run.summary
     if not summary:
@@ -198,24 +195,23 @@ def _time(run: ReportedRun) -> Iterator[tuple[str, str]]:
 
 def versions(runs: Sequence[ReportedRun]) -> Table:
     """The version and the seed of each run, and from where it was resumed."""
+    return beside("Versions", runs, _version)
 
-    def entries(run: ReportedRun) -> Entries:
-        attributes = run.results.attributes
-        resumed = [f"step {each['step']:,}" for each in run.summary.get("resumed", [])]
-        known = {"dembound": attributes.get("version", NONE), "seed": attributes.get("seed", NONE)}
-        return {name: str(value) for name, value in known.items()} | (
-            {"resumed": ", ".join(resumed)} if resumed else {}
-        )
 
-    return beside("Versions", runs, entries)
+def _version(run: ReportedRun) -> Entries:
+    """Version, seed and resumptions of a run."""
+    yield "dembound", str(run.results.attributes.get("version", NONE))
+    yield "seed", str(run.results.attributes.get("seed", NONE))
+    if resumed := [f"step {each['step']:,}" for each in run.summary.get("resumed", [])]:
+        yield "resumed", ", ".join(resumed)
 
 
 def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
     """Estimated errors, RMS over RMS, of the runs that have them; None where none has."""
-    return _or_none(beside("Estimated errors", runs, lambda run: dict(_estimated(run))))
+    return _or_none(beside("Estimated errors", runs, _estimated))
 
 
-def _estimated(run: ReportedRun) -> Iterator[tuple[str, str]]:
+def _estimated(run: ReportedRun) -> Entries:
     """Estimated errors of one run."""
     if KEY in run.summary:
         yield from entries(run.summary[KEY])
@@ -223,8 +219,3 @@ def _estimated(run: ReportedRun) -> Iterator[tuple[str, str]]:
 
 def _or_none(table: Table) -> Table | None:
     return table if table.rows else None
-
-
-def percent(share: float | None) -> str:
-    """A share in per cent."""
-    return NONE if share is None else f"{100.0 * share:.3g} %"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from dembound.results.reader import open_record
+from dembound.words import Entries, percent
 
 FILE = "estimate.h5"
 """Histories of the errors, in the folder of the results."""
@@ -56,9 +57,7 @@ def read_bands(record: Path, quantity: str) -> dict[str, Band]:
 
 def in_words(share: float) -> str:
     """A share in per cent with two digits, from `LEAST` on."""
-    if share < LEAST:
-        return f"< {100.0 * LEAST:g} %"
-    return f"{100.0 * share:.2g} %" if share < 0.995 else f"{100.0 * share:.0f} %"
+    return f"< {percent(LEAST)}" if share < LEAST else percent(share)
 
 
 def split_in_words(shares: Mapping[str, float]) -> str:
@@ -67,7 +66,7 @@ def split_in_words(shares: Mapping[str, float]) -> str:
     return ", ".join(f"{name} {in_words(share)}" for name, share in ordered)
 
 
-def entries(estimate: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def entries(estimate: Mapping[str, Any]) -> Entries:
     """The entry of a summary as names and texts: errors at each monitor, how they were found, and what is missing."""
     for monitor, quantities in estimate["monitors"].items():
         for quantity, shares in quantities.items():

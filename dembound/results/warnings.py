@@ -10,6 +10,7 @@ import numpy as np
 
 from dembound.casefile.magnitudes import waves_used
 from dembound.motion.scene import Scene
+from dembound.words import percent
 
 if TYPE_CHECKING:
     import h5py
@@ -107,11 +108,11 @@ def energy_warnings(scene: Scene, energy: Mapping[str, float]) -> Iterator[str]:
         key = "safety" if scene.case.run.time_step == "auto" else "time_step"
         yield (
             f"run.{key}: contacts that open and close within a step have {'taken' if closing > 0.0 else 'added'} "
-            f"{100.0 * abs(closing) / supplied if supplied > 0.0 else math.inf:.2g} % of the energy put in; "
+            f"{percent(abs(closing) / supplied if supplied > 0.0 else math.inf)} of the energy put in; "
             "shorter steps change it less"
         )
     if (error := energy["relative_error"]) > UNEXPLAINED:
-        yield f"energy.error: {100.0 * error:.2g} % of the energy put in is unaccounted for; take shorter steps"
+        yield f"energy.error: {percent(error)} of the energy put in is unaccounted for; take shorter steps"
 
 
 def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:
@@ -128,7 +129,7 @@ def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:
         late = float(speed[-max(1, round(NOW * len(speed))) :].max())
         shares[name] = late / float(speed.max()) if late > 0.0 else 0.0
     loudest = max(shares, key=lambda name: shares[name])
-    why = f"the velocity of monitor.{loudest} is still {100.0 * shares[loudest]:.2g} % of its peak"
+    why = f"the velocity of monitor.{loudest} is still {percent(shares[loudest])} of its peak"
     if shares[loudest] <= run.silent_level:
         why = "not all were so for long enough, or waves had not passed them all"
     yield (

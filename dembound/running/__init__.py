@@ -1,6 +1,6 @@
 """Runs cases: from their tables, or from a checkpoint, to folders of results."""
 
-from dembound.running.disk_space import disk_facts, disk_warnings
+from dembound.running.disk_space import space_in_words, space_warnings
 from dembound.running.job import SECTIONS, resume_case, run_case
 from dembound.running.planning import MOST_STEPS, plan, preflight, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
@@ -12,13 +12,13 @@ __all__ = [
     "Progress",
     "Reports",
     "Shared",
-    "disk_facts",
-    "disk_warnings",
     "plan",
     "preflight",
     "require_stages",
     "resume_case",
     "run_case",
     "simulation_of",
+    "space_in_words",
+    "space_warnings",
     "warnings_before",
 ]

@@ -51,7 +51,7 @@ def bytes_left(planned: Plan, written: float = 0.0) -> dict[str, float]:
     return {key: share * size for key, size in sizes.items()}
 
 
-def disk_facts(planned: Plan, results: Path, written: float = 0.0) -> str:
+def space_in_words(planned: Plan, results: Path, written: float = 0.0) -> str:
     """The size of the results of a run as text, less the bytes already written, and the free space for them."""
     size = in_words(sum(bytes_left(planned, written).values()))
     return f"about {size}{_more(written)} of results{_free(results)}"
@@ -66,7 +66,7 @@ def _free(results: Path) -> str:
     return "" if free is None else f"; the disk has {in_words(free)} free"
 
 
-def disk_warnings(planned: Plan, results: Path, written: float = 0.0) -> Iterator[str]:
+def space_warnings(planned: Plan, results: Path, written: float = 0.0) -> Iterator[str]:
     """A warning about results that are, without the bytes already written, larger than the free space of their disk."""
     sizes, free = bytes_left(planned, written), disk_free(results)
     need = sum(sizes.values())

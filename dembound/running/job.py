@@ -28,7 +28,7 @@ from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
 from dembound.results.vtk import write_paraview
 from dembound.results.warnings import never_silent
-from dembound.running.disk_space import bytes_left, disk_facts, disk_warnings
+from dembound.running.disk_space import bytes_left, space_in_words, space_warnings
 from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
 from dembound.running.recorded import require_replaceable
@@ -150,9 +150,9 @@ class _Job:
     def _announce_size(self, planned: Plan) -> None:
         """Warn if the disk has less space than the results still need, and log their size if it is large."""
         results, written = self.folder.final.parent, 0 if self.found is None else self.found.written
-        short = _passed_on(list(disk_warnings(planned, results, written)), self.progress)
+        short = _passed_on(list(space_warnings(planned, results, written)), self.progress)
         if not short and sum(bytes_left(planned, written).values()) > LARGE:
-            logging.getLogger(__name__).info(f"{self.case.name}: {disk_facts(planned, results, written)}")
+            logging.getLogger(__name__).info(f"{self.case.name}: {space_in_words(planned, results, written)}")
 
     def _plan(self) -> Plan:
         """The plan; that of a resumed run has the time step of its checkpoint, and a record in which it can go on."""

@@ -369,7 +369,7 @@ def answered(data: Mapping[str, Any], folder: Path) -> bool:
             case = kinds.loads(tomli_w.dumps(data), folder)
             if is_small(case):
                 planned = plan(case)
-                facts = planned.kind.facts(planned.scene, planned.time_step) | proposals(planned)
+                facts = dict([*planned.kind.facts(planned.scene, planned.time_step), *proposals(planned)])
                 tables = facts.pop("its tables", "")  # of a smaller box, lines of a case
                 texts = [*warnings_before(planned), *facts.values(), *tables.split("\n")]
                 assert not any(CONTROL.search(text) for text in texts)

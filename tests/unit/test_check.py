@@ -19,7 +19,7 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
     assert facts["memory"].startswith(f"about {in_words(planned.stepped.largest_memory)} at its peak")
     assert facts["reduced"] == "rows: 2 identical rows are stepped as one, 20 of 40 disks"
     assert facts["estimated time"] == "less than 1 s with 1 thread, without building, pictures"
-    own = disk_facts(planned.scene)
+    own = dict(disk_facts(planned.scene))
     assert {name: fact for name, fact in facts.items() if name in own} == own
     assert set(facts) - set(own) == {"time step", "steps", "memory", "disk", "estimated time", "reduced"}
     assert "reduced" not in check(bar({"reduce.rows": False}))[0]
@@ -41,7 +41,7 @@ def test_a_bar_is_told_of_as_a_bar(spalling) -> None:
     facts, warnings = check(spalling())
     planned = plan(spalling())
 
-    own = bar_facts(planned.scene, planned.time_step)
+    own = dict(bar_facts(planned.scene, planned.time_step))
     assert {name: fact for name, fact in facts.items() if name in own} == own
     assert facts["steps"] == "60 for 0.0015 s"
     assert warnings == warnings_before(planned)

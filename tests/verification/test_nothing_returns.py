@@ -88,7 +88,7 @@ def test_waves_of_rotation_that_outrun_p_waves(lab):
 
 def test_the_smaller_scene_that_is_proposed_has_no_echo(lamb):
     case = with_step(monitored(lamb("A", (40.0, 40.0), "viscous"), [3.25, 40.0], [5.25, 34.25]))
-    found = proposals(plan(case))["smaller scene"]
+    found = dict(proposals(plan(case)))["smaller scene"]
     wide, high = (float(text.split(" m instead of")[0]) for text in found.split("; "))
     assert wide < 36.0
     assert high < 36.0

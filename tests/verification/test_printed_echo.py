@@ -50,7 +50,7 @@ def measured(scene, side: str, step: float) -> float:
 
 def printed(scene, side: str, step: float) -> float:
     """The number in the facts."""
-    found = re.search(r"returns at most (\S+) of wave p$", bar_facts(scene, step)[f"{side} end"])
+    found = re.search(r"returns at most (\S+) of wave p$", dict(bar_facts(scene, step))[f"{side} end"])
     return float(found[1])
 
 
@@ -135,5 +135,5 @@ def test_a_dashpot_returns_what_it_does():
         )
         most = float(np.abs(got - expected).max() / np.abs(expected).max())
         assert most <= printed(scene, "right", step) <= 1.1 * most
-    said = bar_facts(scene, SPACING / SPEED)["right end"]
+    said = dict(bar_facts(scene, SPACING / SPEED))["right end"]
     assert said == "viscous, β_P = 1; returns nothing of wave p but rounding errors"

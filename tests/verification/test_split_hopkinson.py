@@ -188,7 +188,7 @@ def test_a_largest_stress_as_equilibrium_begins_gives_no_slope_and_says_so():
     (said,) = doubts_of_slope(at_once, None)
     assert said.startswith("the specimen has its largest stress 1 samples after equilibrium begins")
     (wide,) = doubts_of_slope(found, SlopeError(0.0, 0.0, 0.5 * found.slope, 0.0, 0.0))
-    assert wide.startswith("the slope is uncertain, ±1e+02 %: in equilibrium, until the largest stress, the strain")
+    assert wide.startswith("the slope is uncertain, ±100 %: in equilibrium, until the largest stress, the strain")
     assert not list(doubts_of_slope(found, slope_error(faces, SETUP, EQUILIBRIUM, found)))
 
 

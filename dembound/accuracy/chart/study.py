@@ -22,6 +22,7 @@ from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import kind_of
 from dembound.results.histories import Quantity
 from dembound.table import Box
+from dembound.words import percent
 
 LEVELS = (0.01, 0.001)
 """Errors within which the cheapest choice is named."""
@@ -130,7 +131,7 @@ class Charted:
     def _described(self, line: Line) -> str:
         """A choice with its error and cost."""
         error = line.errors[0].rms
-        return f"{line.choice.name} ({100.0 * error if error > ROUNDING else 0:.2g} %, {line.cpu:.2g} s)"
+        return f"{line.choice.name} ({percent(error if error > ROUNDING else 0.0)}, {line.cpu:.2g} s)"
 
 
 def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown) -> Charted:

@@ -30,6 +30,7 @@ from dembound.accuracy.of_bars.window import Window
 from dembound.bar.layer_echo import WIDEST
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
+from dembound.words import percent
 
 UNEXPLAINED = 1.0 / 3.0
 """Largest difference of a record from the linear bar, over its estimated error, with which this is given."""
@@ -101,9 +102,7 @@ def _unknown(case: BarCase, recorded: History, own: History, exact: History) -> 
         error = float(np.linalg.norm(own.values[quantity] - exact.values[quantity]))
         if rest > max(SMALLEST * size, UNEXPLAINED * error):
             worst = max(worst, rest / size)
-    return (
-        f"its record differs by {100.0 * worst:.2g} % from that of a bar whose bonds stay as they are" if worst else ""
-    )
+    return f"its record differs by {percent(worst)} from that of a bar whose bonds stay as they are" if worst else ""
 
 
 def largest_motion(case: BarCase, last: float) -> dict[str, float]:

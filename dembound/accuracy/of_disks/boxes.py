@@ -15,12 +15,12 @@ from dembound.disks import step_cost
 from dembound.disks.beyond.hollowed import BAND as FLOOR
 from dembound.disks.beyond.mesh import medium_of
 from dembound.disks.beyond.settings import expected_tops, extents, least_element, mesh_of, settings_of, signals_of
-from dembound.disks.packing_errors import in_percent
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.outside import choice
 from dembound.outside.ram import GridSizes
 from dembound.table import Box
+from dembound.words import Entries, percent
 
 WORTH = 0.8
 """Part of a scene's cost above which a box is no gain."""
@@ -45,12 +45,11 @@ class BoxOfDisks(NamedTuple):
     error: float
 
 
-def box_facts(scene: DiskScene) -> dict[str, str]:
+def box_facts(scene: DiskScene) -> Entries:
     """The cheapest box of disks in place of a scene, and its tables; none if it would gain little."""
-    best = cheapest_box(scene) if may_be_boxed(scene.case) else None
-    if best is None:
-        return {}
-    return {"smaller box": _in_words(scene, best), "its tables": _as_toml(box_tables(scene.case, best.box))}
+    if may_be_boxed(scene.case) and (best := cheapest_box(scene)) is not None:
+        yield "smaller box", _in_words(scene, best)
+        yield "its tables", _as_toml(box_tables(scene.case, best.box))
 
 
 def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
@@ -81,7 +80,7 @@ def _as_toml(tables: Mapping[str, Mapping[str, Any]]) -> str:
 def _in_words(scene: DiskScene, best: BoxOfDisks) -> str:
     """A box, what it holds, what it saves, and its error."""
     left, bottom, right, top = best.box
-    share, error = best.cost / _cost(scene), in_percent(best.error)
+    share, error = best.cost / _cost(scene), percent(best.error)
     return (
         f"{right - left:.10g} m × {top - bottom:.10g} m of disks at ({left:.10g}, {bottom:.10g}) m in [ground], a "
         f"continuum round them: {best.disks:,} disks and {best.nodes:,} nodes instead of {scene.count:,}, about "

@@ -114,7 +114,7 @@ class _Disks:
         errors = {
             name: {quantity: pair.difference(own, name, quantity) for quantity in MOTIONS}
             for name, own in self.recorded.items()
-            if name in pair.own
+            if name in pair.runs[0].motions
         }
         cause = Cause(SIDES, self._how(pair), errors)
         notes = [] if pair.echo_free else [f"{SIDES}: the larger scene, {_size(pair)}, has echoes of its own"]

@@ -13,7 +13,7 @@ from dembound.accuracy.history import History, Motions
 from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
-from dembound.accuracy.of_disks.pair import PairScenes, ratios, scenes_of_pair, sides_of_pair
+from dembound.accuracy.of_disks.pair import Pair, pair_of, ratios, sides_of_pair
 from dembound.accuracy.of_disks.places import middle_of_loads, middles_of_loads, patch_around, weights_at
 from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import normal_axis
@@ -45,11 +45,11 @@ class Companions:
     runner: Runner = field(default_factory=Runner)
 
     @cached_property
-    def pair(self) -> PairScenes | None:
+    def pair(self) -> Pair | None:
         """The scenes with the case's own sides and with far ones; None where no side that reflects can move."""
         if self.case.ground.size is not None or not sides_of_pair(self.case):
             return None
-        return scenes_of_pair(self.case, self.scene, self.time_step, self.most)
+        return pair_of(self.case, self.scene, self.time_step, self.most)
 
     @cached_property
     def diameter(self) -> float:
@@ -180,8 +180,9 @@ class Companions:
         self, sides: Mapping[str, Boundary], scene: DiskScene, wider: float
     ) -> dict[str, dict[str, np.ndarray]]:
         """The motion at the monitors of a scene with other sides of the companion, so much farther away."""
-        own = build(replace(self._own, boundary=sides))
-        return self._motion(self._run(self.wider(own, self._needed, wider) if wider else own.case), self._places(scene))
+        own = replace(self._own, boundary=sides)
+        case = self.wider(build(own), self._needed, wider) if wider else own
+        return self._motion(self._run(case), self._places(scene))
 
     def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
         """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""

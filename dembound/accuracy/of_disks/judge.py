@@ -24,6 +24,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts.breaks import BREAK_TIME, BREAK_X, BREAK_Y
 from dembound.disks.scene import DiskScene
+from dembound.words import Entries
 
 REALISATIONS = (
     "choices differ in their random packing, and every packing is another realisation of the rock: errors beside a run "
@@ -91,6 +92,6 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
             return ()
         return (REALISATIONS,)
 
-    def proposals(self, scene: DiskScene) -> dict[str, str]:
+    def proposals(self, scene: DiskScene) -> Entries:
         """The smallest box of disks with a continuum round it, if it saves much."""
         return box_facts(scene)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.history import History, Motions
+from dembound.accuracy.history import History
 from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import Coarser, coarser, largest_diameter
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
-from dembound.accuracy.runner import Runner, at_step
+from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.settings import signals_of
@@ -37,93 +38,73 @@ LEEWAY = 1.5
 
 @dataclass(frozen=True)
 class Pair:
-    """Two runs that differ in their sides.
+    """Two scenes with larger particles that differ in their sides, and their runs.
 
-    own, far : their histories; ratio : their diameter over that of the case. size : width and height (m) of the larger
-    scene. echo_free : whether nothing returns from its sides. work : particle-steps of all runs. whole, weight : if it
-    matters, histories of a third run, as own with whole cells at its sides, and its weight, see `Coarser`.
+    given : the case with larger particles; ratio : their diameter over that of the case. smaller, larger : with the
+    sides of the case, and with far ones. bricks : that the larger scene has more beyond its sides; echo_free : whether
+    nothing returns from there. runs : of `scenes`, once they are made.
     """
 
-    own: Motions
-    far: Motions
+    given: Coarser
     ratio: float
-    size: tuple[float, float]
-    echo_free: bool
-    work: int
-    whole: Motions | None = None
-    weight: float = 0.0
-
-    def difference(self, recorded: History, monitor: str, quantity: str) -> np.ndarray:
-        """What the sides add to a recorded quantity (k, 2): own less far, at the times of the record."""
-        own, far = self.own[monitor], self.far[monitor]
-        values = own.values[quantity][:, :2] - far.values[quantity][:, :2]
-        if self.whole is not None:
-            values += self.weight * (self.whole[monitor].values[quantity] - own.values[quantity])[:, :2]
-        return History(own.place, own.time, {quantity: values}).at(recorded.time).values[quantity]
-
-
-def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float, runner: Runner) -> Pair:
-    """The pair of a case that costs at most so many particle-steps, if this is possible; else the cheapest one.
-
-    scene, time_step (s) : of the case. Raises CaseError if no side can move, or even the cheapest pair costs too much,
-    and the errors of runs.
-    """
-    pair = scenes_of_pair(case, scene, time_step, most)
-    if (times := sum(map(_work, pair.scenes)) / most) > LEEWAY:
-        raise CaseError([f"a pair of runs would take {times:.2g} times the work that may be spent (--budget)"])
-    step = pair.step
-    own, far, *whole = (runner.run(at_step(each.case, step)) for each in pair.scenes)
-    return Pair(
-        own.motions,
-        far.motions,
-        pair.ratio,
-        pair.larger.case.packing.extent,
-        pair.echo_free,
-        own.work + far.work + sum(each.work for each in whole),
-        whole[0].motions if whole else None,
-        pair.weight,
-    )
-
-
-@dataclass(frozen=True)
-class PairScenes:
-    """The scenes of a pair before their runs, see `Pair`.
-
-    smaller, larger : with the sides of the case, and far ones. bricks : that the larger one has more beyond its sides.
-    whole : with whole cells at the sides, if it is run.
-    """
-
     smaller: DiskScene
     larger: DiskScene
     bricks: Mapping[str, int]
-    whole: DiskScene | None
-    weight: float
-    ratio: float
     echo_free: bool
+    runs: tuple[Run, ...] = ()
 
-    @property
+    @cached_property
     def scenes(self) -> list[DiskScene]:
-        """The scenes that are run."""
-        return [self.smaller, self.larger, *([] if self.whole is None else [self.whole])]
+        """The scenes that are run: if it matters, also the smaller one with whole cells at its sides, see `Coarser`."""
+        whole = [build(self.given.with_whole_cells)] if self.given.weight > 0.0 else []
+        return [self.smaller, self.larger, *whole]
 
     @property
     def step(self) -> float:
         """The smallest of their time steps, s."""
         return min(choose_step(each)[0] for each in self.scenes)
 
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height of the larger scene, m."""
+        return self.larger.case.packing.extent
 
-def scenes_of_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> PairScenes:
-    """The scenes of `run_pair`."""
-    best = None
+    @property
+    def work(self) -> int:
+        """Particle-steps of all runs."""
+        return sum(run.work for run in self.runs)
+
+    def difference(self, recorded: History, monitor: str, quantity: str) -> np.ndarray:
+        """What the sides add to a recorded quantity (k, 2): own less far, at the times of the record."""
+        first = self.runs[0].motions[monitor]
+        own, far, *whole = (run.motions[monitor].values[quantity][:, :2] for run in self.runs)
+        values = own - far
+        for each in whole:
+            values += self.given.weight * (each - own)
+        return History(first.place, first.time, {quantity: values}).at(recorded.time).values[quantity]
+
+
+def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float, runner: Runner) -> Pair:
+    """The pair of a case that costs at most so many particle-steps, if this is possible, else the cheapest one; run.
+
+    scene, time_step (s) : of the case. Raises CaseError if no side can move, or even the cheapest pair costs too much,
+    and the errors of runs.
+    """
+    pair = pair_of(case, scene, time_step, most)
+    if (times := sum(map(_work, pair.scenes)) / most) > LEEWAY:
+        raise CaseError([f"a pair of runs would take {times:.2g} times the work that may be spent (--budget)"])
+    step = pair.step
+    return replace(pair, runs=tuple(runner.run(at_step(each.case, step)) for each in pair.scenes))
+
+
+def pair_of(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
+    """The pair of `run_pair` before its runs."""
     for ratio in ratios(case, scene):
         given = coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter)
-        best = ratio, given, *_scenes(case, given, most)
-        if _work(best[2]) + _work(best[3]) <= most:
+        pair = _with_far_sides(given, ratio, most)
+        if _work(pair.smaller) + _work(pair.larger) <= most:
             break
-    assert best is not None
-    ratio, given, smaller, larger, bricks, echo_free = best
-    whole = build(given.with_whole_cells) if given.weight > 0.0 else None
-    return PairScenes(smaller, larger, bricks, whole, given.weight, ratio, echo_free)
+    return pair
 
 
 def sides_of_pair(case: DiskCase) -> list[str]:
@@ -141,21 +122,16 @@ def ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
     return [ratio for ratio in RATIOS if ratio <= largest] or [min(largest, RATIOS[0])]
 
 
-def _scenes(case: DiskCase, given: Coarser, most: float) -> tuple[DiskScene, DiskScene, Mapping[str, int], bool]:
-    """Both scenes, the bricks beyond the sides of the larger one, and whether it is free of echoes.
-
-    It is smaller where they would cost too much.
-    """
+def _with_far_sides(given: Coarser, ratio: float, most: float) -> Pair:
+    """The pair of a case with larger particles; its larger scene is smaller where it would cost too much."""
     smaller = build(given.case)
     bricks = bricks_needed(smaller, movable(smaller.case))
-    steps = case.run.duration / choose_step(smaller)[0]
-    allowed = most / steps - smaller.disk_count
+    allowed = most / (smaller.case.run.duration / choose_step(smaller)[0]) - smaller.disk_count
     for times in (math.inf, *SMALLER):
         limited = {side: int(min(count, _limit(smaller.case, side, times))) for side, count in bricks.items()}
         if _count(smaller.case, limited) <= allowed:
             break
-    larger, _ = enlarged(smaller, limited)
-    return smaller, build(larger), limited, limited == bricks
+    return Pair(given, ratio, smaller, build(enlarged(smaller, limited)[0]), limited, limited == bricks)
 
 
 def _limit(case: DiskCase, side: str, times: float) -> float:

@@ -21,11 +21,12 @@ from dembound.disks.beyond.settings import (
     signals_of,
 )
 from dembound.disks.beyond.surroundings import Surroundings
-from dembound.disks.packing_errors import in_percent, lattice_errors, packing_facts
+from dembound.disks.packing_errors import lattice_errors, packing_facts
 from dembound.disks.scene import DiskScene
 from dembound.outside import choice
 from dembound.outside.choice import Signal
 from dembound.outside.layer import Profile
+from dembound.words import Entries, percent
 
 SHOWN = 5e-4
 """Depth (m) of a skin below which it is printed as zero."""
@@ -44,24 +45,24 @@ ANGLES = (0.0, 45.0, 60.0)
 """Angles of incidence (degrees) for which reflections are printed."""
 
 
-def continuum_facts(scene: DiskScene) -> dict[str, str]:
+def continuum_facts(scene: DiskScene) -> Entries:
     """Facts about the continuum of a scene that has one."""
     outside = scene.outside
     assert outside is not None
     signals = signals_of(scene.case)
-    facts = {"continuum": _elements(outside)}
+    yield "continuum", _elements(outside)
     if signals:
-        facts["continuum waves"] = _waves(scene, outside, signals)
+        yield "continuum waves", _waves(scene, outside, signals)
     if outside.levels:
-        facts["ground beyond"] = _levels(outside)
+        yield "ground beyond", _levels(outside)
     if any(abs(depth) >= SHOWN for depth in outside.skins.values()):
-        facts["its free edges"] = _skins(outside)
+        yield "its free edges", _skins(outside)
     if scene.foot is not None:
-        facts["below the column"] = f"{_elements(scene.foot)}; through it waves enter and leave"
-    facts |= {"absorbing layers": _layers(outside, signals), "continuum cost": _cost(scene)}
+        yield "below the column", f"{_elements(scene.foot)}; through it waves enter and leave"
+    yield "absorbing layers", _layers(outside, signals)
+    yield "continuum cost", _cost(scene)
     if signals and not any(choice.jumps(signal) for signal in signals):
-        facts |= packing_facts(scene, signals)
-    return facts
+        yield from packing_facts(scene, signals)
 
 
 def _elements(outside: Surroundings) -> str:
@@ -111,7 +112,7 @@ def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -
     error = max(choice.element_error(signals, body.medium, order, side), _near_error(scene, outside))
     return (
         f"{order * length / side:.3g} nodes in the shortest wavelength, {length:.3g} m ({100.0 * choice.SHARE:g} % of "
-        f"the energy is above {beyond:.3g} Hz); expected error of velocities {in_percent(error)}"
+        f"the energy is above {beyond:.3g} Hz); expected error of velocities {percent(min(error, 1.0))}"
         f"{_as_small(scene, error)}"
     )
 
@@ -164,7 +165,7 @@ def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
     return (
         f"begin {begin} m beyond the sides and are {depth} m deep, {settings.layers} elements, R0 = "
         f"{settings.absorption.reflection:.3g}; at {angles}° they return at most {p} % of P and {s} % of S waves, "
-        f"the elements themselves about {in_percent(floor)}"
+        f"the elements themselves about {percent(floor)}"
     )
 
 
@@ -202,13 +203,13 @@ def continuum_warnings(scene: DiskScene, steps: float) -> Iterator[str]:
     outside, keys = scene.outside, scene.case.outside
     if outside is None:
         return
-    asked = f"outside.accuracy = {in_percent(keys.accuracy)}"
+    asked = f"outside.accuracy = {percent(keys.accuracy)}"
     yield from _poor_elements(scene, outside, keys, asked)
     settings, order = outside.settings, keys.order
     if (error := choice.layer_error(order, settings.layers)) > keys.accuracy:
         enough = choice.layer_count(order, keys.accuracy)
         yield (
-            f"outside.layers: {settings.layers} elements of order {order} return about {in_percent(error)} of the "
+            f"outside.layers: {settings.layers} elements of order {order} return about {percent(error)} of the "
             f"displacement, more than {asked}; {enough} are enough"
         )
     if settings.absorption.reflection > keys.accuracy:
@@ -241,7 +242,7 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
         if error > max(LEEWAY * keys.accuracy, LARGE):
             yield (
                 f"outside: elements of {side:.4g} m, the smallest useful ones beside these disks, return short waves, "
-                f"about {in_percent(error)} of the velocity, more than {asked}; the disks disperse these waves, too"
+                f"about {percent(error)} of the velocity, more than {asked}; the disks disperse these waves, too"
             )
         return
     if error > LEEWAY * keys.accuracy:
@@ -249,13 +250,13 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
         needed = max(enough, least_element(scene.case, scene.ground.brick.mean_diameter))
         if needed < side:
             yield (
-                f"outside.element: elements of {side:.4g} m return short waves, about {in_percent(error)} of the "
+                f"outside.element: elements of {side:.4g} m return short waves, about {percent(error)} of the "
                 f"velocity, more than {asked}; {needed:.3g} m are small enough"
             )
     if (error := _near_error(scene, outside)) > LEEWAY * keys.accuracy:
         yield (
             f"outside.element: elements of {side:.4g} m are too large beside a load or hole, with an error of about "
-            f"{in_percent(error)}, more than {asked}"
+            f"{percent(min(error, 1.0))}, more than {asked}"
         )
     least = least_element(scene.case, scene.ground.brick.mean_diameter)
     if (smallest := float(outside.body.mesh.element_sizes.min())) < (1.0 - ROUNDING) * least:
@@ -273,7 +274,7 @@ def _lasting(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked:
     if error > keys.accuracy:
         inner = choice.inner_length(lasting, speed, keys.shift, keys.accuracy)
         yield (
-            f"outside.margin: under a load that stays for {lasting:.3g} s about {in_percent(error)} of the "
+            f"outside.margin: under a load that stays for {lasting:.3g} s about {percent(min(error, 1.0))} of the "
             f"displacement will be missing, more than {asked}; {inner:.4g} m within the layers are enough, now "
             f"{body.mesh.inner:.4g} m"
         )
@@ -288,7 +289,7 @@ def _from_the_surface(scene: DiskScene, outside: Surroundings, keys: OutsideTabl
         enough = max(margin_below_surface(settings, each, medium, keys.accuracy) for each in sources)
         yield (
             f"outside.margin: waves that the free surface sends back run along layers "
-            f"{keys.margin * axis.sizes[0]:.4g} m beside the disks, and about {in_percent(error)} of the velocity "
+            f"{keys.margin * axis.sizes[0]:.4g} m beside the disks, and about {percent(error)} of the velocity "
             f"returns from these, more than {asked}; "
             f"{enough} elements are enough"
         )

@@ -14,55 +14,55 @@ from dembound.disks.reports.incident_facts import incident_facts
 from dembound.disks.reports.summary import describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
+from dembound.words import Entries, percent
 
 BALANCED = 1e-9
 """Part of the forces of a pressure below which their sum is a rounding error."""
 
 
-def disk_facts(scene: DiskScene) -> dict[str, str]:
+def disk_facts(scene: DiskScene) -> Entries:
     """Facts about a packing, its law and what acts on it."""
     case = scene.case
-    facts = {"particles": _particles(scene), "contacts": f"{len(scene.assembly.pairs):,}"}
+    yield "particles", _particles(scene)
+    yield "contacts", f"{len(scene.assembly.pairs):,}"
     if not scene.layout.is_plain:
-        facts["rows of copies"] = f"{100.0 * fill(scene.layout):.0f} % of the lanes hold particles"
-    facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
+        yield "rows of copies", f"{100.0 * fill(scene.layout):.0f} % of the lanes hold particles"
+    yield from _packing_facts(scene)
+    yield from _law_facts(scene)
+    yield from _hole_facts(case)
+    yield from _static_facts(case)
     if scene.outside is not None:
-        facts |= continuum_facts(scene)
+        yield from continuum_facts(scene)
     if scene.ground_waves is not None:
-        facts |= incident_facts(scene)
+        yield from incident_facts(scene)
     for side in scene.edges:
-        facts[f"{side} side"] = _side_fact(scene, side)
-    facts |= _load_facts(scene)
-    facts |= _monitor_facts(scene)
-    facts |= _tension_facts(scene)
+        yield f"{side} side", _side_fact(scene, side)
+    yield from _load_facts(scene)
+    yield from _monitor_facts(scene)
+    yield from _tension_facts(scene)
     for name, count in particles_per_wavelength(scene).items():
         few = f"{count:.0f} particles per" if count >= 1.0 else "less than one particle per"
-        facts[f"wave {name}"] = f"{few} shortest wavelength"
-    return facts
+        yield f"wave {name}", f"{few} shortest wavelength"
 
 
-def _monitor_facts(scene: DiskScene) -> dict[str, str]:
+def _monitor_facts(scene: DiskScene) -> Entries:
     """The particle of each monitor or that it is in the continuum, its place, and its twin in the free-field column."""
-    facts, places = {}, scene.monitored
+    places = scene.monitored
     for name in (monitor.name for monitor in scene.case.monitor):
         what = "in the continuum" if name in scene.between else f"particle {scene.monitors[name]}"
         x, y = places[name]
         twin = scene.monitors.get(f"{name}{FREE_FIELD}")
         column = "the ground without the body" if scene.seam is None else f"in the free-field column {twin}"
         beside = "" if twin is None else f", {column}"
-        facts[f"monitor {name}"] = f"{what} at ({x:.3f}, {y:.3f}) m{beside}"
-    return facts
+        yield f"monitor {name}", f"{what} at ({x:.3f}, {y:.3f}) m{beside}"
 
 
-def _tension_facts(scene: DiskScene) -> dict[str, str]:
+def _tension_facts(scene: DiskScene) -> Entries:
     """Waves that would open contacts, for a run in which the law then changes."""
-    if not (scene.has_history and scene.case.material.elastic_start):
-        return {}
     law = scene.case.material.law
-    return {
-        f"stress of {name}": f"ρcv = {stress}; in tension contacts open, and the law changes to {law}"
-        for name, stress in strong_waves(scene).items()
-    }
+    if scene.has_history and scene.case.material.elastic_start:
+        for name, stress in strong_waves(scene).items():
+            yield f"stress of {name}", f"ρcv = {stress}; in tension contacts open, and the law changes to {law}"
 
 
 def _particles(scene: DiskScene) -> str:
@@ -73,13 +73,13 @@ def _particles(scene: DiskScene) -> str:
     return f"{scene.disk_count:,}{before}{severed}"
 
 
-def _hole_facts(case: DiskCase) -> dict[str, str]:
+def _hole_facts(case: DiskCase) -> Entries:
     """Shape of every hole, and the stage in which it is made."""
     stages = {"before": "present from the start", "after": "excavated once the body has settled"}
-    return {f"hole {hole.name}": f"{hole.type}, {stages[hole.stage]}" for hole in case.hole}
+    yield from ((f"hole {hole.name}", f"{hole.type}, {stages[hole.stage]}") for hole in case.hole)
 
 
-def _packing_facts(scene: DiskScene) -> dict[str, str]:
+def _packing_facts(scene: DiskScene) -> Entries:
     packing = describe_packing(scene)
     speeds = [
         f"{name} = {packing[key]:.1f} m/s"
@@ -87,21 +87,20 @@ def _packing_facts(scene: DiskScene) -> dict[str, str]:
         if packing[key] is not None
     ]
     stiffness = ", ".join(f"{name} {packing[name] / 1e9:.4f}" for name in ("C11", "C22", "C12", "C66"))
-    return {
-        "brick": f"{counted(packing['disks_per_brick'], 'disk')}, solid fraction {packing['solid_fraction']:.4f}, "
-        f"{packing['coordination']:.3f} contacts per disk",
-        "brick equilibrium": f"residual force ratio {packing['residual_ratio']:.1e}, "
-        f"packed under {scene.ground.packed_pressure / 1e6:.3f} MPa",
-        "homogenised stiffness": f"{stiffness} GPa",
-        "wave speeds": ", ".join(speeds) or "no motion is free",
-    }
+    disks, pressure = counted(packing["disks_per_brick"], "disk"), f"{scene.ground.packed_pressure / 1e6:.3f} MPa"
+    solid = f"solid fraction {packing['solid_fraction']:.4f}"
+    yield "brick", f"{disks}, {solid}, {packing['coordination']:.3f} contacts per disk"
+    yield "brick equilibrium", f"residual force ratio {packing['residual_ratio']:.1e}, packed under {pressure}"
+    yield "homogenised stiffness", f"{stiffness} GPa"
+    yield "wave speeds", ", ".join(speeds) or "no motion is free"
 
 
-def _law_facts(scene: DiskScene) -> dict[str, str]:
+def _law_facts(scene: DiskScene) -> Entries:
     """The law, and the limits of contacts and bonds."""
     material = scene.case.material
     if not scene.has_history:
-        return {"law": f"{material.law}: contacts neither open nor slip, bonds do not break"}
+        yield "law", f"{material.law}: contacts neither open nor slip, bonds do not break"
+        return
     start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
     bonds = "no bonds"
     if scene.ground.moduli.pb_emod > 0.0:
@@ -111,53 +110,47 @@ def _law_facts(scene: DiskScene) -> dict[str, str]:
         )
         pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
         bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
-    facts = {
-        "law": f"{material.law}{start}",
-        "strength": f"{bonds}; contacts slip at {material.fric:g} of their normal force",
-    }
+    yield "law", f"{material.law}{start}"
+    yield "strength", f"{bonds}; contacts slip at {material.fric:g} of their normal force"
     if scene.ground.moduli.emod > 0.0:
-        facts["tension"] = (
+        yield (
+            "tension",
             f"in tension the stiffness falls to {100.0 * scene.ground.bond_share:.0f} %, as contacts open and only "
-            "bonds carry; confine the contacts (static.stress) or lower material.contact_share"
+            "bonds carry; confine the contacts (static.stress) or lower material.contact_share",
         )
     if material.locked_in is not None:
         shares = [
-            f"{100.0 * material.locked_in / strength:.3g} % of {key}"
+            f"{percent(material.locked_in / strength, 3)} of {key}"
             for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh))
             if strength is not None
         ]
-        facts["locked-in stress"] = ", ".join([f"{material.locked_in / 1e6:.3g} MPa before the static stage", *shares])
-    return facts
+        yield "locked-in stress", ", ".join([f"{material.locked_in / 1e6:.3g} MPa before the static stage", *shares])
 
 
-def _static_facts(case: DiskCase) -> dict[str, str]:
+def _static_facts(case: DiskCase) -> Entries:
     """Loads and supports of the static stage."""
     static = case.static
     if static is None:
-        return {}
+        return
     acting = [load.name for load in case.load if load.wave is None]
     if static.stress is not None:
         acting.append("σ_xx, σ_yy, σ_xy = {:.3g}, {:.3g}, {:.3g} MPa".format(*(s / 1e6 for s in static.stress)))
     if case.material.locked_in:
         acting.append("the locked-in stress")
     sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
-    return {
-        "static stage": f"under {' and '.join(acting)}, to a force ratio of {static.ratio:g}",
-        "static sides": sides,
-    }
+    yield "static stage", f"under {' and '.join(acting)}, to a force ratio of {static.ratio:g}"
+    yield "static sides", sides
 
 
-def _load_facts(scene: DiskScene) -> dict[str, str]:
+def _load_facts(scene: DiskScene) -> Entries:
     """What each load acts on, its whole force, and its time factor."""
-    facts = {}
     for load in scene.case.load:
         nodes, forces = forces_of(load, scene)
         what = "particle" if nodes[0] < scene.disk_count else "node"
         on = counted(len(nodes), what) + (" of the continuum" if what == "node" else "")
         factor = "steady" if load.wave is None else f"times wave {load.wave}"
         whole = f"{_whole_of(load, scene, forces)} on {on}, {factor}"
-        facts[f"load {load.name}"] = f"{whole}{_images(scene, nodes, forces)}"
-    return facts
+        yield f"load {load.name}", f"{whole}{_images(scene, nodes, forces)}"
 
 
 def _images(scene: DiskScene, nodes: np.ndarray, forces: np.ndarray) -> str:

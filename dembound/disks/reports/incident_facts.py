@@ -11,6 +11,7 @@ from dembound.disks.beyond.ground_waves import GroundWaves, reference_point
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.scene import DiskScene
 from dembound.outside.plane_waves import GRAZING, PlaneWave, critical_angle
+from dembound.words import Entries
 
 NAMES = {"sv": "SV", "p": "P"}
 
@@ -18,25 +19,26 @@ STRAIGHT = 1e-9
 """Degrees from the vertical up to which a wave runs straight up."""
 
 
-def incident_facts(scene: DiskScene) -> dict[str, str]:
+def incident_facts(scene: DiskScene) -> Entries:
     """Facts about the wave at an angle of a scene that has one."""
     waves, table, outside = scene.ground_waves, scene.case.incident, scene.outside
     assert waves is not None
     assert table is not None
     assert outside is not None
     x, y = reference_point(scene.case)
-    facts = {
-        "incident wave": f"{NAMES[table.type]}, {_way(table.angle)}, with the velocity of wave {table.wave} at "
+    yield (
+        "incident wave",
+        f"{NAMES[table.type]}, {_way(table.angle)}, with the velocity of wave {table.wave} at "
         f"({x:.10g}, {y:.10g}) m{_along(waves.waves[0], outside)}; reaches the disks at {arrival(scene, waves):.4g} s",
-    }
+    )
     if outside.free_surface is None:
-        return facts | {"reflected waves": "none, as the ground has no surface"}
+        yield "reflected waves", "none, as the ground has no surface"
+        return
     critical = critical_angle(waves.medium, table.type, math.copysign(1.0, table.angle))
     below = "no critical angle" if critical == GRAZING else f"critical from {critical:.4g}° on"
-    facts["reflected waves"] = f"{'; '.join(_reflected(waves))}; {below}"
+    yield "reflected waves", f"{'; '.join(_reflected(waves))}; {below}"
     if corners := _corners(scene):
-        facts["less exact monitors"] = f"near the corners where layers begin: {', '.join(corners)} m"
-    return facts
+        yield "less exact monitors", f"near the corners where layers begin: {', '.join(corners)} m"
 
 
 def _way(angle: float) -> str:

@@ -8,6 +8,7 @@ from dembound.boundaries.support import Edge
 from dembound.casefile.disks.load import Load
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
+from dembound.words import percent
 
 HELD = 0.1
 """Share of a load that disks of held sides may have without a warning: a region often reaches such a side."""
@@ -63,7 +64,7 @@ def _at_side(scene: DiskScene, load: Load, edge: Edge, forces: np.ndarray, on_si
         )
     elif prescribed and (share := abs(forces[on_side, prescribed[0]].sum() / forces[:, prescribed[0]].sum())) > HELD:
         yield (
-            f"has {100.0 * share:.3g} % of its force along {'xy'[prescribed[0]]} on disks of boundary.{side}, which "
+            f"has {percent(share, 3)} of its force along {'xy'[prescribed[0]]} on disks of boundary.{side}, which "
             "prescribes their motion, so that this part moves nothing"
         )
 

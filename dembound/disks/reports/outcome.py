@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from dembound.disks.packing_errors import in_percent
 from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.motion.cracks import MANY
 from dembound.results.reader import laws_in_words
+from dembound.words import percent
 
 SHOWN = 1e-3
 """Share of the stress below which what differs in the packing itself is not told."""
@@ -23,7 +23,7 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
         facts += _broken(summary["cracks"], static)
         if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
-            facts.append(f"energy closes to {100.0 * error:.2g} %")
+            facts.append(f"energy closes to {percent(error)}")
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts
@@ -62,9 +62,9 @@ def _even(uniformity: Mapping[str, Any]) -> str:
     """How far blocks are from the stress asked for, in words."""
     own, beyond, near = (uniformity[key] for key in ("packing", "beyond", "near_holes"))
     return (
-        f", to {in_percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
-        f"{f', to {in_percent(beyond)} beside what the packing has by itself' if own >= SHOWN else ''}"
-        f"{f', {in_percent(near)} beside holes' if near is not None else ''}"
+        f", to {percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
+        f"{f', to {percent(beyond)} beside what the packing has by itself' if own >= SHOWN else ''}"
+        f"{f', {percent(near)} beside holes' if near is not None else ''}"
     )
 
 

@@ -15,7 +15,6 @@ from dembound.casefile.magnitudes import stress_in_words
 from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.material.wave_front import slowest_speed
-from dembound.disks.packing_errors import in_percent
 from dembound.disks.reports.continuum_facts import continuum_warnings
 from dembound.disks.reports.load_warnings import load_warnings
 from dembound.disks.reports.outcome import SHOWN, block_in_words
@@ -28,6 +27,7 @@ from dembound.disks.stepping.near_ties import near_tie_warnings
 from dembound.meanings import MEANINGS
 from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import energy_warnings, still_moving
+from dembound.words import percent
 
 LARGEST_PULL = 3.5
 """Largest tensile stress of a bond over the mean one, where contacts under a locked-in stress relax.
@@ -237,7 +237,7 @@ def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:
             continue
         x, y = found["place"]
         yield (
-            f"static.stress: in {block_in_words(found)} the stress differs by up to {in_percent(found['deviation'])} "
+            f"static.stress: in {block_in_words(found)} the stress differs by up to {percent(found['deviation'])} "
             f"of the largest principal stress asked for, most at ({x:.4g}, {y:.4g}) m; {_whence(found)}"
         )
 
@@ -247,8 +247,8 @@ def _whence(found: Mapping[str, Any]) -> str:
     if found["packing"] < SHOWN:
         return "sides that are held, contacts that slid or opened, or too large a static.ratio"
     return (
-        f"the endless elastic packing has {in_percent(found['packing'])} by itself, less in larger blocks, "
-        f"and the body differs by {in_percent(found['beyond'])} from that packing"
+        f"the endless elastic packing has {percent(found['packing'])} by itself, less in larger blocks, "
+        f"and the body differs by {percent(found['beyond'])} from that packing"
     )
 
 

@@ -14,6 +14,7 @@ from dembound.gauge.hopkinson.pulses import Faces, Setup, Signals, Windows, foun
 from dembound.gauge.hopkinson.slope_error import unbalanced
 from dembound.gauge.hopkinson.specimen import Specimen
 from dembound.gauge.peaks import denoised, white_noise
+from dembound.words import percent
 
 BALANCED = 0.015
 """Difference of the impulses of both faces over their mean, beyond what inertia makes, from which a warning is due."""
@@ -63,7 +64,7 @@ def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Wind
     off = max((unbalanced(faces, setup, found, end) for end in (found.largest + 1, len(faces.time))), key=abs)
     if abs(off) > BALANCED:
         yield (
-            f"the impulses of both faces of the specimen differ by {100.0 * abs(off):.3g} %, beyond its inertia: look "
+            f"the impulses of both faces of the specimen differ by {percent(abs(off), 3)}, beyond its inertia: look "
             "for a baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut"
         )
     travelled = None if signals.second is not None else travel_speed(signals, setup, windows)
@@ -72,8 +73,8 @@ def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Wind
         if abs(apart) > max(TOLD, travelled.error / setup.bar.speed):
             yield (
                 f"the reflected pulse begins at its gauge as with a wave speed of {travelled.value:.5g} ± "
-                f"{travelled.error:.2g} m/s, {100.0 * apart:+.2g} % from --wave-speed: check it and --incident-gauge, "
-                "or look for lost samples"
+                f"{travelled.error:.2g} m/s, {'+' * (apart > 0.0)}{percent(apart)} from --wave-speed: check it "
+                "and --incident-gauge, or look for lost samples"
             )
 
 

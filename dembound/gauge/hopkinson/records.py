@@ -13,6 +13,7 @@ from dembound.gauge.reading.recorded import is_record
 from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.gauge.treatment import Treatment, treated
 from dembound.results.reader import history_of, open_record
+from dembound.words import percent
 
 RISEN = 0.2
 """Share of the largest value at which the sign of the incident pulse, the first wave at its gauge, is seen."""
@@ -48,7 +49,7 @@ def read_strain(
         signal, _ = treated(signal, treatment)
         scale = 1.0 if signal.unit == "strain" else modulus
         if not (largest := float(np.abs(signal.values).max()) / scale) < LARGEST_STRAIN:
-            said = f"the largest strain is {100.0 * largest:.3g} %, of a bar below {100.0 * LARGEST_STRAIN:g} %"
+            said = f"the largest strain is {percent(largest, 3)}, of a bar below {100.0 * LARGEST_STRAIN:g} %"
             raise CaseError([f"{path}: {said}: check --unit, --gain, --gauge-factor or --scale"])
     elif treatment is not None:
         signal, _ = treated(signal, replace(treatment, baseline=False))

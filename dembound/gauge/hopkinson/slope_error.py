@@ -23,6 +23,7 @@ from dembound.gauge.hopkinson.pulses import Faces, Setup
 from dembound.gauge.hopkinson.specimen import Specimen, slope_of, specimen
 from dembound.gauge.noise import rounding
 from dembound.gauge.peaks import CREST, smooth, white_noise, width_of
+from dembound.words import percent
 
 SEED, DRAWS = 0, 40
 """Seed and number of draws of the noise: a standard error is known to 11 % from 40 slopes."""
@@ -92,10 +93,10 @@ def doubts_of_slope(found: Specimen, error: SlopeError | None) -> Iterator[str]:
             f"{1e6 * found.time[last]:.4g} µs: no slope of stress over strain"
         )
     elif not error.half_width < UNKNOWN * abs(found.slope):
-        change = 100.0 * float(np.ptp(found.strain[first : last + 1])) / float(np.abs(found.strain).max())
+        change = float(np.ptp(found.strain[first : last + 1])) / float(np.abs(found.strain).max())
         yield (
-            f"the slope is uncertain, ±{100.0 * error.half_width / abs(found.slope):.2g} %: in equilibrium, until the "
-            f"largest stress, the strain changes by {change:.2g} % of its largest"
+            f"the slope is uncertain, ±{percent(error.half_width / abs(found.slope))}: in equilibrium, until the "
+            f"largest stress, the strain changes by {percent(change)} of its largest"
         )
 
 

@@ -7,6 +7,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.words import percent
 
 Wiring = Literal["quarter", "half", "full"]
 
@@ -130,7 +131,7 @@ class Bridge:
         assert self.excitation is not None
         ratio = voltage / (self.excitation * self.gain)
         if not np.abs(ratio).max(initial=0.0) < 0.25:
-            most = f"{100.0 * np.abs(ratio).max():.3g} % of the excitation"
+            most = f"{percent(np.abs(ratio).max(), 3)} of the excitation"
             raise CaseError(
                 [f"--excitation: the signal is up to {most}, which no strain gives; check --gain and units"]
             )

@@ -19,7 +19,7 @@ PULSE = 5.36 / 4e-4
 
 def facts_of(case) -> dict[str, str]:
     planned = plan(case)
-    return bar_facts(planned.scene, planned.time_step)
+    return dict(bar_facts(planned.scene, planned.time_step))
 
 
 def test_facts_are_those_of_the_bar(spalling) -> None:
@@ -47,7 +47,7 @@ def test_numbers_of_an_end_of_another_type_are_told(spalling) -> None:
             return super().describe(edge, medium) | {"depth": 2.5}
 
     case = replace(spalling(), boundary={"right": Layered(type="viscous")})
-    assert bar_facts(build_bar(case), 2.5e-5)["right end"].split("; ")[0] == "viscous, β_P = 1, depth = 2.5"
+    assert dict(bar_facts(build_bar(case), 2.5e-5))["right end"].split("; ")[0] == "viscous, β_P = 1, depth = 2.5"
 
 
 def test_a_layer_is_told_with_its_length_and_what_it_returns(spalling) -> None:

@@ -24,7 +24,7 @@ def test_a_wave_that_is_a_velocity_and_a_factor_is_warned_of(bar, both: bool, co
         ([0.019, 1.0, -0.019], None),
         ([0.5, 1.0, 0.0], "begins at 0.5 m/s, 50 % of its peak, at 0.002 s, a jump"),
         ([0.0, 1.0, -0.25], "ends at -0.25 m/s, 25 % of its peak, at 0.004 s, a jump"),
-        ([1.0, 1.0, 1.0], "begins at 1 m/s, 1e+02 % of its peak, at 0.002 s and ends at 1 m/s"),
+        ([1.0, 1.0, 1.0], "begins at 1 m/s, 100 % of its peak, at 0.002 s and ends at 1 m/s"),
     ],
 )
 def test_a_history_that_jumps_at_its_ends_is_warned_of(bar, tmp_path, velocities: list, said: str | None) -> None:

@@ -117,7 +117,7 @@ def test_half_a_hole_beside_a_mirror_has_the_pressure_on_its_opening(packing: di
 
     np.testing.assert_allclose(force, [P * 4.6, 0.0], rtol=1e-12, atol=1e-9 * P)
     assert moment == pytest.approx(-P * 4.6 * 5.2, rel=1e-12)
-    assert "of wall of hole h, (9.2e+06, 0) N/m in all, on" in disk_facts(scene)["load p"]
+    assert "of wall of hole h, (9.2e+06, 0) N/m in all, on" in dict(disk_facts(scene))["load p"]
 
 
 def test_a_valley_is_loaded_below_the_surface_only() -> None:
@@ -206,7 +206,7 @@ def test_a_pressure_that_follows_a_wave_drives_forces_and_moments() -> None:
 
 
 def test_facts_name_pressure_wall_and_disks() -> None:
-    fact = disk_facts(pressed(LATTICE, CIRCLE))["load p"]
+    fact = dict(disk_facts(pressed(LATTICE, CIRCLE)))["load p"]
     assert fact.startswith("2 MPa on 14.")
     assert fact.endswith("m of wall of hole h, on 28 particles, steady")
 

@@ -137,7 +137,7 @@ def test_a_steady_force_on_the_continuum_is_a_traction_on_its_surface(bar, first
     np.testing.assert_allclose(force.sum(axis=1), [2e3, -5e3, 0.0], rtol=1e-12)
     # no moment about the middle of the region
     np.testing.assert_allclose(force[:2] @ (x - 0.5 * (first + last)), 0.0, atol=1e-9 * 5e3)
-    assert "nodes of the continuum, steady" in disk_facts(scene)["load house"]
+    assert "nodes of the continuum, steady" in dict(disk_facts(scene))["load house"]
     system = DiskSystem(scene, 1e-5)
     simulation = Simulation(scene, 1e-5, pushed, system=system)
     record = simulation.advance(2)  # velocities are means of the half steps before and after

@@ -190,7 +190,7 @@ def test_a_monitor_in_the_ground_round_a_box_has_the_twin_at_its_height() -> Non
 
 
 def test_check_tells_disks_from_the_continuum() -> None:
-    facts = disk_facts(scene_of({"in": (0.3, 3.9), "left": (-0.3, 3.9)}))
+    facts = dict(disk_facts(scene_of({"in": (0.3, 3.9), "left": (-0.3, 3.9)})))
 
     assert facts["monitor in"].startswith("particle ")
     assert facts["monitor left"] == "in the continuum at (-0.250, 3.750) m"

@@ -197,7 +197,7 @@ def test_contacts_of_a_static_stage_are_those_of_the_run() -> None:
 
 
 def test_facts_are_of_the_box_s_own_sides(shaken: DiskScene) -> None:
-    facts = disk_facts(shaken)
+    facts = dict(disk_facts(shaken))
     for side in ("bottom", "top"):
         words = facts[f"{side} side"].split()
         assert words[0] == "outside;"

@@ -21,7 +21,7 @@ SQUARE = {
 
 
 def lines(case):
-    return proposals(plan(case))
+    return dict(proposals(plan(case)))
 
 
 def test_a_bar_needs_no_more_than_the_wave_at_its_last_monitor(bar) -> None:

@@ -10,7 +10,7 @@ from dembound.kinds import with_changes
 from dembound.motion.kind import Plan
 from dembound.motion.ram import in_words
 from dembound.running import disk_space, plan, resume_case, run_case, warnings_before
-from dembound.running.disk_space import ALWAYS, disk_warnings, results_bytes
+from dembound.running.disk_space import ALWAYS, results_bytes, space_warnings
 
 LAW = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e9, "material.pb_coh": 1e9}
 STATIC = {"static": {"stress": [-1e6, -1e6, 0.0], "ratio": 1e-2}}
@@ -61,9 +61,9 @@ def test_the_size_of_histories_and_energies(bar, tmp_path) -> None:
 def test_a_disk_with_less_space_is_warned_of_with_both_numbers(bar, tmp_path, monkeypatch) -> None:
     planned = plan(bar({"output.snapshots": 50}))
     need = in_words(sum(results_bytes(planned).values()))
-    assert list(disk_warnings(planned, tmp_path)) == []
+    assert list(space_warnings(planned, tmp_path)) == []
     monkeypatch.setattr(disk_space, "disk_free", lambda path: 1e5)
-    (warning,) = disk_warnings(planned, tmp_path)
+    (warning,) = space_warnings(planned, tmp_path)
 
     assert warning.startswith(f"output.snapshots: the results take about {need}, ")
     assert warning.endswith("the disk has 0 MB free")

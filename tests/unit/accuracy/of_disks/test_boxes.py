@@ -36,7 +36,7 @@ def tunnel(**changes: Any) -> DiskCase:
 
 
 def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
-    words = box_facts(build(tunnel()))["smaller box"]
+    words = dict(box_facts(build(tunnel())))["smaller box"]
     width, height = (float(part.split(" m")[0]) for part in words.split(" × ")[:2])
     left, bottom = (float(part) for part in words[words.index("(") + 1 : words.index(")")].split(", "))
 
@@ -47,7 +47,7 @@ def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
 
 def test_the_proposed_box_has_the_disks_and_nodes_it_says() -> None:
     """Its tables are those of a case in which nothing else has changed."""
-    facts = box_facts(build(tunnel()))
+    facts = dict(box_facts(build(tunnel())))
     words, tables = facts["smaller box"], tomllib.loads(facts["its tables"])
     assert tables["boundary"].pop("bottom") == {"type": "outside", "wave_s": "pulse"}
     assert tables["boundary"] == {side: {"type": "outside"} for side in ("left", "right", "top")}
@@ -56,13 +56,13 @@ def test_the_proposed_box_has_the_disks_and_nodes_it_says() -> None:
     boxed = build(tunnel(packing=packing, **tables))
     assert boxed.outside is not None
     assert f": {boxed.disk_count:,} disks and {boxed.outside.count:,} nodes instead of " in words
-    assert box_facts(boxed) == {}
+    assert dict(box_facts(boxed)) == {}
 
 
 def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     load = [{"name": "blow", "position": [60.0, 98.0], "force": [0.0, -1.0], "wave": "pulse"}]
     sides = dict.fromkeys(("left", "right", "bottom"), VISCOUS)
-    words = box_facts(build(tunnel(hole=[], load=load, boundary=sides)))["smaller box"]
+    words = dict(box_facts(build(tunnel(hole=[], load=load, boundary=sides))))["smaller box"]
     height = float(words.split(" × ")[1].split(" m")[0])
     bottom = float(words[words.index("(") + 1 : words.index(")")].split(", ")[1])
 
@@ -80,7 +80,7 @@ def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     ids=["nothing in it", "not ground all round", "periodic", "a wave from the left"],
 )
 def test_there_is_no_box(changes: dict[str, Any]) -> None:
-    assert box_facts(build(tunnel(**changes))) == {}
+    assert dict(box_facts(build(tunnel(**changes)))) == {}
 
 
 def test_a_step_costs_what_its_parts_do() -> None:
@@ -100,7 +100,7 @@ BLOW = {"name": "blow", "force": [0.0, 1.0], "position": [50.5, 99.5], "wave": "
 def test_a_box_round_a_slope_ends_on_its_floor() -> None:
     """Beyond it the ground is as high as the floor, and has no nodes above."""
     changes = {"boundary": {side: VISCOUS for side in ("left", "right", "bottom")}, "hole": [SLOPE], "load": [BLOW]}
-    facts = box_facts(build(tunnel(**changes)))
+    facts = dict(box_facts(build(tunnel(**changes))))
     tables = tomllib.loads(facts["its tables"])
     assert tables["boundary"] == {side: {"type": "outside"} for side in ("left", "right", "bottom")}
     packing = {"pattern": "A", "radius": 0.5} | tables.pop("packing")
@@ -120,4 +120,4 @@ def test_a_box_round_a_slope_ends_on_its_floor() -> None:
 def test_without_a_level_floor_or_under_waves_there_is_no_box(changes: dict[str, Any]) -> None:
     if "load" in changes:
         changes = {"boundary": {side: VISCOUS for side in ("left", "right", "bottom")}} | changes
-    assert box_facts(build(tunnel(**changes))) == {}
+    assert dict(box_facts(build(tunnel(**changes)))) == {}

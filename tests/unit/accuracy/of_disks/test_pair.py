@@ -1,15 +1,14 @@
 """The pair of runs: which sides move, the sign of their difference, and echoes."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from small_cases import Tables, small
 
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks import pair as pairs
+from dembound.accuracy.of_disks.coarser import Coarser
 from dembound.accuracy.of_disks.pair import Pair, run_pair
-from dembound.accuracy.runner import Runner
+from dembound.accuracy.runner import Run, Runner
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
@@ -35,8 +34,15 @@ def gauge(x: float, y: float) -> History:
     return History.of(np.zeros(2), TIME, motion, np.tile([x, y, 9.0], (len(TIME), 1)))
 
 
+def run_with(*motions: History, weight: float = 0.0) -> Pair:
+    """A pair of the runs with these motions at monitor a; its scenes do not matter."""
+    scene = build(small(SCENE))
+    runs = tuple(Run(motions={"a": motion}) for motion in motions)
+    return Pair(Coarser(scene.case, weight), 3.0, scene, scene, {}, True, runs)
+
+
 def test_the_difference_is_own_less_far_at_the_times_of_the_record():
-    pair = Pair({"a": gauge(3.0, 1.0)}, {"a": gauge(1.0, 2.0)}, 3.0, (1.0, 1.0), True, 0)
+    pair = run_with(gauge(3.0, 1.0), gauge(1.0, 2.0))
     times = np.array([0.0, 0.33, 0.78])
     recorded = History(np.zeros(2), times, {})
     np.testing.assert_allclose(pair.difference(recorded, "a", "velocity"), np.tile([2.0, -1.0], (3, 1)))
@@ -44,9 +50,8 @@ def test_the_difference_is_own_less_far_at_the_times_of_the_record():
 
 
 def test_whole_cells_add_their_part_with_their_weight():
-    pair = Pair({"a": gauge(3.0, 1.0)}, {"a": gauge(1.0, 2.0)}, 3.0, (1.0, 1.0), True, 0)
-    with_whole = replace(pair, whole={"a": gauge(7.0, 1.0)}, weight=0.25)
-    found = with_whole.difference(History(np.zeros(2), TIME[:2], {}), "a", "velocity")
+    pair = run_with(gauge(3.0, 1.0), gauge(1.0, 2.0), gauge(7.0, 1.0), weight=0.25)
+    found = pair.difference(History(np.zeros(2), TIME[:2], {}), "a", "velocity")
     np.testing.assert_allclose(found, np.tile([3.0, -1.0], (2, 1)))
 
 
@@ -66,7 +71,7 @@ def test_a_pair_that_can_be_afforded_has_the_smallest_disks_and_no_echoes(scene)
 
 
 def test_a_budget_that_is_too_small_leaves_echoes_and_the_largest_disks(scene):
-    pair = pairs.scenes_of_pair(scene.case, scene, choose_step(scene)[0], 1.0)
+    pair = pairs.pair_of(scene.case, scene, choose_step(scene)[0], 1.0)
     assert not pair.echo_free
     assert pair.ratio == max(pairs.ratios(scene.case, scene))
     assert pair.larger.size[0] == pytest.approx(12.0 + 2 * (pairs.SMALLER[-1] - 1.0) * 12.0, rel=0.1)  # at each side

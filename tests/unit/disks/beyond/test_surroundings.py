@@ -39,7 +39,7 @@ def test_free_edges_lie_a_skin_below_the_body() -> None:
     assert abs(skin("left") - skin("top")) > 1e-3
     low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
     assert (low[0], high[1]) == pytest.approx((skin("left"), 6.0 - skin("top")), abs=1e-12)
-    facts = disk_facts(corner)
+    facts = dict(disk_facts(corner))
     assert (
         facts["its free edges"] == f"{skin('left'):.3f} m inside the left side, {skin('top'):.3f} m inside the top side"
     )

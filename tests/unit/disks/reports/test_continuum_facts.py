@@ -7,10 +7,11 @@ import pytest
 
 from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.bragg import sent_back
-from dembound.disks.packing_errors import in_percent, lattice_errors
+from dembound.disks.packing_errors import lattice_errors
 from dembound.disks.reports.continuum_facts import ANGLES, continuum_facts, continuum_warnings
 from dembound.disks.scene import build
 from dembound.kinds import with_changes
+from dembound.words import percent
 
 STAYS = {"type": "constant", "amplitude": 1.0, "rise": 0.4}
 RANDOM = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0], "seed": 1}
@@ -34,7 +35,7 @@ def case(bar):
 
 
 def facts_of(case, **changes) -> dict[str, str]:
-    return continuum_facts(build(with_changes(case, changes)))
+    return dict(continuum_facts(build(with_changes(case, changes))))
 
 
 def warnings_of(case, **changes) -> list[str]:
@@ -110,12 +111,12 @@ def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
     of_forces = with_changes(case, {"packing": RANDOM, "wave": {"pulse": short}})
     for changed, axes in ((of_forces, (0, 1)), (with_changes(of_forces, {"load": [], "boundary": below}), (1,))):
         scene = build(changed)
-        share = in_percent(sent_back(scene.ground, signals_of(changed), (40.0, 20.0), axes))
-        fact = continuum_facts(scene)["copies of the brick"]
+        share = percent(sent_back(scene.ground, signals_of(changed), (40.0, 20.0), axes))
+        fact = dict(continuum_facts(scene))["copies of the brick"]
         assert fact.startswith(f"send back up to {share} of the velocity")
         assert fact.endswith("shorter bricks send back less")
         more = build(with_changes(changed, {"outside.accuracy": 0.2}))
-        assert continuum_facts(more)["copies of the brick"].endswith("which a continuum does not")
+        assert dict(continuum_facts(more))["copies of the brick"].endswith("which a continuum does not")
 
     assert "copies of the brick" not in facts_of(case, packing=RANDOM)  # 13 Hz
     assert "copies of the brick" not in facts_of(case, wave={"pulse": short})  # a lattice
@@ -182,10 +183,6 @@ def test_elements_too_large_beside_a_load(case) -> None:
     assert line.startswith(
         "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
     )
-
-
-def test_percent() -> None:
-    assert [in_percent(share) for share in (1e-3, 0.01234, 7.0)] == ["0.1 %", "1.2 %", "100 %"]
 
 
 def test_heights_of_lower_ground_are_said(case) -> None:

@@ -13,7 +13,7 @@ SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}
 
 
 def facts_of(case: Case) -> dict[str, str]:
-    return disk_facts(Disks().build(case))
+    return dict(disk_facts(Disks().build(case)))
 
 
 def test_facts_are_those_of_the_scene(bar) -> None:
