@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dembound.waves.spectrum import amplitude_spectrum
+from dembound.words import percent
 
 FEWEST = 20
 """Samples below which a table is one of single points, joined by straight lines."""
@@ -123,7 +124,7 @@ def _coarse(mean: float, step: float) -> Iterator[str]:
     if loss > LOST:
         yield (
             f"has {1.0 / (mean * step):.2g} samples in a period of its mean frequency, {mean:.3g} Hz; straight lines "
-            f"between them take {100.0 * loss:.2g} % of it: take a finer record, or interpolate it"
+            f"between them take {percent(loss)} of it: take a finer record, or interpolate it"
         )
 
 
