@@ -1,7 +1,12 @@
 """What all tests share."""
 
-import numba
-import pytest
+import os
+
+for library in ("OPENBLAS", "OMP", "MKL"):  # before numpy: their threads would wait for each other in small matrices
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+import numba  # noqa: E402
+import pytest  # noqa: E402
 
 
 @pytest.fixture(scope="session", autouse=True)
