@@ -58,3 +58,16 @@ def locked_in_forces(body: DiskScene) -> np.ndarray:
 def settled(body: DiskScene, *, has_history: bool, size: float = 1e-6) -> Start:
     """A start somewhere, with contacts as built."""
     return Start(shaken(body, size), contact_lists(body) if body.has_history else {}, has_history)
+
+
+def turn(angle: float) -> np.ndarray:
+    """Rotation matrix (2, 2)."""
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def fitted(places: np.ndarray, moved: np.ndarray) -> float:
+    """Rotation that is nearest to the motion of some places (2, m), by a polar decomposition."""
+    a, r = (x - x.mean(axis=1, keepdims=True) for x in (places, places + moved))
+    left, _, right = np.linalg.svd(r @ a.T)
+    rotation = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
+    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))

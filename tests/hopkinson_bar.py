@@ -20,13 +20,11 @@ STEP = 0.2e-6
 
 def ramp(time: np.ndarray, rise: float = 150e-6, length: float = 350e-6) -> np.ndarray:
     """A half sine of a rise, a plateau of 1, and the same fall: the pulse of a pulse shaper."""
-    up = np.sin(0.5 * np.pi * np.clip(np.minimum(time, length - time) / rise, 0.0, 1.0)) ** 2
-    return up
+    return np.sin(0.5 * np.pi * np.clip(np.minimum(time, length - time) / rise, 0.0, 1.0)) ** 2
 
 
 def signals(
     pulse: Callable[[np.ndarray], np.ndarray] = ramp,
-    samples: int = 5000,
     second: float | None = None,
     amplitude: float = 1e-3,
     specimen: tuple[float, float] = (SPECIMEN_SPEED, SPECIMEN_DENSITY),

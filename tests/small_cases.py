@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import tomli_w
 
 from dembound.casefile import Case
+from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes
 
 Tables = dict[str, Any]
@@ -100,3 +102,35 @@ def small(tables: Tables, name: str = "small", changes: Mapping[str, Any] | None
     """The case of tables, with some keys changed; its name has no other characters than a folder may have."""
     case = loads(tomli_w.dumps(tables), name=re.sub(r"\W+", "_", name))
     return with_changes(case, changes) if changes else case
+
+
+def problems_of(text: str, folder: Path = Path()) -> list[str]:
+    """All lines the text of a case is refused with; none if it is not."""
+    try:
+        loads(text, folder)
+    except CaseError as error:
+        return error.problems
+    return []
+
+
+def rows(table: str) -> list[tuple[str, ...]]:
+    r"""The rows of a table, its cells between bars; \n in a cell is the end of a line, # begins a line of comment."""
+    lines = [line for line in table.strip("\n").split("\n") if line and not line.startswith("# ")]
+    return [tuple(cell.strip(" ").replace(r"\n", "\n") for cell in line.split(" | ")) for line in lines]
+
+
+BODY = """\
+[packing]
+pattern = "A"
+size = [10.0, 5.0]
+radius = 0.25
+
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+
+[run]
+duration = 0.1
+
+"""
+"""The text of a lattice of 20 × 10 disks."""

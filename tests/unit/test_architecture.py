@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -16,6 +17,7 @@ def room(module: list[str]) -> str:
     return ".".join(own)
 
 
+@cache
 def imports() -> Arrows:
     """The rooms that each room imports from."""
     found: Arrows = {}

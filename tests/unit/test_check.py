@@ -1,7 +1,5 @@
 """What a case would come to, without running it."""
 
-import pytest
-
 from dembound.bar.facts import bar_facts
 from dembound.check import check, duration_in_words
 from dembound.disks.reports.facts import disk_facts
@@ -47,41 +45,20 @@ def test_a_bar_is_told_of_as_a_bar(spalling) -> None:
     assert warnings == warnings_before(planned)
 
 
-@pytest.mark.parametrize(
-    ("changes", "without"),
-    [
-        ({}, ""),
+def test_the_estimate_says_what_it_is_without(bar) -> None:
+    law = {"material.law": "linearpbond"}
+    for changes, without in (
         ({"static": {"stress": [-1e6, -2e6, 0.0]}}, " the static stage,"),
-        ({"material.law": "linearpbond"}, " the additional time of linearpbond once it begins,"),
-        ({"material.law": "linearpbond", "material.elastic_start": False}, ""),
-    ],
-)
-def test_the_estimate_says_what_it_is_without(bar, changes: dict, without: str) -> None:
-    facts, _ = check(bar(changes))
-
-    assert facts["estimated time"].endswith(f" with 1 thread, without building,{without} pictures")
+        (law, " the additional time of linearpbond once it begins,"),
+        ({**law, "material.elastic_start": False}, ""),
+    ):
+        told = check(bar(changes))[0]["estimated time"]
+        assert told.endswith(f" with 1 thread, without building,{without} pictures")
 
 
-def test_checking_writes_nothing(bar, tmp_path, monkeypatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    check(bar())
-
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    ("seconds", "words"),
-    [
-        (0.026, "less than 1 s"),
-        (8.4, "about 8 s"),
-        (42.0, "about 40 s"),
-        (89.0, "about 90 s"),
-        (130.0, "about 2.2 min"),
-        (910.0, "about 15 min"),
-        (9000.0, "about 2.5 h"),
-        (90000.0, "about 25 h"),
-        (259200.0, "about 3 d"),
-    ],
-)
-def test_times_are_told_as_one_would_say_them(seconds: float, words: str) -> None:
-    assert duration_in_words(seconds) == words
+def test_times_are_told_as_one_would_say_them() -> None:
+    times = (0.026, 8.4, 42.0, 89.0, 130.0, 910.0, 9000.0, 90000.0, 259200.0)
+    assert [duration_in_words(seconds) for seconds in times] == [
+        *("less than 1 s", "about 8 s", "about 40 s", "about 90 s"),
+        *("about 2.2 min", "about 15 min", "about 2.5 h", "about 25 h", "about 3 d"),
+    ]

@@ -73,15 +73,19 @@ def test_a_second_signal_acts_at_once_unless_it_is_the_same_request() -> None:
 
 
 def test_requests_to_an_outer_statement_are_seen_within() -> None:
-    def work() -> None:
+    def work(number: int) -> None:
         with Interrupts(), Interrupts() as inner:
-            send()
-            assert inner.caught == signal.SIGINT
+            send(number)
+            assert inner.caught == number
             look()
             pytest.fail("must not be reached")
 
-    with pytest.raises(Stopped):
-        work()
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        before = signal.signal(number, signal.default_int_handler)  # tests may be run where hangups are ignored
+        with pytest.raises(Stopped) as stop:
+            work(number)
+        assert stop.value.exit_code == 128 + number
+        signal.signal(number, before)
 
 
 def test_a_file_is_a_request_in_its_thread_alone(tmp_path) -> None:

@@ -1,12 +1,9 @@
 """The lab in which physical claims are tested: cases from a few words, and their motion at chosen places."""
 
-import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 import pytest
 import tomli_w
@@ -26,7 +23,6 @@ from dembound.kinds import loads, with_changes
 from dembound.motion.simulation import Simulation
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly, tile
-from dembound.running import run_case
 
 DENSITY = 2500.0
 SPEED = 1000.0
@@ -34,8 +30,6 @@ RADIUS = 0.25
 BRICK = (10.0, 10.0)
 GROUND = (60.0, 60.0)
 """Width and height (m) of the ground round a box of disks."""
-PLACES = {"position", "region"}
-"""Keys with places in m."""
 
 
 @dataclass(frozen=True)
@@ -139,28 +133,6 @@ class Lab:
             "run": {"duration": 1.0},
         }
         return build_bar(loads(tomli_w.dumps(tables)))
-
-    def beside_a_large_body(
-        self, case: Case, load: dict[str, Any], places: Sequence[tuple[float, float]], duration: float = 0.2
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Motion (steps, p, 6) at places (m) of a case on 40 m × 20 m under a load, and of one on 320 m × 160 m.
-
-        In the latter all is 140 m farther from its free left side and bottom, and closer to the right side, so that
-        with waves of 1000 m/s nothing returns for some 0.2 s.
-        """
-        far = np.array([140.0, 140.0])
-        found, at, step = [], [], 0.0
-        for by, changes in ((0.0 * far, {}), (far, {"packing.size": [320.0, 160.0], "boundary": {}})):
-            monitor = [{"name": f"m{k}", "position": (by + place).tolist()} for k, place in enumerate(places)]
-            moved = load | {key: (np.reshape(load[key], (-1, 2)) + by).ravel().tolist() for key in PLACES & load.keys()}
-            more = {"monitor": monitor, "load": [moved], "outside.element": 8.0, "outside.margin": 4}
-            scene = build(with_changes(case, more | changes))
-            step = step or choose_step(scene)[0]
-            record = Simulation(scene, step, scene.probes).advance(int(duration / step))
-            found.append(scene.observed(record, step * np.arange(len(record))))
-            at.append(np.array(list(scene.monitored.values())) - by)
-        assert np.abs(at[0] - at[1]).max() < 1e-9  # the same disks, in the continuum or not
-        return found[0], found[1]
 
     def disks(
         self, positions: np.ndarray, radii: np.ndarray, pairs: Sequence[tuple[int, int]] = (), **words: Any
@@ -283,54 +255,3 @@ class Rock:
 @pytest.fixture(scope="session")
 def rock() -> Rock:
     return Rock()
-
-
-@pytest.fixture(scope="session")
-def same_record() -> Callable[..., dict[str, Any]]:
-    """Asserts that a case has the same record with and without a reduction, `key`; returns the summary with it.
-
-    Energies agree within 1e-12; accuracy : of all else relative to the largest, None: that of rounding. to_the_bit :
-    histories of monitors, fields and peaks are even the same to the last bit.
-    """
-
-    def compare(
-        case: Case, key: str, folder: Path, *, to_the_bit: bool = False, accuracy: float | None = None
-    ) -> dict[str, Any]:
-        data, summary = _record(with_changes(case, {key: True}), folder / "with")
-        expected, of_all = _record(with_changes(case, {key: False}), folder / "without")
-        assert (summary["time_step"], summary["particles"]) == (of_all["time_step"], of_all["particles"])
-        assert set(data) == set(expected)
-
-        def largest(end: str) -> float:
-            return max(np.abs(values).max(initial=0.0) for name, values in expected.items() if name.endswith(end))
-
-        # sums in another order differ by the rounding of displacements, a few ε·u/Δt of velocity per step
-        jitter = 8.0 * np.finfo(float).eps * largest("displacement") / of_all["time_step"] * of_all["steps"]
-        relative = accuracy or jitter / largest("velocity")
-        assert largest("velocity") > 0.1  # the pulse did run
-        assert relative < 1e-6
-        for name, values in expected.items():
-            group, quantity = name.split("/")[0], name.split("/")[-1]
-            sums = group == "boundaries" and quantity in ("force", "displacement")  # over a side, in another order
-            if values.dtype.kind != "f" or (
-                to_the_bit and group in ("histories", "snapshots", "boundaries") and not sums
-            ):
-                np.testing.assert_array_equal(data[name], values, err_msg=name)
-                continue
-            like = "_force" if quantity.endswith("_force") else quantity.removeprefix("peak_")
-            size = largest("energy/kinetic") if group == "energy" else largest(like)
-            bound = (accuracy or 1e-12) * size if group == "energy" else relative * size
-            np.testing.assert_allclose(data[name], values, rtol=0.0, atol=bound, err_msg=name)
-        return summary
-
-    return compare
-
-
-def _record(case: Case, folder: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """All datasets of the record of a case by name, and its summary."""
-    done = run_case(case, folder)
-    names: list[str] = []
-    with h5py.File(done / "run.h5") as file:
-        file.visit(names.append)
-        data = {name: file[name][()] for name in names if isinstance(file[name], h5py.Dataset)}
-    return data, json.loads((done / "summary.json").read_text())

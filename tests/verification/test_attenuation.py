@@ -17,9 +17,7 @@ ALPHA = 0.52
 
 METHODS = {
     "finite_difference": ({"type": "finite_difference"}, 1.0, 20),
-    "short steps": ({"type": "finite_difference"}, 0.5, 20),
     "peridynamics": ({"type": "peridynamics", "horizon": 3, "corrected_ends": True}, 0.5, 40),
-    "patch": ({"type": "patch", "horizon": 3}, 0.9, 20),
 }
 """Method, Courant number, and cells per wavelength, enough for the bursts of all passages to stay in their turns."""
 

@@ -59,10 +59,9 @@ def velocities(of: DiskCase, component: int) -> np.ndarray:
     [
         ("s", {"type": "viscous"}),
         ("p", {"type": "viscoelastic", "distance": 20.0}),
-        ("s", {"type": "roller"}),
         ("s", {"type": "free", "artificial": True}),
     ],
-    ids=["S, viscous", "P, viscoelastic", "S, roller", "S, free"],
+    ids=["S, viscous", "P, viscoelastic", "S, free"],
 )
 def test_the_share_that_sides_take_is_foreseen(motion: str, side: dict) -> None:
     held_back = case(motion, side)

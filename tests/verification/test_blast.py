@@ -12,7 +12,6 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.exact.cavity import cavity_motion
 from dembound.exact.solid import Solid
 from dembound.kinds import load, with_changes
-from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
 CASE = load(Path(__file__).parents[2] / "cases" / "blast.toml")
@@ -65,25 +64,6 @@ def test_the_rock_moves_as_round_the_exact_cavity(on: str, diameters_off: float)
     assert coarse < 2.0 * diameters_off * 1.0 / RADIUS
     assert fine < 2.0 * diameters_off * 0.5 / RADIUS
     assert fine < 0.7 * coarse
-
-
-def test_its_work_is_in_the_ledger() -> None:
-    """To rounding, of forces and moments that follow a wave, of steady ones, and of those on bonds."""
-    (blast,) = CASE.load
-    loads = [
-        blast,
-        blast.model_copy(update={"name": "gas", "wave": None}),
-        blast.model_copy(update={"name": "b", "on": "bonds"}),
-    ]
-    scene = quarter(1.0, load=[each.given() for each in loads])
-    simulation = Simulation(scene, choose_step(scene)[0], side_stride=1)
-    ledger = Ledger(simulation, 20)
-    simulation.track(ledger)
-    simulation.run(201)
-    most = max(entry.supplied for entry in ledger.entries)
-
-    assert most > 0.0
-    assert max(abs(entry.error) for entry in ledger.entries) < 1e-12 * most
 
 
 def test_a_steady_pressure_holds_a_body_open_that_nothing_else_holds() -> None:

@@ -8,7 +8,6 @@ import pytest
 from dembound.disks.scene import build
 from dembound.studies.calibration import calibrate
 
-RANDOM = ["B", "C"]
 KINDS = {
     "absorbing": ("right", {"left": {"type": "velocity", "wave_p": "pulse"}, "right": "viscous"}),
     "input": ("left", {"left": {"type": "viscous_input", "wave_p": "pulse"}, "right": "viscous"}),
@@ -18,7 +17,7 @@ BRICK = (10.0, 5.0)
 """Ten mean diameters across: sideways it goes on periodically, and waves along the bar do not feel how soon."""
 
 
-@pytest.fixture(scope="module", params=[(pattern, kind) for pattern in RANDOM for kind in KINDS], ids="-".join)
+@pytest.fixture(scope="module", params=[("B", "absorbing"), ("C", "input")], ids="-".join)
 def bar(request, lab):
     """Makes a bar and names the side to calibrate; the strip has 0.35 of the pulse's length, the bar twice that."""
     pattern, kind = request.param
@@ -38,34 +37,14 @@ def calibrated(bar):
     return cache(lambda period: calibrate(*bar(period)))
 
 
-def test_impedance_method_needs_two_passes(calibrated):
-    """The end is a dashpot on a bar, so one pass tells β0 and the second confirms it."""
-    found = calibrated(0.2)
-    assert len(found.beta) <= 2
-    assert abs(found.ratio[-1] - 1.0) < 1e-3
-
-
 def test_matched_factors_let_a_wave_in_or_out_as_it_is(calibrated):
-    """The first pass has the default of all sides; the second confirms or refines it."""
+    """The first pass has the default of all sides; the second confirms it, as the end is a dashpot on a bar."""
     found = calibrated(0.2)
     assert len(found.beta) == 2
+    assert abs(found.ratio[-1] - 1.0) < 1e-3
     # grains scatter some (qD)² = 1e-3 of a pulse of 400 disks; half of the difference of β shows in the ratio
     assert abs(found.ratio[0] - 1.0) < 2.5e-3
     assert found.beta[0] == pytest.approx(found.result, rel=5e-3)
-
-
-@pytest.mark.parametrize("start", [0.5, 2.0])
-@pytest.mark.parametrize("length", [40.0, 200.0])
-@pytest.mark.parametrize("kind", KINDS)
-def test_square_lattice_needs_no_correction(lab, kind, length, start):
-    """β0 = 1 for touching equal disks, from any start, also where the pulse is longer than the scene."""
-    side, boundary = KINDS[kind]
-    case = lab.case("A", (length, lab.diameter), boundary=boundary, wave=lab.pulse(0.2), duration=0.65)
-    found = calibrate(case, side, start=start)
-    assert len(found.beta) == 2
-    # the first pass solves for β0 and is off only by the half disk of mass at the end, πD/4cT = 0.2 % in quadrature
-    # with the peak: its square, and a peak sampled every 2 ‰ of the pulse
-    assert found.result == pytest.approx(1.0, abs=1e-3)
 
 
 @pytest.mark.parametrize("start", [0.5, 2.0])
@@ -93,8 +72,7 @@ def test_strip_stands_for_the_whole_scene(bar, calibrated):
     assert strip.result == pytest.approx(full.result, rel=1e-3)
 
 
-@pytest.mark.parametrize("pattern", RANDOM)
-def test_little_comes_back_from_a_calibrated_end(lab, pattern):
+def test_little_comes_back_from_a_calibrated_end(lab):
     """Z's P4, 250 m before the end, and his pulse: at most 0.2 % of the peak returns.
 
     The pulse comes in just before P4 through dashpots, which let its echo out again; they are this side's, so that what
@@ -107,7 +85,7 @@ def test_little_comes_back_from_a_calibrated_end(lab, pattern):
             "left": {"type": "viscous_input", "wave_p": "pulse", "beta_p": beta},
             "right": {"type": "viscous", "beta_p": beta},
         }
-        return lab.case(pattern, (length, BRICK[1]), brick=BRICK, boundary=boundary, wave=lab.pulse(0.5))
+        return lab.case("B", (length, BRICK[1]), brick=BRICK, boundary=boundary, wave=lab.pulse(0.5))
 
     scene = build(case(calibrate(case(1.0), "right").result))
     speed = scene.ground.wave_speeds(0)[0]

@@ -55,7 +55,6 @@ def test_a_force_across_bends_and_shears_it(lab, law):
 @pytest.mark.parametrize(
     ("law", "force", "modulus"),
     [
-        ("elastic", -1e5, EMOD + PB_EMOD),
         ("elastic", 1e5, EMOD + PB_EMOD),
         ("linearpbond", -1e5, EMOD + PB_EMOD),
         ("linearpbond", 1e5, PB_EMOD),  # contacts do not pull

@@ -9,7 +9,7 @@ from dembound.motion.simulation import Simulation
 DISKS, STEPS = 40, 1000
 
 
-@pytest.mark.parametrize("waves_per_row", [1, 5, 13, 20])
+@pytest.mark.parametrize("waves_per_row", [1, 13, 20])
 def test_travelling_wave_keeps_its_frequency(lab, waves_per_row):
     """sin(ωΔt/2) = Δt √(k/m) sin(qa/2): the space and time discretisation solved together."""
     boundary = {"left": "periodic", "right": "periodic"}

@@ -15,7 +15,6 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import with_changes
 from dembound.motion.simulation import Simulation
-from dembound.outside import choice
 
 SIDES = ("left", "right", "bottom")
 SIZE = (40.0, 20.0)
@@ -52,8 +51,7 @@ def velocities(scene: DiskScene, corner: float, step: float, steps: int) -> np.n
     return Simulation(scene, step, inside).advance(steps)[::3, :, 3:5]
 
 
-@pytest.mark.parametrize("where", PLACES)
-@pytest.mark.parametrize("wave", WAVES)
+@pytest.mark.parametrize(("wave", "where"), [("cosine", "surface"), ("ricker", "inside")])
 def test_velocities_have_the_accuracy_asked_for(lab, wave: str, where: str) -> None:
     """Or that which the ties leave, if that is more: 0.09 % is expected of the pulse, 0.55 % of the wavelet.
 
@@ -77,30 +75,3 @@ def test_velocities_have_the_accuracy_asked_for(lab, wave: str, where: str) -> N
         assert relative < max(scene.case.outside.accuracy, ties)
     if wave == "ricker":
         assert relative > 0.25 * ties
-
-
-def test_the_displacement_under_a_force_that_stays(lab) -> None:
-    """What the shift α0 of the layers takes is at most that expected, and not a quarter of it; α0 is large here.
-
-    After 1.2 s and α0 = c_p/(2·80 m), α0 t = 7.5: 0.11 % is expected. With four elements that absorb: see choice.py.
-    """
-    wave = {"type": "constant", "amplitude": 1.0, "rise": 0.2}
-    case = with_changes(
-        pushed(lab, wave, PLACES["surface"]),
-        {"run.duration": 1.2, "outside": {"element": 20.0, "layers": 4, "shift": 1.0, "margin": 1}},
-    )
-    chosen = with_changes(case, {"outside": {"element": 20.0, "layers": 4, "shift": 1.0, "accuracy": 5e-4}})
-    scenes = [build(each) for each in (case, chosen, with_changes(case, {"outside.margin": 31}))]
-    step = choose_step(scenes[0])[0]
-    settled = []
-    for scene in scenes:
-        place = scene.positions[: scene.recorded]
-        nodes = [int(np.argmin(np.hypot(*(place - at).T))) for at in ((30.5, 19.5), (20.5, 9.5), (38.5, 0.5))]
-        settled.append(Simulation(scene, step, nodes).advance(int(1.2 / step))[-1, :, 1])
-    small, wider, wide = settled
-    expected = choice.missing(1.2, 1000.0, 1.0, scenes[0].outside.body.mesh.inner)
-    assert expected == pytest.approx(2e-5 * 7.5**2)
-    assert np.all(1.0 - small / wide > 0.25 * expected)
-    assert np.all(1.0 - small / wide < expected)
-    assert scenes[1].outside.settings.margin > 1
-    assert np.all(np.abs(1.0 - wider / wide) < 2.5e-4)

@@ -8,9 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from angles import DIAMETER, FREQUENCY, Side, reflection
+from angles import FREQUENCY, Side, reflection
 from element_row import ROWS, Row
-from oblique import reflection as of_dashpots
 
 from dembound.disks.scene import DiskScene
 from dembound.kernels.grid import move
@@ -35,7 +34,7 @@ def with_layers(scene: DiskScene, absorption: Absorption) -> DiskScene:
 
 
 @pytest.mark.parametrize("motion", ["p", "s"])
-@pytest.mark.parametrize("angle", [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 80.0])
+@pytest.mark.parametrize("angle", [0.0, 30.0, 45.0, 75.0])
 def test_the_formula_bounds_what_comes_back(side: Side, motion: str, angle: float) -> None:
     """Waves that change their kind at the outer edge go in as one and out as the other: the mean of both exponents.
 
@@ -50,31 +49,12 @@ def test_the_formula_bounds_what_comes_back(side: Side, motion: str, angle: floa
     assert found[other] <= np.sqrt(2.0 * side.formula(motion, angle) * side.formula(other, turned)) + FLOOR
 
 
-@pytest.mark.parametrize(
-    ("motion", "angle", "kind", "times"),
-    [
-        ("p", 30.0, "p", 300),
-        ("p", 60.0, "s", 300),
-        ("p", 75.0, "p", 6),
-        ("s", 30.0, "s", 600),
-        ("s", 60.0, "s", 200),
-        ("s", 75.0, "s", 15),
-    ],
-)
-def test_dashpots_send_back_many_times_as_much(side: Side, motion: str, angle: float, kind: str, times: float) -> None:
-    per_wavelength = side.speeds["ps".index(motion)] / FREQUENCY / DIAMETER
-    dashpots = of_dashpots({"type": "viscous", "half_mass": True}, motion, angle, per_wavelength)
-
-    assert dashpots[kind] > times * reflection(side, motion, angle)[kind]
-
-
-@pytest.mark.parametrize("angle", [0.0, 40.0, 70.0])
-def test_without_absorption_all_comes_back(angle: float) -> None:
+def test_without_absorption_all_comes_back() -> None:
     """The outer edge is at rest: energy is conserved by disks, ties and elements to rounding."""
     side = Side.of(damping=0.0)
     still = replace(side, scene=with_layers(side.scene, Absorption(reflection=1.0, delay=0.0)))
     for motion in "ps":
-        assert reflection(still, motion, angle)["energy"] == pytest.approx(1.0, abs=1e-6)
+        assert reflection(still, motion, 40.0)["energy"] == pytest.approx(1.0, abs=1e-6)
 
 
 def test_forces_of_a_row_are_those_of_the_kernels(side: Side) -> None:

@@ -49,15 +49,14 @@ def growth(share: float, delay: float, ratio: float, mesh: Mesh) -> float:
 
 @pytest.mark.parametrize(
     ("mesh", "delay", "ratio"),
-    [(equal, 0.1, 0.0), (equal, 0.5, 0.0), (equal, 0.1, 0.4), (equal, 0.5, 0.4), (unequal, 0.1, 0.25)],
+    [(equal, 0.5, 0.0), (equal, 0.1, 0.4), (unequal, 0.1, 0.25)],
 )
 def test_layers(mesh: Callable[[int], Mesh], delay: float, ratio: float) -> None:
     assert growth(0.999, delay, ratio, mesh(3)) < 1.0
     assert growth(1.06, delay, ratio, mesh(3)) == np.inf
 
 
-@pytest.mark.parametrize("mesh", [equal, unequal])
-def test_no_layers(mesh: Callable[[int], Mesh]) -> None:
+def test_no_layers() -> None:
     """As kinetic energy is at most E/(1 − r²) at a share r of the limit."""
-    assert growth(0.998, 0.1, 0.25, mesh(0)) < 1.0 / (1.0 - 0.999**2)
-    assert growth(1.002, 0.1, 0.25, mesh(0)) == np.inf
+    assert growth(0.998, 0.1, 0.25, unequal(0)) < 1.0 / (1.0 - 0.999**2)
+    assert growth(1.002, 0.1, 0.25, unequal(0)) == np.inf

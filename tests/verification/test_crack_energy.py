@@ -31,9 +31,9 @@ METHODS = {
 }
 
 
-def pulled(method: dict, cells: int, until: float = 1.1) -> tuple[Simulation, Ledger]:
-    """The bar after its end has moved by a multiple of w_c, and the books."""
-    duration = until * OPEN / PULL
+def pulled(method: dict, cells: int) -> tuple[Simulation, Ledger]:
+    """The bar after its end has moved by 1.1 w_c, and the books."""
+    duration = 1.1 * OPEN / PULL
     tables = {
         "bar": {
             "length": LENGTH,
@@ -63,9 +63,8 @@ def taken(part: BarPart) -> np.ndarray:
     return 0.5 * opening["whole"] * opening["limit"] * opening["apart"] * (1.0 - opening.left)
 
 
-@pytest.mark.parametrize("cells", [10, 41])
-@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS.keys())
-def test_one_crack(method, cells):
+@pytest.mark.parametrize(("name", "cells"), [(name, 10) for name in METHODS] + [("three", 41)])
+def test_one_crack(name, cells):
     """The plane takes G_fA to the rounding of coverage; all of the bar 2 % more at most.
 
     The whole bar is near its strength when the crack begins, and waves of 1.4 % of it run back and forth: other bonds
@@ -73,7 +72,7 @@ def test_one_crack(method, cells):
     and 1.014 of it, 2·0.014 of ½σ_t²AL/E = ½G_fA; 2 % are allowed. In the ledger a bond begins to open in the step
     after its limit: 0.5 % are allowed for this.
     """
-    simulation, ledger = pulled(method, cells)
+    simulation, ledger = pulled(METHODS[name], cells)
     (part,) = simulation.system.parts
     planes = np.flatnonzero(opened_planes(part.bonds)[1] >= 0)
     assert len(planes) == 1
@@ -87,12 +86,3 @@ def test_one_crack(method, cells):
     assert np.all(np.diff(crack) >= 0.0)
     came_in = max(entry.outside for entry in ledger.entries)
     assert max(abs(entry.error) for entry in ledger.entries) <= 5e-13 * came_in
-
-
-def test_traction_is_that_of_the_law_while_the_bar_follows_it():
-    """At a quarter, a half and three quarters of the way; the waves are 1.4 % of the strength, twice at a fixed end."""
-    for share in (0.25, 0.5, 0.75):
-        simulation, _ = pulled(METHODS["finite differences"], 41, until=share + (1.0 - share) * 0.5)
-        (part,) = simulation.system.parts
-        stress = part.stress(simulation.state.u)
-        assert np.mean(stress) == pytest.approx((1.0 - share) * STRENGTH, abs=2.0 * 0.014 * STRENGTH)

@@ -8,12 +8,11 @@ from dembound.motion.simulation import Simulation
 
 STEPS = 200
 CENTRAL = {"type": "finite_difference"}
-BARS = [(1, CENTRAL), *((m, {"type": "peridynamics", "horizon": m}) for m in (1, 2, 3, 4, 8))]
+BARS = [(1, CENTRAL), *((m, {"type": "peridynamics", "horizon": m}) for m in (1, 3, 8))]
 
 
-@pytest.mark.parametrize(("horizon", "method"), BARS, ids=["central", "1", "2", "3", "4", "8"])
-@pytest.mark.parametrize("share", [0.3, 0.9])
-@pytest.mark.parametrize("part", [0.03, 0.3, 0.7, 1.0])
+@pytest.mark.parametrize(("horizon", "method"), BARS, ids=["central", "1", "3", "8"])
+@pytest.mark.parametrize(("share", "part"), [(0.3, 0.03), (0.9, 0.7), (0.9, 1.0)])
 def test_standing_wave_keeps_its_frequency(lab, horizon, method, share, part):
     """At every step u = cos ωt cos kx, at a node that does not hear of the ends; k is a part of the shortest wave's."""
     middle = horizon * STEPS

@@ -39,7 +39,6 @@ def energy_after(simulation: Simulation, time: float) -> float:
 @pytest.mark.parametrize(
     ("motion", "side"),
     [
-        ("p", {"type": "viscous", "beta_p": 0.3}),
         ("s", {"type": "viscous", "beta_s": 0.3}),
         ("p", {"type": "viscoelastic", "distance": 5.0, "alpha_n": 2.5}),
     ],

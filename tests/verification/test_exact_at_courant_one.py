@@ -10,7 +10,6 @@ reversed. So the motion is the sum over images that d'Alembert gives, sample by 
 """
 
 import numpy as np
-import pytest
 
 from dembound.exact import bar_stress, bar_velocity
 from dembound.motion.simulation import Simulation
@@ -21,16 +20,6 @@ PLACES = [0, 250, 500, 901, 1000]
 CELLS = 1000
 
 
-@pytest.fixture(scope="module")
-def motion(rock):
-    """Record (k, p, 7) of the places' nodes through several reflections, its times (k,) s, and the load in Pa."""
-    scene = rock.scene({"type": "finite_difference"}, load={"pressure": PRESSURE}, wave=rock.triangle(PULSE))
-    step = rock.step(scene, 1.0)
-    steps = PASSAGES * CELLS
-    record = Simulation(scene, step, np.array(PLACES)).advance(steps)
-    return record, step * np.arange(steps), lambda t: PRESSURE * scene.case.wave["pulse"].velocity(t)
-
-
 LARGEST = PASSAGES * PULSE * 2740.0 * CELLS
 """Bound of displacements in units of what the peak moves a node in a step: each passage adds half a pulse twice."""
 
@@ -38,16 +27,20 @@ TOLERANCE = 4.0 * np.finfo(float).eps * LARGEST * np.sqrt(PASSAGES * CELLS)
 """Rounding of displacements kicks the velocities by up to ε of them at every step, either way: four times the root."""
 
 
-@pytest.mark.parametrize("index", range(len(PLACES)), ids=[f"node {place}" for place in PLACES])
-def test_velocity_is_that_of_dalembert(rock, motion, index):
-    record, time, load = motion
-    impedance = rock.density * rock.speed
-    expected = bar_velocity(PLACES[index] / CELLS, time, load, rock.length, rock.speed, impedance)
-    np.testing.assert_allclose(record[:, index, 3], expected, rtol=0, atol=TOLERANCE * expected.max())
+def test_velocity_and_stress_are_those_of_dalembert(rock):
+    """Through several reflections."""
+    scene = rock.scene({"type": "finite_difference"}, load={"pressure": PRESSURE}, wave=rock.triangle(PULSE))
+    step = rock.step(scene, 1.0)
+    steps = PASSAGES * CELLS
+    record = Simulation(scene, step, np.array(PLACES)).advance(steps)
+    time, impedance = step * np.arange(steps), rock.density * rock.speed
 
+    def load(t: np.ndarray) -> np.ndarray:
+        return PRESSURE * scene.case.wave["pulse"].velocity(t)
 
-@pytest.mark.parametrize("index", range(1, len(PLACES) - 1), ids=[f"node {place}" for place in PLACES[1:-1]])
-def test_stress_is_that_of_dalembert(rock, motion, index):
-    record, time, load = motion
-    expected = bar_stress(PLACES[index] / CELLS, time, load, rock.length, rock.speed)
-    np.testing.assert_allclose(record[:, index, 6], expected, rtol=0, atol=TOLERANCE * PRESSURE)
+    for index, place in enumerate(np.array(PLACES) / CELLS):
+        expected = bar_velocity(place, time, load, rock.length, rock.speed, impedance)
+        np.testing.assert_allclose(record[:, index, 3], expected, rtol=0, atol=TOLERANCE * expected.max())
+        if 0.0 < place < 1.0:
+            stress = bar_stress(place, time, load, rock.length, rock.speed)
+            np.testing.assert_allclose(record[:, index, 6], stress, rtol=0, atol=TOLERANCE * PRESSURE)

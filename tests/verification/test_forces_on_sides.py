@@ -60,40 +60,14 @@ def test_forces_on_sides_are_all_that_changes_the_momentum(lab, boundary):
         np.testing.assert_allclose(sum(forces(simulation).values()), gained, rtol=0.0, atol=1e-11 * size)
 
 
-@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
-def test_ground_that_settled_rests_with_its_weight_on_its_bottom(lab, law):
-    """At t = 0 and, as nothing moves, ever after; the static stage leaves 1e-6 of contact forces unbalanced."""
-    held = {side: {"type": "roller"} for side in ("left", "right")} | {"bottom": {"type": "fixed"}}
-    scene = lab.scene(
-        "B",
-        (10.0, 10.0),
-        held=(),
-        material={"law": law, "p_wave_speed": 1000.0} | ({"elastic_start": False} if law != "elastic" else {}),
-        boundary={"bottom": "viscous", "left": "viscous", "right": "roller"},
-        load=[{"acceleration": [0.0, -GRAVITY]}],
-        static={"boundary": held, "ratio": 1e-6},
-    )
-    simulation = watched(scene, settle(scene).start)
-    for steps in (1, 50):
-        simulation.run(steps)
-        assert (simulation.system.turning is not None) == (law != "elastic")  # balancing forces rotate with the sides
-        found, weight = forces(simulation), GRAVITY * scene.mass.sum()
-        # rollers carry nothing along the side, and the free top nothing at all
-        assert found["bottom"][1] == pytest.approx(weight, rel=1e-4)
-        assert found["left"][0] == pytest.approx(-found["right"][0] - found["bottom"][0], rel=1e-3)
-        assert found["left"][0] > 0.02 * weight
-        np.testing.assert_allclose(found["top"], 0.0, atol=1e-4 * weight)
-
-
-@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
-def test_a_sample_that_settled_under_a_stress_shows_it_from_the_start(lab, law):
+def test_a_sample_that_settled_under_a_stress_shows_it_from_the_start(lab):
     """Each side has the stress times its length, contacts across corners included."""
     stress = np.array([[-1e6, 2e5], [2e5, -2e6]])
     case = lab.case(
         "B",
         (20.0, 10.0),
         held=(),
-        material={"law": law, "p_wave_speed": 1000.0} | ({"elastic_start": False} if law != "elastic" else {}),
+        material={"law": "linearpbond", "elastic_start": False},
         boundary=dict.fromkeys(SIDES, "viscous"),
         static={"stress": [-1e6, -2e6, 2e5], "ratio": 1e-4},
     )
@@ -101,6 +75,7 @@ def test_a_sample_that_settled_under_a_stress_shows_it_from_the_start(lab, law):
     settled = settle(scene)
     simulation = watched(scene, settled.start)
     simulation.run(30)
+    assert simulation.system.turning is not None  # balancing forces rotate with the sides
     for side, force in forces(simulation).items():
         edge = scene.sides[side]
         outward = np.zeros(2)

@@ -1,8 +1,8 @@
 """A body that nothing holds never moves faster than it was kicked: under every law, geometry and start.
 
-Two ways in which it could are tested by taking their cure away. Contacts that open and close at steps near the
-stability limit gain energy unless closing takes some; forces that balance a stress tip a body over unless they turn
-with its sides.
+Contacts that open and close at steps near the stability limit gain energy unless closing takes some (see
+test_where_methods_fail_grains); forces that balance a stress tip a body over unless they turn with its sides, which is
+tested by taking that away.
 """
 
 import numpy as np
@@ -10,7 +10,6 @@ import pytest
 
 from dembound.disks.rest.stage import settle
 from dembound.disks.stability import OPENING, choose_step
-from dembound.kernels.contacts import CLOSING
 from dembound.motion.simulation import Simulation
 
 KICK = 0.75
@@ -69,48 +68,23 @@ def kicked(lab, pattern: str, material: dict, boundary: dict, static: dict | Non
     return simulation
 
 
-@pytest.mark.parametrize("law", LAWS)
+UNDER_PRESSURE = {"stress": (-PRESSURE, -PRESSURE, 0.0)}
+
+
 @pytest.mark.parametrize(
-    ("boundary", "static"),
-    [({}, None), (SIDES, None), (SIDES, {"stress": (-PRESSURE, -PRESSURE, 0.0)})],
-    ids=["free", "viscous sides", "viscous sides under 5 MPa"],
+    ("pattern", "law", "boundary", "static"),
+    [
+        ("A", "reference", {}, None),
+        ("B", "updated", {}, None),
+        ("C", "elastic", SIDES, None),
+        ("A", "updated", SIDES, UNDER_PRESSURE),
+        ("B", "reference", SIDES, UNDER_PRESSURE),
+        ("C", "updated, elastic start", SIDES, UNDER_PRESSURE),
+    ],
 )
-@pytest.mark.parametrize("pattern", ["A", "B", "C"])
 def test_a_kicked_body_gains_no_energy(lab, pattern, boundary, static, law):
     """Without the loss at closing, at 0.9 of the limit, the free lattice passes the kick under the reference law."""
     assert largest(kicked(lab, pattern, LAWS[law], boundary, static), 2000) < KICK
-
-
-def chain_energy(factor: float, safety: float) -> float:
-    """Energy of a chain of 200 masses after 4,000 steps over that at the start, of random velocities.
-
-    Between neighbours stand a bond and a contact of unit stiffness each; the contact pushes only, its first push after
-    it was open is `factor` times too strong. safety : the step in parts of 2/ω_max.
-    """
-    step = safety * 2.0 / np.sqrt(8.0)
-    u, v = np.zeros(200), np.random.default_rng(1).standard_normal(200)
-    first = 0.5 * np.sum(v**2)
-    was = np.zeros(199)
-    for _ in range(4000):
-        stretch = np.diff(u)
-        push = np.maximum(-stretch, 0.0) * np.where((was >= 0.0) & (stretch < 0.0), factor, 1.0)
-        was = stretch
-        force = stretch - push
-        before = v.copy()
-        v[:-1] += step * force
-        v[1:] -= step * force
-        u = u + step * v
-    stored = 0.5 * np.sum(stretch**2 + np.minimum(stretch, 0.0) ** 2)
-    return float((0.5 * np.sum(before * v) + stored) / first)
-
-
-def test_central_differences_heat_contacts_that_open_and_close():
-    """Known failures: without a loss at closing, and with steps beyond three a period, sin(π/3) of the limit."""
-    assert chain_energy(1.0, 0.78) > 100.0
-    assert chain_energy(CLOSING, 0.2) < 1.0
-    assert chain_energy(CLOSING, 0.78) < 1.0
-    assert chain_energy(CLOSING, np.sqrt(OPENING)) < 1.0
-    assert chain_energy(CLOSING, np.sin(np.pi / 3.0) + 0.005) > 1e6
 
 
 def test_a_row_of_disks_stays_below_that_limit(lab):
@@ -132,8 +106,7 @@ def rotation(simulation: Simulation) -> float:
     return float(np.sum(arm[0] * moved[1] - arm[1] * moved[0]) / np.sum(arm**2))
 
 
-@pytest.mark.parametrize("follow", [True, False])
-@pytest.mark.parametrize("stress", [(-PRESSURE, -PRESSURE, 0.0), (-8e6, -3e6, 1e6)], ids=["isotropic", "with shear"])
+@pytest.mark.parametrize(("stress", "follow"), [((-8e6, -3e6, 1e6), True), ((-PRESSURE, -PRESSURE, 0.0), False)])
 def test_forces_that_follow_the_sides_do_not_tip_a_body(lab, stress, follow):
     """Known failure: with forces of fixed direction θ grows at the rate √(12|σ_xx + σ_yy|/(ρ(W² + H²)))."""
     width, height = 20.0, 10.0

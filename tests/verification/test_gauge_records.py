@@ -7,13 +7,31 @@ import pytest
 from gauge_records import DECAY, LENGTH, POSITION, RECORDS, SPALL, SPEED, Record, exact_nominal, hum, noise
 
 from dembound.errors import CaseError
+from dembound.gauge import noise as noise_of_records
 from dembound.gauge.spalling import evaluate
 
-GIVEN = [record for record in RECORDS if not record.refused]
-"""Records that must give estimates."""
+FEW = (
+    "clean",
+    "noise of 3 %",
+    "drift of 3 %, 8 bits",
+    "ringing of 5 % at 150 kHz",
+    "PicoScope, decimal commas, ms and mV",
+)
+GIVEN = [
+    pytest.param(record, marks=() if record.name in FEW else pytest.mark.slow, id=record.name)
+    for record in RECORDS
+    if not record.refused
+]
+"""Records that must give estimates, all with ``-m slow``."""
 
 
-@pytest.mark.parametrize("record", GIVEN, ids=lambda record: record.name)
+@pytest.fixture(autouse=True)
+def few_draws(monkeypatch) -> None:
+    """Standard errors from as few draws as there ever are: these tests are about what is estimated."""
+    monkeypatch.setattr(noise_of_records, "MOST_DRAWS", noise_of_records.FEWEST_DRAWS)
+
+
+@pytest.mark.parametrize("record", GIVEN)
 def test_a_weak_pulse_gives_speed_and_attenuation(record, tmp_path):
     found = evaluate(record.gauge(tmp_path / "weak.txt"))
     # by its whole shape a passage is timed to σ/√(Σ ġ²): at 3 % of noise, which leaves peaks down to an eighth, to half
@@ -25,11 +43,11 @@ def test_a_weak_pulse_gives_speed_and_attenuation(record, tmp_path):
     assert not found.warnings
 
 
-@pytest.mark.parametrize("record", GIVEN, ids=lambda record: record.name)
+@pytest.mark.parametrize("record", [each for each in GIVEN if "%" in each.id])
 def test_a_strong_pulse_gives_the_strength(record, tmp_path):
     gauge = replace(record.gauge(tmp_path / "strong.txt", 200e-6), unit="Pa")
     found = evaluate(gauge, spall=SPALL, speed=SPEED, coefficient=DECAY)
-    strength = found.strength.nominal / record.crest
+    strength = found.strength.nominal
     if found.warnings:  # noise of 3 % raises a largest value: it is told, and how much
         assert record.name == "noise of 3 %"
         assert "% of the wave and makes the strength too large" in found.warnings[0]
@@ -44,17 +62,14 @@ def test_a_record_that_cannot_give_them_is_refused(record, tmp_path):
 
 
 def test_a_wrong_place_of_the_gauge_is_seen(tmp_path):
-    gauge = GIVEN[1].gauge(tmp_path / "weak.txt")
+    gauge = Record("noise", (noise(0.01),)).gauge(tmp_path / "weak.txt")
     # 2(L − x_g) is 780 mm, so 10 mm change the first passages' speed by 2.6 %; 1.2 % are allowed, ten times
     # the error of crests known to half a sample of 285
     assert "check --position and --length" in evaluate(replace(gauge, position=0.59)).warnings[0]
-    with pytest.raises(CaseError, match="check --position and --length"):
-        evaluate(replace(gauge, position=0.4))
     assert "has --scale the wrong sign" in evaluate(replace(gauge, stress=-gauge.stress)).warnings[0]
 
 
-@pytest.mark.parametrize("frequency", [200.0, 1200.0, 3500.0])
-@pytest.mark.parametrize("level", [0.02, 0.05])
+@pytest.mark.parametrize(("frequency", "level"), [(200.0, 0.02), (1200.0, 0.05), (3500.0, 0.02)])
 def test_an_attenuation_is_never_wrong_without_a_warning(frequency, level, tmp_path):
     """Oscillations in the band of the pulse, of which peaks are taken for returns: c and α come from the same peaks."""
     record = Record("oscillation", (hum(level, frequency), noise(0.002)))
@@ -87,13 +102,7 @@ def soft(time: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.tanh(0.8 * values) / 0.8
 
 
-def weaker(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """The gain falls by a third behind the first return."""
-    return np.where(time > 9e-4, 0.7 * values, values)
-
-
-@pytest.mark.parametrize("change", [lost, another_impact, soft, weaker], ids=lambda change: change.__name__)
-@pytest.mark.parametrize("level", [0.0, 0.005])
+@pytest.mark.parametrize(("change", "level"), [(lost, 0.0), (another_impact, 0.005), (soft, 0.0)], ids=str)
 def test_what_one_pulse_to_and_fro_does_not_explain_is_told(change, level, tmp_path):
     """And the error then holds the truth: without this it was 3 to 5 errors away, as the line through the peaks bends.
 
@@ -128,15 +137,14 @@ def test_what_rests_on_a_doubtful_speed_is_named(tmp_path):
         ),
     ],
 )
-@pytest.mark.parametrize("level", [0.0, 0.005])
-def test_a_record_that_is_too_short_is_told_so(end, reason, level, tmp_path):
+def test_a_record_that_is_too_short_is_told_so(end, reason, tmp_path):
     """The wave has its crest at the gauge at 279 µs, comes back 285 µs later, and again 723 µs later."""
-    record = Record("short", (noise(level),), sampling={"samples": round(end / 1e-6)})
+    record = Record("short", (noise(0.005),), sampling={"samples": round(end / 1e-6)})
     with pytest.raises(CaseError, match=reason):
         evaluate(record.gauge(tmp_path / "short.txt"))
 
 
-@pytest.mark.parametrize("width", [1, 2, 4])
+@pytest.mark.parametrize("width", [1, 4])
 def test_spikes_are_no_waves(width, tmp_path):
     """Beside waves they are told as such; alone they may be waves that are sampled too coarsely."""
 
@@ -168,9 +176,6 @@ def test_a_plateau_of_the_wave_itself_is_not_clipped(tmp_path):
     found = evaluate(Record("plateau", (flat,)).gauge(tmp_path / "flat.txt"))
     assert found.speed.value == pytest.approx(SPEED, rel=0.005)
     assert found.attenuation.value == pytest.approx(DECAY, rel=0.05)
-    for cut in (0.5, 0.8):
-        with pytest.raises(CaseError, match="the signal is clipped"):
-            Record("cut", (lambda time, values, cut=cut: np.clip(values, -cut, cut),)).gauge(tmp_path / "cut.txt")
     # a plateau may be cut, too: then compression and tension are equal at once, as nothing that decays is
     with pytest.raises(CaseError, match="the signal is clipped"):
         Record("cut", (flat, lambda time, values: np.clip(values, -0.5, 0.5))).gauge(tmp_path / "cut.txt")

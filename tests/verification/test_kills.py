@@ -4,11 +4,10 @@ import random
 import subprocess
 import sys
 import time
-from pathlib import Path
 
-import h5py
 import pytest
 import tomli_w
+from recorded import contents
 from small_cases import GRAINS
 
 from dembound.results.reader import open_record
@@ -31,18 +30,6 @@ CASE = {
 def started(*words: str) -> subprocess.Popen:
     command = [sys.executable, "-m", "dembound", *words]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-
-
-def numbers(record: Path) -> dict[str, bytes]:
-    found: dict[str, bytes] = {}
-    with h5py.File(record) as file:
-
-        def note(name, item) -> None:
-            if isinstance(item, h5py.Dataset) and item.dtype != object:
-                found[name] = item[()].tobytes()
-
-        file.visititems(note)
-    return found
 
 
 # durations: each process steps for up to three intervals before it is killed, and none may have reached the end
@@ -80,4 +67,5 @@ def test_a_run_that_is_killed_goes_on(tmp_path, kills, duration) -> None:
     assert run.wait() == 0, run.stderr.read()
     assert done == kills
     assert max(lost) < INTERVAL + MARGIN
-    assert numbers(tmp_path / "killed" / "run.h5") == numbers(tmp_path / "whole" / "run.h5")
+    killed, whole = (contents(tmp_path / name / "run.h5", attributes=False) for name in ("killed", "whole"))
+    assert killed == whole

@@ -46,21 +46,6 @@ def test_on_axis_with_free_rotation(lab, material, s_over_p):
     np.testing.assert_allclose(scene.ground.wave_speeds(0), expected, rtol=1e-12)  # closed form on both sides
 
 
-@pytest.mark.parametrize(("material", "s_over_p"), [(ISOTROPIC, 1.0), (BONDS_ONLY, 0.5**0.5)])
-def test_on_axis_with_locked_rotation(lab, material, s_over_p):
-    """c_s = D√(k_s/m): nothing turns."""
-    size = (ROW * lab.diameter, lab.diameter)
-    scene = lab.scene("A", size, held=("rotation",), material=material, boundary=PERIODIC)
-    # two uncoupled chains now: their dispersion sin(qa/2)/(qa/2) is exact, down to the rounding of forces that
-    # are (qa)² of their terms
-    chain = np.sinc(1.0 / ROW)
-    rounding = 100.0 * np.finfo(float).eps * (ROW / (2.0 * np.pi)) ** 2
-    expected = np.array([lab.speed, s_over_p * lab.speed])
-    measured = speeds(lab, scene, np.array([1.0, 0.0]), ROW * lab.diameter)
-    np.testing.assert_allclose(measured, expected * chain, rtol=rounding)
-    np.testing.assert_allclose(scene.ground.wave_speeds(0), expected, rtol=1e-12)
-
-
 @pytest.mark.parametrize(("material", "p_square", "s_square"), [(ISOTROPIC, 1.0, 0.5), (BONDS_ONLY, 0.75, 0.5)])
 def test_along_the_diagonal(lab, material, p_square, s_square):
     """ρc_p² = (C11 + C12 + 2C44)/2 and ρc_s² = (C11 − C12)/2: as on axis only when k_n = k_s."""

@@ -2,13 +2,11 @@
 
 import json
 
-import h5py
 import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
 from dembound.running import run_case
-from dembound.studies.library import Library, build_library, load_factor, read_records, watched_contacts
 
 SETTLED = 1e-6
 """Force ratio of the settled body."""
@@ -65,28 +63,3 @@ def test_the_full_law_begins_at_the_load_factor(tmp_path, number, limit):
     near = 20.0 * SETTLED
     assert holds(factor * (1.0 - near))
     assert not holds(factor * (1.0 + near))
-
-
-def test_sums_of_responses_have_the_same_factor_at_the_same_contact(tmp_path):
-    rng = np.random.default_rng(0)
-    for name in ("push", "shake"):
-        record(rng, tmp_path / f"{name}.txt")
-    changes = {"output.load_factor": True, "material": TABLES["material"] | MATERIALS["slides"]}
-    direct = run_case(small(TABLES, "elastic", changes | {"wave": waves(tmp_path, 1.0)}), tmp_path)
-    found = json.loads((direct / "summary.json").read_text())["load_factor"]
-    with h5py.File(direct / "run.h5") as file:
-        places = file["particles/position"][:]
-    ends = dict(zip("ab", found["particles"], strict=True))
-    monitors = [{"name": name, "position": places[disk].tolist()} for name, disk in ends.items()]
-    far = {"name": "c", "position": (2.0 * places[ends["b"]] - places[ends["a"]]).tolist()}
-    library = Library(build_library(small(TABLES, "pair", changes | {"monitor": [*monitors, far]}), 1e-3, tmp_path))
-
-    argument = ",".join(f"{name}={tmp_path / name}.txt" for name in library.inputs)
-    (given,) = read_records([argument], library.inputs, library.clock)
-    motion = library.motion(given.values)
-    for pair in ("a,b", "b,a"):
-        factor = load_factor(library, watched_contacts(library, ["c,b", pair]), motion)
-        # rounding of motion, 1e-14 of its peak, and of the forces at rest
-        assert factor.factor == pytest.approx(found["factor"], rel=1e-9)
-        assert (factor.contact, factor.limit) == (pair, found["limit"])
-        assert factor.time == pytest.approx(found["time"])

@@ -66,12 +66,8 @@ def lamb(lab):
     return make
 
 
-@pytest.mark.parametrize("far", ["viscous", "fixed", "roller"])
-def test_a_blow_on_a_half_space(lamb, far):
-    assert_nothing_returns(lamb("A", (10.0, 10.0), far))
-
-
-def test_a_blow_on_random_bricks(lamb):
+def test_a_blow_on_a_half_space(lamb):
+    assert_nothing_returns(lamb("A", (10.0, 10.0), "fixed"))
     assert_nothing_returns(lamb("B", (10.0, 10.0), "viscous"), too_soon=0.4)  # sides move by bricks of 10 m
 
 
@@ -102,31 +98,6 @@ def test_the_smaller_scene_that_is_proposed_has_no_echo(lamb):
     assert np.abs(own - full).max() < ALIKE * np.abs(full).max()
 
 
-def test_the_scene_itself_moves_alike_until_the_first_echo(lamb):
-    # from the blow at the surface to the nearest moved side, 10 m away, and back to the monitor at (5, 4): over the
-    # bottom 10 + 4 m down and up and 5 m across, over the right side 10 + 5 m along and 6 m across; at 1000 m/s the
-    # first echo comes after 14.9 ms. Precursors need a path some 10 (s a²/8)^(1/3) = 7.7 m longer, so half of that time
-    case = with_step(lamb("A", (10.0, 10.0), "viscous"))
-    small, large = (velocities(each, 0.05) for each in (case, for_run_of(case, 0.05)))
-    before = int(0.5 * 14.9e-3 / case.run.time_step)
-    difference = np.abs(small - large)
-
-    assert np.abs(large[:before]).max() > 0.0
-    assert difference[:before].max() < ALIKE * np.abs(large).max()
-    assert difference.max() > 0.02 * np.abs(large).max()
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-@pytest.mark.parametrize("motion", ["p", "s"])
-def test_a_wave_along_a_bar(lab, side, motion):
-    other = "right" if side == "left" else "left"
-    boundary = {side: {"type": "velocity", f"wave_{motion}": "pulse"}, other: "viscous"}
-    boundary |= {"bottom": "periodic", "top": "periodic"}
-    case = lab.case("A", (20.0, 2.0), held=(), wave=lab.pulse(0.01), boundary=boundary, duration=0.08)
-    too_soon = {"p": 0.7, "s": 0.3}[motion]  # the speed of P waves is taken, S waves have half of it
-    assert_nothing_returns(monitored(case, [2.0, 1.0], [18.0, 1.0]), too_soon)
-
-
 def test_waves_scattered_by_a_hole_beside_a_free_field(lab):
     boundary = {"left": "free_field", "right": "free_field", "bottom": {"type": "viscous_input", "wave_s": "pulse"}}
     case = lab.case("A", (12.0, 10.0), held=(), wave=lab.pulse(0.01), boundary=boundary, duration=0.04)
@@ -140,9 +111,8 @@ def test_waves_scattered_by_a_hole_beside_a_free_field(lab):
     assert wider.packing.extent[1] == 10.0  # a deeper base would send another wave
 
 
-@pytest.mark.parametrize("method", [{"type": "finite_difference"}, {"type": "peridynamics", "horizon": 3}])
-def test_a_rock_bar(rock, method):
-    table = {"right": {"type": "viscous"}}
+def test_a_rock_bar(rock):
+    method, table = {"type": "peridynamics", "horizon": 3}, {"right": {"type": "viscous"}}
     load = {"pressure": 1e6, "side": "left"}
     wave = rock.triangle(5e-5)
     case = rock.scene(method, spacing=5e-3, load=load, wave=wave, boundary=table).case

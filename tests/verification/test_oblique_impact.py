@@ -121,11 +121,3 @@ def test_a_sticking_impact(lab):
     booked = 0.5 * impact.reduced / 3.0 * PASSING**2 * 0.25 * H**2
     assert abs(impact.books[-1].friction) < booked * (1.0 + H)
     check_books(impact)
-
-
-def test_the_elastic_law_serves_while_they_stick(lab):
-    whole, part = (Impact(lab, fric=0.6, kratio=3.0, elastic_start=early) for early in (False, True))
-    assert [name for name, _ in part.simulation.state.laws] == ["elastic", "linearpbond"]
-    # it leaves out that the line of centres turns
-    turn = whole.turned * PASSING
-    np.testing.assert_allclose(surfaces(part.after), surfaces(whole.after), rtol=0.0, atol=turn)

@@ -8,7 +8,6 @@ return (2πD/λ)²/16 = 8e-5. The velocity of the pulse has twice that curvature
 import numpy as np
 import pytest
 
-from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.energy import Ledger
@@ -46,54 +45,37 @@ def deviations(scene) -> tuple[float, float]:
 @pytest.mark.parametrize(
     ("box", "words"),
     [
-        (SMALL, {"angle": 15.0}),
-        (SMALL, {"angle": -40.0}),
-        (SMALL, {"kind": "p"}),
-        (SMALL, {"material.fric": 0.0}),
-        (HIGH, {}),
+        (SMALL, {"angle": -40.0, "material.fric": 0.0}),
+        (HIGH, {"kind": "p"}),
     ],
 )
 def test_without_a_hole_nothing_is_scattered(lab, box, words) -> None:
     assert max(deviations(build(window(lab, box, **words)))) < SCATTERED
 
 
-@pytest.mark.parametrize("pattern", ["B", "C"])
-def test_random_packings_move_with_their_own_fluctuations(lab, pattern) -> None:
+def test_random_packings_move_with_their_own_fluctuations(lab) -> None:
     """Bricks of 10 m, L, scatter by themselves: (2πL/λ)²/24 = 5e-3 of what they move beyond the mean strain, a third.
 
     Without the correctors disks would deviate by 7e-3 and 8e-3.
     """
-    assert max(deviations(build(window(lab, pattern=pattern)))) < 2.5e-3
+    assert max(deviations(build(window(lab, pattern="C")))) < 2.5e-3
 
 
 def test_straight_up_it_is_the_wave_that_enters_through_a_column(lab) -> None:
-    """The column disperses over 60 m, the exact wave does not: three times as much as in the box."""
-    assert beside_the_column(lab, "A", 0.0) < 3.0 * SCATTERED
+    """But for the first 0.3 s: this wave is purely the slower one of the packing, that of the column moves along x.
 
-
-def test_the_skin_of_a_random_packing_delays_what_comes_back(lab) -> None:
-    """The surface of this packing is a skin 1 m deep; waves that did not know its mass would be 2 % off in velocity.
-
-    Before they come back, the first 0.3 s, there is another difference: the wave is purely the slower one of the
-    packing, whereas that of the column moves exactly along x, which is a sum of both.
-    """
-    assert beside_the_column(lab, "B", 0.3) < 5e-3
-
-
-def beside_the_column(lab, pattern: str, begin: float) -> float:
-    """Largest difference of velocities from those of a box that the wave comes to through a column, over the peak.
-
-    begin : s, from when on.
+    The surface of this packing is a skin 1 m deep; waves that did not know its mass would come back 2 % off in
+    velocity. A column disperses over 60 m, the exact wave does not.
     """
     entering = {"wave.pulse.period": PERIOD, "wave.pulse.amplitude": 0.5}
-    scenes = [build(window(lab, pattern=pattern, angle=0.0)), build(lab.window(pattern, SMALL, changes=entering))]
+    scenes = [build(window(lab, pattern="B", angle=0.0)), build(lab.window("B", SMALL, changes=entering))]
     step = min(choose_step(scene)[0] for scene in scenes)
     found = []
     for scene in scenes:
         first = 0 if scene.seam is None else scene.seam.count
         disks = np.arange(first, scene.disk_count)[::29]
         found.append(Simulation(scene, step, disks).advance(int(DURATION / step))[:, :, 3:5])
-    return float(np.abs(found[0] - found[1])[int(begin / step) :].max() / np.abs(found[1]).max())
+    assert np.abs(found[0] - found[1])[int(0.3 / step) :].max() < 5e-3 * np.abs(found[1]).max()
 
 
 HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
@@ -135,36 +117,3 @@ def test_the_ledger_closes_and_what_comes_in_leaves(lab) -> None:
     assert abs(ledger.entries[-1].loads) < 1e-12 * most
     # each step rounds by ε of the energies
     assert max(abs(entry.error) for entry in ledger.entries) < 10.0 * simulation.state.step * np.finfo(float).eps * most
-
-
-def test_a_continued_run_has_the_same_bits(lab) -> None:
-    scene = build(window(lab, hole=[HOLE]))
-    step = choose_step(scene)[0]
-    whole = Simulation(scene, step)
-    whole.run(300)
-    first, second = Simulation(scene, step), Simulation(build(window(lab, hole=[HOLE])), step)
-    first.run(117)
-    second.state.take(first.state.arrays())
-    second.run(300)
-
-    assert np.abs(whole.state.u).max() > 0.0
-    assert np.array_equal(whole.state.u, second.state.u)
-    assert np.array_equal(whole.state.v, second.state.v)
-
-
-def test_a_settled_body_moves_as_one_without_weight(lab) -> None:
-    """Beside a column under the same weight; the elastic law is linear, so that only rounding differs."""
-    found, monitor = [], [{"name": "in", "position": [30.5, 30.5]}, {"name": "beside", "position": [30.5, 50.5]}]
-    weight = {"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}
-    static = {"static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-3}}
-    for more in ({}, weight | static):
-        scene = build(window(lab, monitor=monitor, **more))
-        step = choose_step(scene)[0]
-        simulation = Simulation(scene, step, scene.probes)
-        if more:
-            simulation = lab.settled(scene, settle(scene).start, step, scene.probes)
-        record = simulation.advance(700)
-        found.append(scene.observed(record, step * np.arange(len(record)))[:, :, 3:5])
-    assert found[0].shape == (700, 4, 2)  # both monitors and their free-field motion
-    assert np.abs(found[0]).max() > 0.4
-    np.testing.assert_allclose(found[1], found[0], atol=1e-10)

@@ -43,30 +43,21 @@ def pieces(rock, spacing: float, **bar) -> tuple[np.ndarray, np.ndarray, float]:
     return places, np.array([spall.time for spall in found]), ledger.entries[-1].crack
 
 
-@pytest.fixture(scope="module", params=PIECES)
-def energy(request) -> float:
-    """A fracture energy, J/m²."""
-    return request.param
+SLOW = pytest.mark.slow
 
 
-@pytest.fixture(scope="module")
-def coarse(rock, energy):
-    return pieces(rock, 1e-3, fracture_energy=energy)
-
-
-def check_same(rock, coarse, fine, energy: float, spacing: float) -> None:
+@pytest.mark.parametrize(
+    ("energy", "fine"),
+    [
+        (50.0, 0.5e-3),
+        *(pytest.param(*each, marks=SLOW) for each in ((200.0, 0.5e-3), (50.0, 0.25e-3), (200.0, 0.25e-3))),
+    ],
+)
+def test_same_pieces_at_a_finer_spacing(rock, energy, fine):
     """The places of the coarser row are good to two spacings, and times to some EG_f/(σ_t²c), in which cracks open."""
+    coarse, finer = (pieces(rock, spacing, fracture_energy=energy) for spacing in (1e-3, fine))
     opening = rock.density * rock.speed * energy / rock.strength**2
-    assert len(coarse[0]) == len(fine[0]) == PIECES[energy]
-    np.testing.assert_allclose(fine[0], coarse[0], rtol=0.0, atol=2.0 * spacing)
-    np.testing.assert_allclose(fine[1], coarse[1], rtol=0.0, atol=3.0 * opening)
-    assert fine[2] == pytest.approx(coarse[2], rel=0.1)
-
-
-def test_same_pieces_at_half_the_spacing(rock, coarse, energy):
-    check_same(rock, coarse, pieces(rock, 0.5e-3, fracture_energy=energy), energy, 1e-3)
-
-
-@pytest.mark.slow
-def test_same_pieces_at_a_quarter_of_it(rock, coarse, energy):
-    check_same(rock, coarse, pieces(rock, 0.25e-3, fracture_energy=energy), energy, 1e-3)
+    assert len(coarse[0]) == len(finer[0]) == PIECES[energy]
+    np.testing.assert_allclose(finer[0], coarse[0], rtol=0.0, atol=2.0 * 1e-3)
+    np.testing.assert_allclose(finer[1], coarse[1], rtol=0.0, atol=3.0 * opening)
+    assert finer[2] == pytest.approx(coarse[2], rel=0.1)

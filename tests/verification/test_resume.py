@@ -1,4 +1,8 @@
-"""A run that is stopped at any step and resumed has the same record and summary, to the bit, as one that is not."""
+"""A run that is stopped at any step and resumed has the same record and summary, to the bit, as one that is not.
+
+It goes on from its state alone: arrays by name, which all kinds of runs are cut and rebuilt from in memory, and a
+checkpoint in a file, which is tried with a few of them.
+"""
 
 import json
 import re
@@ -7,11 +11,15 @@ from functools import partial
 import h5py
 import numpy as np
 import pytest
+from recorded import contents
 from small_cases import GRAINS, PULLED, small
 
 from dembound.check import check
 from dembound.errors import CaseError
 from dembound.interrupts import Stopped
+from dembound.kinds import kind_of
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
 from dembound.results.checkpoint import Checkpoints
 from dembound.results.folder import Folder
 from dembound.running import job, preflight, resume_case, run_case
@@ -20,6 +28,7 @@ from dembound.running.recorded import recorded_beginning, recorded_case
 PACKING, MATERIAL, INPUT = GRAINS["packing"], GRAINS["material"], GRAINS["boundary"]["bottom"]
 BRITTLE = MATERIAL | {"law": "linearpbond", "pb_ten": 3e5, "pb_coh": 6e5, "fric": 0.3}
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+SQUEEZED = {"stress": [-1e6, -1e6, 0.0], "ratio": 1e-3}
 DISKS = GRAINS | {"output": GRAINS["output"] | {"peaks": True, "contacts": True}}
 BAR = PULLED | {"boundary": {"right": {"type": "viscous", "beta_p": 0.2}}}
 RANGES = {key: value for key, value in PULLED["bar"].items() if key != "length"} | {
@@ -31,6 +40,9 @@ RANGES = {key: value for key, value in PULLED["bar"].items() if key != "length"}
 }
 CASES = {
     "elastic": DISKS,
+    "damped": DISKS | {"material": MATERIAL | {"damp": 0.1}},
+    "settled, elastic": DISKS | {"static": SQUEEZED},
+    "free field": DISKS | {"boundary": FREE_FIELD | {"bottom": INPUT}},
     "rows and symmetry": DISKS
     | {
         "packing": {"pattern": "A", "size": [20.0, 6.0], "radius": 0.5},
@@ -43,7 +55,7 @@ CASES = {
         "motion": {"held": ["y"]},
         "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}},
     },
-    "settled, updated": DISKS | {"material": BRITTLE, "static": {"stress": [-1e6, -1e6, 0.0], "ratio": 1e-3}},
+    "settled, updated": DISKS | {"material": BRITTLE, "static": SQUEEZED},
     "free field that breaks": DISKS | {"material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}},
     "ends in silence": DISKS | {"run": {"duration": 0.5, "until": "silent", "silent_level": 0.2}},
     "monitors and loads in a continuum": DISKS
@@ -71,6 +83,8 @@ CASES = {
     "finite differences": BAR | {"method": {"type": "finite_difference"}},
     "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
     "patch": BAR | {"method": {"type": "patch", "horizon": 3}},
+    "attenuated": BAR
+    | {"bar": PULLED["bar"] | {"attenuation": 0.3}, "method": {"type": "patch", "horizon": 3, "reach": 2}},
     "ranges": BAR | {"bar": RANGES, "method": {"type": "patch", "horizon": 3}},
     "matched layers": BAR
     | {
@@ -101,10 +115,6 @@ class Stop(Checkpoints):
             raise Stopped(2)
 
 
-LATE = {"settled box in the ground"}
-"""Kinds whose loop takes minutes to compile."""
-
-
 @pytest.fixture(autouse=True)
 def stopping(monkeypatch) -> None:
     """Runs return from the loop after every step, and stop where `Stop` says."""
@@ -124,29 +134,6 @@ def stopped(case, folder, step: int, stage: str | None = None):
     return Folder(folder, case.name).partial
 
 
-def contents(path) -> dict[str, bytes]:
-    """All numbers, texts and attributes of a record, by path."""
-    found = {}
-    with h5py.File(path) as file:
-
-        def note(name, item) -> None:
-            for key, value in item.attrs.items():
-                found[f"{name}@{key}"] = str(np.asarray(value).tolist()).encode()
-            if isinstance(item, h5py.Dataset):
-                values = item[()]
-                found[name] = b"".join(values) if values.dtype == object else values.tobytes()
-
-        note("", file)
-        file.visititems(note)
-    return found
-
-
-def differences(one, other) -> list[str]:
-    first, second = contents(one / "run.h5"), contents(other / "run.h5")
-    names = first.keys() | second.keys()
-    return sorted(name for name in names if first.get(name) != second.get(name))
-
-
 def summary(folder) -> dict:
     numbers = json.loads((folder / "summary.json").read_text())
     return {key: value for key, value in numbers.items() if key not in {"seconds", "wall_time", "resumed"}} | {
@@ -154,78 +141,127 @@ def summary(folder) -> dict:
     }
 
 
+def test_a_settled_state_is_used_by_another_case(tmp_path, monkeypatch) -> None:
+    softer = {"bottom": INPUT | {"beta_p": 0.8}, "right": {"type": "viscous"}}
+    first = run_case(case_of("settled, updated"), tmp_path / "first")
+    alone = run_case(case_of("settled, updated", boundary=softer), tmp_path / "alone")
+    used = run_case(case_of("settled, updated", boundary=softer, static=SQUEEZED | {"from": str(first)}), tmp_path)
+
+    assert [name for name in differences(used, alone) if not name.startswith("@")] == []
+    assert json.loads((used / "summary.json").read_text())["seconds"]["settle"] < 0.5
+    assert not (used / "settled").exists()
+
+
+def differences(one, other) -> list[str]:
+    first, second = contents(one / "run.h5"), contents(other / "run.h5")
+    return sorted(name for name in first.keys() | second.keys() if first.get(name) != second.get(name))
+
+
+LATE = "settled box in the ground"
+"""Its loop takes minutes to compile."""
+
+FILED = ("law changes, bonds break", "monitors and loads in a continuum", "cracks that open")
+"""Cases whose checkpoints in files are tried; the others with ``-m slow``."""
+
+STEPS, CUTS = 240, (0, 1, 57, 58, 100, 161, 239)
+"""In between, before and after entries of the ledger, of which there is one every 57 steps, and steps that follow."""
+
+CHANGING = [name for name, tables in CASES.items() if tables.get("method", {}).get("type") in ("switch", "patch")]
+CHANGING += ["law changes, bonds break", "free field that breaks"]
+"""Cases in which a law or a method takes over from another one, and bonds break."""
+
+BREAKING = (*CHANGING, "settled, updated", "peridynamics", "finite differences")
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n == LATE else n for n in CASES])
+def test_a_run_cut_and_rebuilt_from_its_arrays_comes_to_the_same_bits(name) -> None:
+    case = case_of(name)
+    kind = kind_of(case)
+    scene = kind.build(case)
+    step, probes = kind.choose_step(scene)[0], list(scene.monitors.values())
+    beginning = kind.begin(scene, step, lambda *_: None)
+    whole = Simulation(scene, step, probes, system=beginning.system, datum=beginning.datum)
+    whole.track(Ledger(whole, 57))
+    kept, records = {}, []
+    for cut, end in zip(CUTS, (*CUTS[1:], STEPS), strict=True):
+        kept[cut] = whole.state.arrays()
+        records.append(whole.advance(end - cut))
+    expected, record = whole.state.arrays(), np.concatenate(records)
+    for cut, arrays in kept.items():
+        again = Simulation(scene, step, probes)
+        again.track(Ledger(again, 57))
+        again.state.take(arrays)
+        rest = again.advance(STEPS - cut)
+        found = again.state.arrays()
+        assert rest.tobytes() == record[cut:].tobytes(), f"cut at {cut}: the probes"
+        assert found.keys() == expected.keys()
+        different = [name for name, values in expected.items() if found[name].tobytes() != values.tobytes()]
+        assert not different, f"cut at {cut}: {different}"
+
+    cracks = sum(len(values) for name, values in expected.items() if name.endswith("crack_step"))  # of disks
+    broken = sum(np.count_nonzero(values >= 0) for name, values in expected.items() if name.endswith("_broken"))
+    if name != LATE:
+        assert len(whole.state.laws) == (2 if name in CHANGING else 1)
+        assert (cracks + broken > 0) == (name in BREAKING)
+
+
 @pytest.fixture(
-    scope="module", params=[pytest.param(name, marks=pytest.mark.slow) if name in LATE else name for name in CASES]
+    scope="module", params=[name if name in FILED else pytest.param(name, marks=pytest.mark.slow) for name in CASES]
 )
 def whole(request, tmp_path_factory):
-    """A case, and the results of its run without a stop."""
+    """A case by its name in `CASES`, and the results of its run without a stop."""
     case = case_of(request.param)
-    return case, run_case(case, tmp_path_factory.mktemp("whole"))
+    return request.param, case, run_case(case, tmp_path_factory.mktemp("whole"))
 
 
-@pytest.mark.parametrize("cuts", [3, pytest.param(10, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("cuts", [1, pytest.param(10, marks=pytest.mark.slow)])
 def test_a_stopped_run_is_resumed_to_the_same_bits(whole, tmp_path, cuts) -> None:
-    case, folder = whole
+    """Evenly spaced, and at changes of the law; and it can be stopped again."""
+    _, case, folder = whole
     expected = summary(folder)
-    steps = expected["steps"]
     switches = [round(law["from"] / expected["time_step"]) for law in expected["laws"]]
-    assert len(expected["laws"]) > 1 or "breaks" not in case.name
-    # evenly spaced, and at changes of the law
-    for cut in sorted({*np.linspace(0, steps, cuts, endpoint=False).astype(int), *switches}):
+    for cut in sorted({*np.linspace(0, expected["steps"], cuts, endpoint=False).astype(int), *switches}):
         partial = stopped(case, tmp_path, int(cut))
+        for step in (cut + 3, cut + 7):
+            Stop.at, Stop.is_on = step, True
+            with pytest.raises(Stopped):
+                resume_case(partial)
         again = resume_case(partial)
         assert differences(again, folder) == [], f"stopped at step {cut}"
         assert summary(again) == expected
-
-
-def test_a_stopped_run_can_be_stopped_again(whole, tmp_path) -> None:
-    case, folder = whole
-    partial = stopped(case, tmp_path, 7)
-    for step in (20, 30):
-        Stop.at, Stop.is_on = step, True
-        with pytest.raises(Stopped):
-            resume_case(partial)
-    again = resume_case(partial)
-    assert differences(again, folder) == []
-    assert len(json.loads((again / "summary.json").read_text())["resumed"]) == 3
+        assert len(json.loads((again / "summary.json").read_text())["resumed"]) == 3
 
 
 def test_a_complete_run_is_continued_as_if_it_had_been_longer(whole, tmp_path) -> None:
-    case, folder = whole
+    name, case, folder = whole
     if case.run.until == "silent":
-        pytest.skip("ends before its duration; see the next test")
+        pytest.skip("ends before its duration; see the next test but one")
     part, snapshots = 0.6 * case.run.duration, 3
-    changes = {"run": {"duration": part}, "output": CASES_OUTPUT[case.name] | {"snapshots": snapshots}}
-    first = run_case(case_of(NAMES[case.name], **changes), tmp_path)
+    changes = {"run": {"duration": part}, "output": CASES[name]["output"] | {"snapshots": snapshots}}
+    first = run_case(case_of(name, **changes), tmp_path)
     steps = json.loads((first / "summary.json").read_text())["steps"]
     again = resume_case(first, until=case.run.duration)
 
     assert again == first
     # snapshots are at other steps, as numbers of steps are rounded; nothing else may differ
-    names = [name for name in differences(again, folder) if not name.startswith("snapshots/") and "@" not in name]
-    assert names == []
+    assert [each for each in differences(again, folder) if not each.startswith("snapshots/") and "@" not in each] == []
     with h5py.File(again / "run.h5") as file:
         taken = [round(group.attrs["time"] / file.attrs["time_step"]) for group in file["snapshots"].values()]
         assert taken == [steps * k // snapshots for k in range(1, 7) if steps * k // snapshots <= file.attrs["steps"]]
         assert file.attrs["complete"]
 
 
-@pytest.mark.parametrize("name", ["law changes, bonds break", "switch"])
-def test_the_record_of_a_continued_run_is_run_again_to_the_same_bits(tmp_path, name) -> None:
-    case = case_of(name, output=CASES[name]["output"] | {"snapshots": 3, "energy_interval": 0.0})
+def test_the_record_of_a_continued_run_is_run_again_to_the_same_bits(tmp_path) -> None:
+    case = case_of("switch", output=BAR["output"] | {"snapshots": 3, "energy_interval": 0.0})
     first = resume_case(run_case(case, tmp_path / "one"), until=1.7 * case.run.duration)
     begun_for = recorded_beginning(first / "run.h5")
     assert begun_for == pytest.approx(case.run.duration, rel=1e-2)  # rounded up to whole steps
 
     again = run_case(recorded_case(first / "run.h5"), tmp_path / "two", begun_for=begun_for)
     assert differences(again, first) == []
-    otherwise = differences(run_case(recorded_case(first / "run.h5"), tmp_path / "three"), first)
-    assert {"energy/time", "snapshots/0004/velocity"} <= set(otherwise)
-    assert recorded_beginning(run_case(case, tmp_path / "four") / "run.h5") is None
-
-
-NAMES = {re.sub(r"\W+", "_", name): name for name in CASES}
-CASES_OUTPUT = {name: CASES[NAMES[name]]["output"] for name in NAMES}
+    otherwise = run_case(recorded_case(first / "run.h5"), tmp_path / "three")
+    assert {"energy/time", "snapshots/0004/velocity"} <= set(differences(otherwise, first))
+    assert recorded_beginning(otherwise / "run.h5") is None
 
 
 def test_a_run_that_ended_in_silence_is_continued_without_it(tmp_path) -> None:
@@ -234,9 +270,9 @@ def test_a_run_that_ended_in_silence_is_continued_without_it(tmp_path) -> None:
     again = resume_case(first, until=1.5 * time)
     long = run_case(case_of("ends in silence", run={"duration": 1.5 * time}), tmp_path / "two")
 
-    with h5py.File(again / "run.h5") as found, h5py.File(long / "run.h5") as expected:
-        for name in ("histories/middle/velocity", "energy/error", "particles/peak_velocity"):
-            assert found[name][()].tobytes() == expected[name][()].tobytes()
+    found, expected = contents(again / "run.h5"), contents(long / "run.h5")
+    for name in ("histories/middle/velocity", "energy/error", "particles/peak_velocity"):
+        assert found[name] == expected[name]
 
 
 @pytest.mark.parametrize("stage", ["body", "body.column"])
@@ -248,36 +284,21 @@ def test_a_static_stage_is_resumed_to_the_same_bits(tmp_path, stage) -> None:
     }  # fmt: skip
     case = case_of("settled, updated", **changes)
     folder = run_case(case, tmp_path / "whole")
-    for step in (1, 150, 300):
-        partial = stopped(case, tmp_path / "cut", step, stage)
-        assert not (partial / "run.h5").exists()
-        again = resume_case(partial)
-        assert differences(again, folder) == []
-        assert summary(again) == summary(folder)
-
-
-def test_a_settled_state_is_used_by_another_case(tmp_path, monkeypatch) -> None:
-    static = CASES["settled, updated"]["static"]
-    softer = {"bottom": INPUT | {"beta_p": 0.8}, "right": {"type": "viscous"}}
-    first = run_case(case_of("settled, updated"), tmp_path / "first")
-    alone = run_case(case_of("settled, updated", boundary=softer), tmp_path / "alone")
-    used = run_case(case_of("settled, updated", boundary=softer, static=static | {"from": str(first)}), tmp_path)
-
-    assert [name for name in differences(used, alone) if not name.startswith("@")] == []
-    assert json.loads((used / "summary.json").read_text())["seconds"]["settle"] < 0.5
-    assert not (used / "settled").exists()
+    partial = stopped(case, tmp_path / "cut", 150, stage)
+    assert not (partial / "run.h5").exists()
+    again = resume_case(partial)
+    assert differences(again, folder) == []
+    assert summary(again) == summary(folder)
 
 
 def test_the_settled_state_of_another_body_is_refused(tmp_path) -> None:
-    static = CASES["settled, updated"]["static"]
     first = run_case(case_of("settled, updated"), tmp_path / "first")
-    used = static | {"from": str(first)}
+    used = SQUEEZED | {"from": str(first)}
     for changes, key in [
         ({"static": used | {"damp": 0.5}}, "static.damp: is 0.5 here, and 0.7 there"),
         ({"static": used, "material": BRITTLE | {"pb_ten": 4e5}}, "material.pb_ten: is 400000.0 here"),
         ({"static": used, "packing": PACKING | {"seed": 2}}, "packing.seed: is 2 here, and 0 there"),
-        ({"static": static | {"from": str(tmp_path)}}, "has no settled state"),
-        ({"static": static | {"from": str(tmp_path / "nowhere")}}, "has no settled state"),
+        ({"static": SQUEEZED | {"from": str(tmp_path)}}, "has no settled state"),
     ]:
         case, messages = case_of("settled, updated", **changes), set()
         for find in (check, preflight, partial(run_case, results=tmp_path / "other")):

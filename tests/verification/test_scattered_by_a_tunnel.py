@@ -4,7 +4,7 @@ import pytest
 import scattering
 
 
-@pytest.mark.parametrize("kind", ["p", "sv"])
+@pytest.mark.parametrize("kind", [pytest.param("p", marks=pytest.mark.slow), "sv"])
 def test_the_wall_moves_along_itself_as_that_of_the_exact_cavity(kind: str) -> None:
     """Disks are removed whole, so the wall is off by at most D/2 of the radius, or (D/2)/a of it.
 

@@ -12,10 +12,10 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 import tomli_w
+from recorded import contents
 from small_cases import GRAINS, SPALLING
 
 CASES = {
@@ -58,7 +58,6 @@ class Found:
 
     took: list[tuple[float, str]] = field(default_factory=list)
     outcomes: Counter[str] = field(default_factory=Counter)
-    resumed: int = 0
 
 
 def started(command: str, folder: Path, cold: Path | None = None) -> subprocess.Popen:
@@ -80,23 +79,6 @@ def obey() -> None:
         signal.signal(number, signal.SIG_DFL)
 
 
-def numbers(path: Path) -> dict[str, bytes]:
-    """All numbers of a record."""
-    found: dict[str, bytes] = {}
-    with h5py.File(path) as file:
-
-        def note(name, item) -> None:
-            if isinstance(item, h5py.Dataset) and item.dtype != object and name.rsplit("/", 1)[-1] not in COSTS:
-                found[name] = item[()].tobytes()
-
-        file.visititems(note)
-    return found
-
-
-COSTS = ("cpu", "wall", "wall_time", "seconds")
-"""Datasets of times that were measured."""
-
-
 CALIBRATED = "*_calibrated.toml"
 """The cases that ``calibrate`` writes beside its own."""
 
@@ -111,13 +93,15 @@ class Scene:
             (folder / f"{name}.toml").write_text(tomli_w.dumps(tables))
         self.duration: dict[str, float] = {}
         for command in commands:
-            for _ in range(2):  # the first one may compile
+            for _ in range(2):
                 shutil.rmtree(folder / "results", ignore_errors=True)
                 began = time.monotonic()
                 process = started(command, folder)
                 _, said = process.communicate()
                 assert process.returncode == 0, said
                 self.duration[command] = time.monotonic() - began
+                if self.duration[command] < 20.0:  # it has not compiled
+                    break
             (folder / "results").rename(folder / f"whole-{command}")
             for file in folder.glob(CALIBRATED):
                 file.rename(folder / f"whole-{command}" / file.name)
@@ -153,7 +137,6 @@ class Scene:
             assert "Exception ignored" not in said, said_first
         if resumes:
             self.resume(command, said_first)
-            found.resumed += 1
         return True
 
     def resume(self, command: str, said: str) -> None:
@@ -171,11 +154,12 @@ class Scene:
         for file in whole.glob(CALIBRATED):
             assert (self.folder / file.name).read_bytes() == file.read_bytes(), said
         for record in whole.rglob("*.h5"):
-            assert numbers(results / record.relative_to(whole)) == numbers(record), f"{said}\n{record}"
+            found = contents(results / record.relative_to(whole), attributes=False)
+            assert found == contents(record, attributes=False), f"{said}\n{record}"
 
 
 # half of the signals are SIGTERM, half SIGINT; cold ones find no compiled code
-@pytest.mark.parametrize(("count", "cold"), [(3, 0), pytest.param(400, 40, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("count", "cold"), [(2, 0), pytest.param(400, 40, marks=pytest.mark.slow)])
 def test_a_signal_at_any_moment_ends_a_command(tmp_path, monkeypatch, count, cold) -> None:
     commands = tuple(COMMANDS) if count > 10 else ("run",)
     scene, draw, found = Scene(tmp_path / "scene", commands), random.Random(count), Found()
@@ -189,7 +173,6 @@ def test_a_signal_at_any_moment_ends_a_command(tmp_path, monkeypatch, count, col
         if is_cold:
             shutil.rmtree(tmp_path / "cold", ignore_errors=True)
     times = np.sort([took for took, _ in found.took])
-    print(found.outcomes, f"resumed {found.resumed}; s to the end: median {np.median(times):.2f}, most", times[-5:])
-    print(sorted(found.took)[-8:])
+    print(found.outcomes, f"s to the end: median {np.median(times):.2f}, most", sorted(found.took)[-8:])
     assert sum(found.outcomes.values()) == count
-    assert found.outcomes["by its own code"] > 0.5 * count
+    assert found.outcomes["by its own code"] >= 0.5 * count

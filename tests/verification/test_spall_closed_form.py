@@ -52,19 +52,3 @@ def test_break_is_within_a_step_and_a_cell_and_a_half(errors, rock, pressure):
     place, time = errors(1e-3, pressure)
     assert abs(place) <= 1.5e-3
     assert abs(time) <= 1e-3 / rock.speed
-
-
-def test_first_order_in_spacing(errors):
-    """The slope of the mean error over pulses whose kinks fall anywhere in a step, and breaks anywhere in a cell.
-
-    The mean of 32 errors spread evenly up to a bound scatters by 1/√96 of itself, 0.15 in its binary logarithm, and so
-    by 0.15/√5 = 0.07 in the slope of a line through four of them, one for each halving. Three times that is allowed.
-    """
-    spacings = np.array([4e-3, 2e-3, 1e-3, 0.5e-3])
-    parts = np.outer(np.arange(len(PRESSURES)), np.sqrt([2.0, 3.0])) % 1.0  # fill the steps evenly
-    mean = [
-        np.mean([np.abs(errors(spacing, p, *part)) for p, part in zip(PRESSURES, parts, strict=True)], axis=0)
-        for spacing in spacings
-    ]
-    orders, _ = np.polyfit(np.log(spacings), np.log(mean), 1)
-    assert orders == pytest.approx(1.0, abs=0.2)

@@ -31,7 +31,7 @@ def found_of(given, setup=SETUP, windows=None):
     return specimen(at_faces(given, setup, windows), setup)
 
 
-@pytest.mark.parametrize("rise", [150e-6, 50e-6, 20e-6])
+@pytest.mark.parametrize("rise", [150e-6, 20e-6])
 def test_the_slope_in_equilibrium_is_the_modulus(rise):
     found = found_of(signals(lambda time: ramp(time, rise)))
     assert found.slope == pytest.approx(SPECIMEN_MODULUS, rel=0.01)
@@ -65,14 +65,7 @@ def test_a_specimen_that_is_never_in_equilibrium_is_told():
     assert not found.in_equilibrium.any()
 
 
-def test_noise_of_one_percent_leaves_the_modulus():
-    given, random = signals(), np.random.default_rng(1)
-    noisy = [each + 1e-5 * random.standard_normal(len(each)) for each in given[1:3]]
-    found = found_of(given._replace(incident=noisy[0], transmitted=noisy[1]))
-    assert found.slope == pytest.approx(SPECIMEN_MODULUS, rel=0.01)
-
-
-SPECIMENS = [(5e9, 1500.0), (12.5e9, 2000.0), (40e9, 2500.0), (80e9, 2700.0)]
+SPECIMENS = [(5e9, 1500.0), (80e9, 2700.0)]
 """Young's modulus (Pa) and density (kg/m³) of specimens from weak plastic to hard rock."""
 
 
@@ -132,15 +125,6 @@ def test_half_a_sample_changes_the_slope_by_its_part():
     assert np.hypot(*late) / np.sqrt(3.0) == pytest.approx(error.time, rel=0.05)
 
 
-def test_steps_of_the_stress_make_a_slope_uncertain():
-    """Under a rectangle stresses and strains rise in steps, one for each way to and fro."""
-    parts = []
-    for rise in (1e-6, 150e-6):
-        faces = at_faces(signals(lambda at, rise=rise: ramp(at, rise), specimen=speed_of(5e9, 1500.0)), SETUP)
-        parts.append(slope_error(faces, SETUP, 0.2, specimen(faces, SETUP, 0.2)).line)
-    assert parts[0] > 5.0 * parts[1]
-
-
 def test_two_gauges_give_it_for_pulses_that_overlap():
     long = {"pulse": lambda time: ramp(time, 200e-6, 600e-6)}
     with pytest.raises(CaseError, match="--second-gauge: is needed, the incident pulse has not ended"):
@@ -165,25 +149,19 @@ def test_windows_may_be_given_and_move_their_pulse():
         at_faces(given, SETUP, Windows(incident=(1.3e-3, 1.5e-3)))
 
 
-@pytest.mark.parametrize(
-    ("end", "late"), [(350e-6, "the reflected at .* s, the transmitted"), (470e-6, "the reflected")]
-)
-def test_a_record_that_is_too_short_is_told_by_the_pulses_that_it_lacks(end, late):
+def test_a_record_that_is_too_short_is_told_by_the_pulses_that_it_lacks():
     """At the gauges the incident pulse begins at 100 µs, the reflected at 500, the transmitted at 460."""
-    given = signals()
-    count = round(end / STEP)
-    short = given._replace(
-        time=given.time[:count], incident=given.incident[:count], transmitted=given.transmitted[:count]
-    )
-    with pytest.raises(CaseError, match=f"ends before pulses begin at their gauges: {late} at .* s; record longer"):
+    given, count = signals(), round(350e-6 / STEP)
+    short = given._replace(**{name: getattr(given, name)[:count] for name in ("time", "incident", "transmitted")})
+    late = "the reflected at .* s, the transmitted at .* s; record longer"
+    with pytest.raises(CaseError, match=f"ends before pulses begin at their gauges: {late}"):
         at_faces(short, SETUP)
 
 
 def test_a_largest_stress_as_equilibrium_begins_gives_no_slope_and_says_so():
     faces = at_faces(signals(), SETUP)
     found = specimen(faces, SETUP)
-    first, _ = found.equilibrium
-    at_once = replace(found, largest=first + 1, slope=np.nan)
+    at_once = replace(found, largest=found.equilibrium[0] + 1, slope=np.nan)
     assert slope_error(faces, SETUP, EQUILIBRIUM, at_once) is None
     (said,) = doubts_of_slope(at_once, None)
     assert said.startswith("the specimen has its largest stress 1 samples after equilibrium begins")
@@ -198,9 +176,8 @@ def doubts(given, setup=SETUP):
     return list(doubts_of_pulses(given, faces, setup, Windows(), specimen(faces, setup)))
 
 
-@pytest.mark.parametrize("rise", [150e-6, 20e-6])
-def test_pulses_that_do_not_fit_each_other_are_told(rise):
-    given = signals(lambda at: ramp(at, rise, 320e-6))
+def test_pulses_that_do_not_fit_each_other_are_told():
+    given = signals(lambda at: ramp(at, 20e-6, 320e-6))
     assert not doubts(given)
     # of a gain of 1.05 the faces differ by 0.05 of their mean, 1.025
     said = doubts(given._replace(transmitted=1.05 * given[2]))[0]

@@ -16,22 +16,13 @@ def inertia(scene):
     return np.stack([scene.mass, scene.mass, scene.inertia])
 
 
-def kinetic_energy(scene, velocity):
-    return 0.5 * np.sum(inertia(scene) * velocity**2)
-
-
 def growth(scene, share: float, steps: int) -> float:
     """Kinetic energy after some steps at a share of the limit, over that of the random start without strain."""
     simulation = Simulation(scene, share * step_limit(scene))
-    simulation.state.velocity = scene.free[:, None] * np.random.default_rng(0).standard_normal((3, scene.count))
-    start = kinetic_energy(scene, simulation.state.velocity)
+    start = scene.free[:, None] * np.random.default_rng(0).standard_normal((3, scene.count))
+    simulation.state.velocity = start
     simulation.advance(steps)
-    return kinetic_energy(scene, simulation.state.velocity) / start
-
-
-@pytest.fixture(scope="module", params=["A", "B", "C"])
-def scene(request, lab):
-    return lab.scene(request.param, (10.0, 10.0), boundary=PERIODIC)
+    return np.sum(inertia(scene) * simulation.state.velocity**2) / np.sum(inertia(scene) * start**2)
 
 
 def test_square_lattice_has_a_closed_form(lab):
@@ -46,25 +37,13 @@ def test_square_lattice_has_a_closed_form(lab):
     assert step_limit(scene) == pytest.approx(limit, rel=TOLERANCE)
 
 
-def test_limit_is_that_of_all_eigenvalues(lab):
-    scene = lab.scene("B", (6.0, 6.0), brick=(6.0, 6.0), held=(), boundary=PERIODIC)
-    size = 3 * scene.count
-    stiffness = np.stack([-lab.forces(scene, column.reshape(3, -1)).ravel() for column in np.eye(size)], axis=1)
-    root = 1.0 / np.sqrt(np.concatenate([scene.mass, scene.mass, scene.inertia]))
-    largest = np.linalg.eigvalsh(root[:, None] * stiffness * root)[-1]
-    assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(largest), rel=TOLERANCE)
-
-
 GROUND = {"type": "viscoelastic", "distance": 1e-4}
 """Springs that are stiffer than contacts."""
 SCENES = {
-    "lattice": ("A", (20.0, 10.0), {}),
     "lattice, nothing held": ("A", (15.0, 15.0), {"held": ()}),
     "endless lattice": ("A", (10.0, 10.0), {"boundary": PERIODIC}),
-    "random": ("B", (20.0, 10.0), {"held": ()}),
     "random, rotation held": ("B", (20.0, 10.0), {"held": ("y", "rotation")}),
     "springs": ("B", (10.0, 10.0), {"held": (), "boundary": {"left": GROUND, "top": GROUND}}),
-    "fixed": ("C", (20.0, 10.0), {"held": (), "boundary": {"left": "fixed", "bottom": "fixed"}}),
     "mirrors": ("C", (20.0, 10.0), {"held": (), "boundary": {"left": "symmetry", "right": "symmetry"}}),
     "half cells": ("C", (20.0, 10.0), {"held": (), "boundary": {"left": {"type": "viscous", "half_mass": True}}}),
     "column": ("C", (20.0, 10.0), {"held": (), "boundary": {"left": "free_field", "right": "free_field"}}),
@@ -106,14 +85,13 @@ def hexagonal(diameter: float) -> Brick:
     return Brick(size, np.array([[0.0, 0.0], 0.5 * size]), np.full(2, 0.5 * diameter), pairs, images, *nothing, 0.0)
 
 
-@pytest.mark.parametrize("kratio", [0.5, 1.0])
-def test_limit_of_loose_disks_also_holds_where_they_come_to_lie_densely(lab, kratio):
+def test_limit_of_loose_disks_also_holds_where_they_come_to_lie_densely(lab):
     """A square lattice without bonds may fall into the hexagonal one, of which ω² = 24k_s/m where k_s ≥ k_n.
 
     There all disks turn alike: six contacts each shear by 2Rθ and turn back by k_s·2R²θ, and the moment of inertia is
     mR²/2. In the square lattice four contacts make it 16k_s/m; contacts that open need their reserve in either.
     """
-    emod = 1.25e9
+    emod, kratio = 1.25e9, 0.5
     loose = {"emod": emod, "pb_emod": 0.0, "fric": 0.5, "kratio": kratio}
     square = lab.scene("A", (6.0, 6.0), held=(), material=loose | {"law": "linearpbond"}, boundary=PERIODIC)
     disk = lab.density * lab.diameter**2  # kg; the denser lattice is made of the same disks
@@ -126,13 +104,12 @@ def test_limit_of_loose_disks_also_holds_where_they_come_to_lie_densely(lab, kra
     assert step_limit(square) < limit * np.sqrt(OPENING)
 
 
-def test_bounded_below_the_limit(scene):
+@pytest.mark.parametrize("pattern", ["A", "C"])
+def test_bounded_below_the_limit_and_grows_above(lab, pattern):
+    scene = lab.scene(pattern, (10.0, 10.0), boundary=PERIODIC)
     # ½mv² + ½uⁿKuⁿ⁺¹ is conserved and at least ½mv²(1 − r²) at the share r of the limit; Lanczos errs by TOLERANCE
     share = 0.999 * (1.0 + TOLERANCE)
     assert growth(scene, 0.999, steps=2000) < 1.0 / (1.0 - share**2)
-
-
-def test_grows_above_the_limit(scene):
     # the highest mode's amplitude grows by (r + √(r² − 1))² = 1.09 per step, its energy by e^178 in 1000; it has one
     # of a few thousand parts of the energy at the start, and Lanczos errs on the unstable side. e^100 = 1e43
     assert growth(scene, 1.001, steps=1000) > 1e40

@@ -45,23 +45,6 @@ def test_where_all_contacts_slide_they_slide_alike(lab):
     assert found.uniformity.deviation == found.uniformity.beyond < UNEVEN
 
 
-@pytest.mark.parametrize("pattern", ["B", "C"])
-def test_random_packings_differ_by_what_they_have_by_themselves(lab, pattern):
-    """Under any stress some contacts of a random packing open or slide, and each part of it has a stress of its own."""
-    _, found = settled(lab, pattern, 20.0, 0.5)
-    assert found.start.has_history
-    assert found.uniformity.beyond < UNEVEN
-    assert found.uniformity.deviation < UNEVEN + found.uniformity.packing
-
-
-def test_elastic_bricks_have_the_stress_up_to_the_sides(lab):
-    """All forces of an elastic body are those of the endless packing: blocks differ by what that has, and no more."""
-    _, found = settled(lab, "B", 20.0, 0.5, **{"material.law": "elastic", "static.ratio": 1e-7})
-    assert found.uniformity.packing > 0.003
-    # the ratio, of forces that add up over 40 disks
-    assert found.uniformity.beyond < 40 * 1e-6
-
-
 @pytest.mark.parametrize("fric", [0.3, 0.5])
 def test_nothing_moves_afterwards_nor_after_an_excavation(lab, fric):
     scene, found = settled(lab, "A", 20.0, fric, hole=[HOLE])

@@ -14,7 +14,7 @@ def test_lagged_dampers_halve_the_stable_step():
     assert sides.lagged_limit(4.0, centred=True) == pytest.approx(1.0, rel=1e-5)
 
 
-@pytest.mark.parametrize("beta", [1.04, 2.0, 1e4])
+@pytest.mark.parametrize("beta", [1.04, 1e4])
 def test_strong_dashpots_reflect_but_cost_no_step(beta):
     """(β − 1)/(β + 1) comes back, 2 % at β = 1.04; waves of 2000 disks lose (qa/4)² by the end's mass in addition."""
     reflected, grows = sides.strong_dashpot(beta)
@@ -40,19 +40,29 @@ def test_dashpots_creep_under_a_steady_load():
     assert expected == pytest.approx(1.0 * 10.0 / (2.0 * 1000.0), rel=1e-12)  # aL/2c
 
 
-@pytest.mark.parametrize("ratio", [1.0, 10.0, 100.0])
+@pytest.mark.parametrize("ratio", [1.0, 10.0])
 def test_springs_reflect_long_waves(ratio):
     """Half cells reflect less than 1e-5 of these waves of 400 disks and more."""
     measured, formula = sides.on_springs(ratio)
     assert measured == pytest.approx(formula, abs=2e-5)
-    assert measured == pytest.approx({1.0: 0.0398, 10.0: 0.3697, 100.0: 0.9698}[ratio], abs=1e-4)
+    assert measured == pytest.approx({1.0: 0.0398, 10.0: 0.3697}[ratio], abs=1e-4)
 
 
 def test_the_foot_of_a_column_needs_half_cells():
-    """Whole cells return (qa/4)·1.26 of S waves (test_shear_bar), half cells its square and less."""
+    """Whole cells return (qa/4)(1 + d) of S waves, half cells its square and less.
+
+    Half a disk too much mass, as for P, and an end disk that only one bond turns. With φ the excess rotation over that
+    of the bar, θ = F/k_sD under a force F per row, and κ = k_r/k_sD², 1/12 for bonds of full radius that alone carry
+    shear, balance of moments reads φ = κ(φ₊ + φ₋ − 2φ): φ falls by λ from disk to disk, λ + 1/λ = 2 + 1/κ, and the end
+    disk has φ(1 + κ(1 − λ)) = −θ/2. The end is stiffer by (D/2)(θ + φ_end) = (F/2k_s)(1 − ½/(1 + κ(1 − λ))), that share
+    d of k_s.
+    """
+    kappa = 1.0 / 12.0
+    decay = (1.0 + 0.5 / kappa) - np.sqrt((1.0 + 0.5 / kappa) ** 2 - 1.0)
+    stiffer = 0.5 * (1.0 - 0.5 / (1.0 + kappa * (1.0 - decay)))
     for count in (100.0, 500.0):
         whole, half = sides.foot(False, count), sides.foot(True, count)
-        assert whole == pytest.approx(1.26 * 0.5 * np.pi / count, rel=0.01)
+        assert whole == pytest.approx((1.0 + stiffer) * 0.5 * np.pi / count, rel=0.01)
         assert half < 1.2 * whole**2
 
 

@@ -22,9 +22,16 @@ DURATION = 0.25
 """s, until the S pulse has come down again from the surface."""
 
 
-@pytest.mark.parametrize("wave", ["wave_p", "wave_s"])
-@pytest.mark.parametrize(("pattern", "fric"), [("A", 0.5), ("A", 0.0), ("B", 0.5), ("C", 0.5)])
-@pytest.mark.parametrize("box", BOXES)
+@pytest.mark.parametrize(
+    ("box", "pattern", "fric", "wave"),
+    [
+        ("all of the ground", "B", 0.5, "wave_s"),
+        ("in the middle", "A", 0.0, "wave_s"),
+        ("up to the surface", "C", 0.5, "wave_p"),
+        ("from the foot", "A", 0.5, "wave_p"),
+        ("at the side", "B", 0.5, "wave_s"),
+    ],
+)
 def test_it_does(lab, box: str, pattern: str, fric: float, wave: str) -> None:
     scene = build(lab.window(pattern, BOXES[box], wave=wave, material={"fric": fric}))
     step = choose_step(scene)[0]

@@ -38,12 +38,13 @@ def part(difference: np.ndarray, of: np.ndarray) -> np.ndarray:
 # measured: A 0.43 % (P 0.24 %). The elements have the moduli of an endless packing; B and C near a box add what their
 # disks do beyond the mean strain, and at the surface that they are softer there (place 4), see docs/outside.md: 2.2 and
 # 3.8 %, C 2.8 %
-@pytest.mark.parametrize(("pattern", "within"), [("A", 6e-3), ("B", 4.5e-2), ("C", 3.5e-2)])
-@pytest.mark.parametrize("wave", ["wave_p", "wave_s"])
+@pytest.mark.parametrize(
+    ("pattern", "within", "wave"), [("A", 6e-3, "wave_s"), ("B", 4.5e-2, "wave_p"), ("C", 3.5e-2, "wave_s")]
+)
 def test_it_does(lab, pattern: str, within: float, wave: str) -> None:
     expected, free = motion(lambda **more: lab.window(pattern, WHOLE, wave=wave, **more))
     assert part(expected - free, expected).min() > 0.14
-    for box in BOXES:
+    for box in BOXES if pattern == "A" else BOXES[1:3]:
         found, beside = motion(lambda box=box, **more: lab.window(pattern, box, wave=wave, **more))
         assert np.abs(beside - free).max() < 1e-9 * np.abs(free).max()  # the same column, whatever the box
         assert part(found - expected, expected).max() < within

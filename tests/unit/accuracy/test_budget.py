@@ -26,15 +26,10 @@ def test_shares_are_those_of_the_larger_component_and_add_as_squares():
     sides = 2.0 * 5**0.5 / 5.0
     assert found.shares("a", "velocity") == {SIDES: pytest.approx(sides), "grid": 0.25}
     assert found.total("a", "velocity") == pytest.approx(np.hypot(sides, 0.25))
-
-
-def test_bands_add_the_sizes_of_all_errors():
+    # bands add the sizes of all errors; corrections need a scene without echoes
     size = 0.25 * np.sqrt(np.mean(MOTION**2, axis=0))
-    np.testing.assert_allclose(estimate().band("a", "velocity"), np.tile(np.add([1.0, 2.0], size), (5, 1)))
-
-
-def test_corrections_need_a_scene_without_echoes():
-    np.testing.assert_array_equal(estimate().correction("a", "velocity"), np.tile([1.0, -2.0], (5, 1)))
+    np.testing.assert_allclose(found.band("a", "velocity"), np.tile(np.add([1.0, 2.0], size), (5, 1)))
+    np.testing.assert_array_equal(found.correction("a", "velocity"), np.tile([1.0, -2.0], (5, 1)))
     assert estimate(echo_free=False).correction("a", "velocity") is None
 
 
@@ -46,9 +41,7 @@ def test_lines_begin_with_the_errors_and_end_with_what_is_missing():
         "y",
         "not estimated: x",
     ]
-
-
-def test_causes_found_alike_share_a_line():
+    # causes found alike share a line
     recorded = {"a": History(np.zeros(2), TIME, {"velocity": MOTION})}
     two = [Cause(name, "by formula", {"a": {"velocity": 0.03}}) for name in ("grid", "time step")]
     assert Estimate(recorded, Causes(two)).lines()[1:] == ["grid and time step by formula"]

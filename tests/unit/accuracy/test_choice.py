@@ -15,22 +15,16 @@ def test_values_are_toml_or_plain_text() -> None:
         "run.safety": [0.9, 0.5],
         "material.law": ["a", "b"],
     }
-
-
-def test_commas_within_lists_and_quotes_do_not_separate() -> None:
     assert parsed(["packing.size=[1.0, 2.0],[3.0, 4.0]", 'title="a, b",c']) == {
         "packing.size": [[1.0, 2.0], [3.0, 4.0]],
         "title": ["a, b", "c"],
     }
+    for options in (["run.safety"], ["=1"], ["run.safety="], ["a=1,,2"], ["a=1", "a=2"]):
+        with pytest.raises(CaseError, match="--vary"):
+            parsed(options)
 
 
-@pytest.mark.parametrize("options", [["run.safety"], ["=1"], ["run.safety="], ["a=1,,2"], ["a=1", "a=2"]])
-def test_bad_options_are_named(options) -> None:
-    with pytest.raises(CaseError, match="--vary"):
-        parsed(options)
-
-
-def test_all_combinations_are_named_with_units(bar) -> None:
+def test_all_combinations_are_named_with_units(bar, spalling) -> None:
     named = combinations(
         bar(), {"packing.radius": [0.25, 0.5], "boundary.right": [{"type": "viscous", "beta_p": 0.5}, {"type": "free"}]}
     )
@@ -41,14 +35,9 @@ def test_all_combinations_are_named_with_units(bar) -> None:
         "radius 0.5 m, boundary.right free",
     ]
     assert named["radius 0.5 m, boundary.right free"] == {"packing.radius": 0.5, "boundary.right": {"type": "free"}}
-
-
-def test_keys_with_the_same_last_name_are_named_in_full(bar) -> None:
+    # keys with the same last name in full, whole tables by their type
     (name,) = combinations(bar(), {"boundary.left.beta_p": [0.5], "boundary.right.beta_p": [0.6]})
     assert name == "boundary.left.beta_p 0.5, boundary.right.beta_p 0.6"
-
-
-def test_a_whole_table_of_the_case_is_named_by_its_type(spalling) -> None:
     (name,) = combinations(spalling(), {"method": [{"type": "peridynamics", "horizon": 2}], "bar.spacing": [0.05]})
     assert name == "peridynamics (horizon 2), spacing 0.05 m"
 
@@ -60,29 +49,18 @@ def test_invalid_choices_are_left_out_with_a_line_each(bar) -> None:
     assert choices[0].case.packing.radius == 0.25
     (line,) = left_out
     assert line.startswith("radius 0.3 m: left out, packing.size: ")
-
-
-def test_all_choices_invalid_is_bad_input_with_a_line_each(bar) -> None:
-    case = bar()
     with pytest.raises(CaseError) as raised:
         choices_of(case, combinations(case, {"packing.radios": [1.0], "run.safety": [0.5, 0.9]}))
     names = [line.partition(": left out, packing.radios: ")[0] for line in raised.value.problems]
     assert names == ["radios 1, safety 0.5", "radios 1, safety 0.9"]
-
-
-def test_equal_choices_count_once(bar) -> None:
-    case = bar()
+    # equal choices count once
     choices, _ = choices_of(case, {"as it is": {}, "twice the same": {}, "shorter": {"run.duration": 0.005}})
     assert [choice.name for choice in choices] == ["as it is", "shorter"]
 
 
-def test_digests_differ_with_results_alone(bar, tmp_path) -> None:
-    case = bar()
-    assert digest(case) == digest(bar({"chart": {"repeats": 7}, "title": "another"}))
-    assert digest(case) != digest(bar({"run.duration": 0.011}))
-
-
-def test_digests_depend_on_the_contents_of_files(bar, tmp_path) -> None:
+def test_digests_differ_with_results_and_with_the_contents_of_files(bar, tmp_path) -> None:
+    assert digest(bar()) == digest(bar({"chart": {"repeats": 7}, "title": "another"}))
+    assert digest(bar()) != digest(bar({"run.duration": 0.011}))
     path, found = tmp_path / "wave.txt", []
     for crest in (1.0, 2.0):
         path.write_text(f"0.0 0.0\n0.005 {crest}\n0.01 0.0\n", encoding="utf-8")

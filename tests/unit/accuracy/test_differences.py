@@ -30,26 +30,19 @@ def test_differences_make_the_changed_case_of_the_given_one(changes: dict[str, A
     assert with_changes(given, found) == changed
 
 
-def test_equal_cases_have_no_differences() -> None:
+def test_tables_and_lists_are_replaced_as_a_whole_or_left_out() -> None:
     assert differences(small(PUSHED), small(PUSHED)) == {}
-
-
-def test_a_table_that_loses_keys_is_replaced_as_a_whole() -> None:
-    given = small(PUSHED)
-    changed = with_changes(given, {"boundary.left": {"type": "outside"}})
-    assert differences(given, changed) == {"boundary.left": {"type": "outside"}}
-
-
-def test_a_table_that_is_left_out_has_none() -> None:
     given = small(PUSHED | {"motion": {"held": ["y"]}, "wave": {"push": PUSHED["wave"]["push"]}} | DRIVEN)
     changed = with_changes(given, {"motion": None})
     found = differences(given, changed)
     assert found == {"motion": None}
     assert with_changes(given, found) == changed
     assert in_toml(found) == ["motion: left out"]
-
-
-def test_lines_are_toml_of_the_same_values() -> None:
+    changed = with_changes(small(PUSHED), {"boundary.left": {"type": "outside"}})
+    assert differences(small(PUSHED), changed) == {"boundary.left": {"type": "outside"}}
+    load = {"name": "hit", "force": [1.0, 0.0], "position": [5.0, 1.2], "wave": "push"}
+    given, changed = small(PUSHED | {"load": [load]}), small(PUSHED | {"load": [load | {"name": "blow"}]})
+    assert differences(given, changed) == {"load": [load | {"name": "blow"}]}
     values = {"a": {"type": "outside", "x": 0.1}, "b": [1.5, 2.0], "c": True, "d": "é"}
     assert parsed("\n".join(in_toml(values))) == values
 
@@ -58,12 +51,9 @@ def test_values_are_found_by_name_by_number_and_by_default() -> None:
     case = small(PUSHED)
     assert value_at(case, "monitor.back.position") == value_at(case, "monitor.2.position") == [9.6, 1.2]
     assert value_at(case, "run.safety") == 0.9
-
-
-@pytest.mark.parametrize("key", ["packing.radios", "monitor.3", "packing.radius.x", "nothing"])
-def test_unknown_keys_are_one_line(key: str) -> None:
-    with pytest.raises(CaseError, match=f"--keep: {key} is no key"):
-        value_at(small(PUSHED), key)
+    for key in ("packing.radios", "monitor.3", "packing.radius.x", "nothing"):
+        with pytest.raises(CaseError, match=f"--keep: {key} is no key"):
+            value_at(case, key)
 
 
 def test_kept_keys_keep_their_values() -> None:
@@ -72,10 +62,3 @@ def test_kept_keys_keep_their_values() -> None:
     assert keeps(given, changed, ["boundary", "packing.size"])
     assert not keeps(given, changed, ["packing"])
     assert not keeps(given, changed, ["boundary", "packing.radius"])
-
-
-def test_renamed_loads_are_replaced_as_a_list() -> None:
-    load = {"name": "hit", "force": [1.0, 0.0], "position": [5.0, 1.2], "wave": "push"}
-    given = small(PUSHED | {"load": [load]})
-    changed = small(PUSHED | {"load": [load | {"name": "blow"}]})
-    assert differences(given, changed) == {"load": [load | {"name": "blow"}]}

@@ -13,30 +13,19 @@ def history(x: float, y: float) -> History:
     return History.of(np.zeros(2), TIME, motion, 2.0 * motion, 3.0 * TIME)
 
 
-def test_parts_end_at_a_time_or_before_it() -> None:
+def test_parts_end_at_a_time_and_all_quantities_are_known_at_other_times() -> None:
     found = history(1.0, 2.0)
     assert found.until(0.5).time[-1] == TIME[5]
     assert found.before(0.5).time[-1] == TIME[4]
     assert len(found.before(0.5).values["stress"]) == 5
     assert found.until(1.0) is found
-
-
-def test_the_component_is_that_of_the_larger_motion_but_no_rotation() -> None:
-    assert history(1.0, -2.0).component("velocity") == 1
-    assert history(-3.0, 2.0).component("displacement") == 0
-    assert history(1.0, 2.0).component("stress") == 0
-
-
-def test_all_quantities_are_known_at_other_times() -> None:
     found = history(1.0, 2.0).at(np.array([0.05, 0.95]))
     np.testing.assert_allclose(found.displacement[:, :2], [[0.05, 0.1], [0.95, 1.9]])
     np.testing.assert_allclose(found.values["stress"], [[0.15], [2.85]])
 
 
 def test_monitors_below_a_hundredth_of_the_loudest_do_not_count() -> None:
-    plain = {name: History(np.zeros(2), TIME, {"velocity": size * TIME[:, None]}) for name, size in SIZES.items()}
+    sizes = {"loud": -2.0, "just": 0.0201, "quiet": 0.0199}
+    plain = {name: History(np.zeros(2), TIME, {"velocity": size * TIME[:, None]}) for name, size in sizes.items()}
     still = History(np.zeros(2), TIME, {})
     assert loud(plain | {"none": still}, "velocity") == ["loud", "just"]
-
-
-SIZES = {"loud": -2.0, "just": 0.0201, "quiet": 0.0199}

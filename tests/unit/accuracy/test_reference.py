@@ -51,6 +51,9 @@ def test_the_component_is_that_of_the_reference_or_the_one_asked_for(compared) -
     mine, theirs = {"a": gauge(101, 9.0, 1.5)}, {"a": gauge(101, 0.9, 1.0)}
     assert compared(mine, theirs)[0].rms == pytest.approx(0.5)
     assert compared(mine, theirs, component="x")[0].rms == pytest.approx(9.0)
+    for quantity, component in (("displacement", "x"), ("stress", "stress")):
+        (found,) = compared({"a": gauge(101, 1.1)}, {"a": gauge(101)}, quantity=quantity)
+        assert (found.component, found.rms) == (component, pytest.approx(0.1))
 
 
 def test_quiet_monitors_are_left_out_but_not_if_asked_for(compared) -> None:
@@ -63,23 +66,10 @@ def test_histories_are_compared_up_to_the_first_spall(compared) -> None:
     mine, theirs = {"a": gauge(101, 0.0, 1.1, after=5.0)}, {"a": gauge(101, 0.0, 1.0)}
     assert compared(mine, theirs)[0].rms > 1.0
     assert compared(mine, theirs, until=0.5)[0].rms == pytest.approx(0.1)
-
-
-def test_what_moves_later_does_not_choose_monitors_and_components(compared) -> None:
+    # what moves later does not choose monitors and components either
     late = gauge(101, 1.0, after=50.0)  # along y from 0.5 s on
     found = compared({"a": gauge(101, 1.1), "b": gauge(101, 1.2)}, {"a": late, "b": gauge(101)}, until=0.5)
     assert [(each.monitor, each.component) for each in found] == [("b", "x"), ("a", "x")]
-    with pytest.raises(CaseError, match="zero in the reference"):
-        compared({"a": gauge(101)}, {"a": gauge(101)}, until=0.0)
-
-
-def test_displacement_and_stress(compared) -> None:
-    found = {"a": gauge(101, 1.1)}
-    assert compared(found, {"a": gauge(101)}, quantity="displacement")[0].component == "x"
-    assert compared(found, {"a": gauge(101)}, quantity="stress")[0].component == "stress"
-    assert compared(found, {"a": gauge(101)}, quantity="stress")[0].rms == pytest.approx(0.1)
-
-
-def test_nothing_to_compare_is_an_error(compared) -> None:
-    with pytest.raises(CaseError, match="zero in the reference"):
-        compared({"a": gauge(101)}, {"a": gauge(101, 0.0)})
+    for still, until in ((gauge(101), 0.0), (gauge(101, 0.0), np.inf)):
+        with pytest.raises(CaseError, match="zero in the reference"):
+            compared({"a": gauge(101)}, {"a": still}, until=until)

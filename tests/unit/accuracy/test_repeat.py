@@ -32,7 +32,7 @@ def cracked(x: list[float], size: float = 1.0) -> Cracked:
     return Cracked(np.column_stack([x, np.zeros(len(x))]), np.ones(len(x)), 2.0 * len(x), "J/m", size, 0.1)
 
 
-def test_cracks_in_common_are_counted_in_both_runs() -> None:
+def test_cracks_in_common_are_counted_in_both_runs_and_the_radius_leaves_out_the_farthest() -> None:
     """Neither the one that repeats all of the other's and has more, nor the one with fewer, has all in common."""
     first, second = cracked([0.0, 5.0, 5.9, 9.0]), cracked([1.0, 5.5, 20.0])
     for own, other in ((first, second), (second, first)):
@@ -40,9 +40,6 @@ def test_cracks_in_common_are_counted_in_both_runs() -> None:
     assert Repeat(first, cracked([]), {}, 1.0).common == 0.0
     assert Repeat(first, first, {}, 1.0).common == 1.0
     assert Repeat(cracked([0.0]), cracked([1.06]), {}, 1.0).common == 0.0
-
-
-def test_the_radius_of_their_zone_leaves_out_the_farthest() -> None:
     line = cracked(np.linspace(-10.0, 10.0, 2001).tolist())
     assert line.radius == pytest.approx(9.5, abs=0.01)
     assert cracked([]).radius is None
@@ -125,25 +122,6 @@ def test_without_a_repeat_many_cracks_are_said_to_be_one_draw(torn) -> None:
     assert list(replace(cracked([0.0] * 11), in_bar=True).one_draw()) == []  # several bonds break at one place
 
 
-def test_many_cracks_need_no_monitor(torn, tmp_path) -> None:
-    changes = BREAKING | {"monitor": [], "output.estimate": False}
-    folder = run_case(small(PUSHED, "silent", changes), tmp_path)
-    found = estimate_results(folder, repeat=True)
-
-    assert found.repeat.changes == {}
-    assert found.repeat.common == pytest.approx(estimate_results(torn, repeat=True).repeat.common)
-    assert found.summary()["not_estimated"] == ["has no monitor whose error could be estimated"]
-    assert estimate_results(folder).summary()["not_estimated"] == found.summary()["not_estimated"]
-    with pytest.raises(CaseError, match="has no monitor"):
-        estimate_results(folder, second_seed=True)
-
-
-def test_a_repeat_needs_cracks(tmp_path) -> None:
-    folder = run_case(small(PUSHED, "whole", {"output.pictures": False, "run.duration": 0.002}), tmp_path)
-    with pytest.raises(CaseError, match="has no broken bonds"):
-        estimate_results(folder, repeat=True)
-
-
 def test_a_bar_is_repeated_too(tmp_path) -> None:
     """Its size is its largest spacing; its step was given as a Courant number."""
     folder = run_case(small(PULLED, "bar", {"output.snapshots": 0}), tmp_path)
@@ -155,3 +133,18 @@ def test_a_bar_is_repeated_too(tmp_path) -> None:
     assert found.other.time_step == pytest.approx(0.98 * found.own.time_step)
     assert found.common > 0.9
     assert replace(found, other=found.own).summary()["common"] == 1.0
+
+
+def test_many_cracks_need_no_monitor_but_a_repeat_needs_cracks(torn, tmp_path) -> None:
+    changes = BREAKING | {"monitor": [], "output.estimate": False}
+    folder = run_case(small(PUSHED, "silent", changes), tmp_path)
+    found = estimate_results(folder, repeat=True)
+
+    assert found.repeat.changes == {}
+    assert found.summary()["not_estimated"] == ["has no monitor whose error could be estimated"]
+    assert estimate_results(folder).summary()["not_estimated"] == found.summary()["not_estimated"]
+    with pytest.raises(CaseError, match="has no monitor"):
+        estimate_results(folder, second_seed=True)
+    folder = run_case(small(PUSHED, "whole", {"output.pictures": False, "run.duration": 0.002}), tmp_path)
+    with pytest.raises(CaseError, match="has no broken bonds"):
+        estimate_results(folder, repeat=True)

@@ -14,14 +14,25 @@ from dembound.methods.rod import Rod
 COUNT, SPACING, STEP = 41, 0.25, 1e-3
 ROD = Rod.uniform(COUNT, SPACING, section=1.0, modulus=1e9, critical_stretch=1e-3)
 PLACES = SPACING * np.arange(COUNT)
+ENDS = {"left": PLACES[0], "right": PLACES[-1]}
+
+
+def all_over(rod: Rod) -> Bonds:
+    """Peridynamics with m = 3 all over."""
+    made = Bonds(rod, 3, complement=False)
+    made.add_zone(0, COUNT)
+    return made
 
 
 @pytest.fixture
 def bonds() -> Bonds:
-    """Peridynamics with m = 3 all over."""
-    made = Bonds(ROD, 3, complement=False)
-    made.add_zone(0, COUNT)
-    return made
+    return all_over(ROD)
+
+
+@pytest.fixture
+def tough() -> Bonds:
+    """With a fracture energy."""
+    return all_over(Rod((replace(ROD.ranges[0], fracture=Fracture(1e4)),)))
 
 
 def cut(bonds: Bonds, plane: int, step: int, lengths: tuple[int, ...] = (1, 2, 3)) -> None:
@@ -31,123 +42,6 @@ def cut(bonds: Bonds, plane: int, step: int, lengths: tuple[int, ...] = (1, 2, 3
         whole = across[bonds.bond[p - 1, across] > 0.0]
         bonds.bond[p - 1, whole] = 0.0
         bonds.bond_broken[p - 1, whole] = step
-
-
-def test_a_whole_bar_has_no_spall(bonds) -> None:
-    assert np.array_equal(cracked_since(bonds), np.full(COUNT, -1))
-    assert spalls(bonds, PLACES, STEP) == []
-
-
-def test_a_cut_cracks_the_nodes_that_lose_three_tenths(bonds) -> None:
-    cut(bonds, 20, step=7)
-    since = cracked_since(bonds)
-
-    # of 5 parts of a family 2.5 are beyond the cut, then 1.5, exactly three tenths, then 0.5
-    assert np.flatnonzero(since >= 0).tolist() == [19, 20, 21, 22]
-    assert np.all(since[19:23] == 7)
-    place = (PLACES[19], PLACES[22])
-    assert spalls(bonds, PLACES, STEP) == [Spall(7 * STEP, place, place)]
-
-
-@pytest.mark.parametrize("section", [1.0, 0.1, 0.7])
-def test_three_tenths_count_however_they_are_rounded(section: float) -> None:
-    rod = Rod.uniform(COUNT, SPACING, section, modulus=1e9, critical_stretch=1e-3)
-    bonds = Bonds(rod, 3, complement=False)
-    bonds.add_zone(0, COUNT)
-    cut(bonds, 20, step=7)
-
-    # 1.5 of 5 volumes; with these sections the sums come to 0.3, and to the floats above and below it
-    assert bonds.damage()[19] == pytest.approx(0.3, abs=1e-15)
-    assert cracked_since(bonds)[19] == 7
-
-
-def test_a_spall_begins_when_the_first_node_has_lost_enough(bonds) -> None:
-    cut(bonds, 20, step=5, lengths=(1,))  # a fifth of the families of 20 and 21
-    cut(bonds, 20, step=8, lengths=(2,))  # another fifth of theirs, and one of 19 and 22
-    cut(bonds, 20, step=11, lengths=(3,))
-    since = cracked_since(bonds)
-
-    assert since[[19, 20, 21, 22]].tolist() == [11, 8, 8, 11]
-    (spall,) = spalls(bonds, PLACES, STEP)
-    assert spall.time == pytest.approx(8 * STEP)
-    assert (spall.start, spall.end) == ((PLACES[20], PLACES[21]), (PLACES[19], PLACES[22]))
-
-
-def test_a_spall_starts_with_what_cracked_in_its_first_step_alone(bonds) -> None:
-    cut(bonds, 20, step=5)
-    cut(bonds, 21, step=6)
-
-    # the second cut, a step later, adds the node 23 as the first one had 22
-    (spall,) = spalls(bonds, PLACES, STEP)
-    assert (spall.start, spall.end) == ((PLACES[19], PLACES[22]), (PLACES[19], PLACES[23]))
-
-
-def test_what_breaks_later_does_not_make_an_earlier_crack_younger(bonds) -> None:
-    cut(bonds, 20, step=5)
-    before = cracked_since(bonds)
-    cut(bonds, 21, step=9)
-    after = cracked_since(bonds)
-
-    assert np.array_equal(after[before >= 0], before[before >= 0])
-    # 23 is beside the second cut as 22 was beside the first
-    assert np.flatnonzero((after >= 0) & (before < 0)).tolist() == [23]
-    assert after[23] == 9
-
-
-def test_spalls_stand_in_the_order_they_happened(bonds) -> None:
-    cut(bonds, 8, step=9)
-    cut(bonds, 30, step=4)
-    cut(bonds, 20, step=6)
-
-    found = spalls(bonds, PLACES, STEP)
-    assert [round(spall.time / STEP) for spall in found] == [4, 6, 9]
-    assert [spall.start[0] for spall in found] == [PLACES[29], PLACES[19], PLACES[7]]
-
-
-@pytest.mark.parametrize(("plane", "nodes"), [(0, (0, 0)), (39, (40, 40))])
-def test_a_spall_may_reach_an_end(bonds, plane: int, nodes: tuple[int, int]) -> None:
-    cut(bonds, plane, step=3)
-
-    # the end node has lost all, the next one half a volume of three
-    (spall,) = spalls(bonds, PLACES, STEP)
-    assert spall.end == (PLACES[nodes[0]], PLACES[nodes[1]])
-
-
-@pytest.mark.parametrize(("plane", "off"), [(0, "left"), (20, None), (39, "right")])
-def test_a_bar_comes_off_an_end_where_its_node_is_the_first_to_crack(bonds, plane: int, off: str | None) -> None:
-    cut(bonds, plane, step=3)
-    (spall,) = spalls(bonds, PLACES, STEP)
-
-    assert breaks_at_ends([spall], {"left": PLACES[0], "right": PLACES[-1]}) == ({off: spall} if off else {})
-    assert breaks_at_ends([spall], {}) == {}
-
-
-def test_a_spall_that_grows_to_an_end_later_is_one_all_the_same(bonds) -> None:
-    cut(bonds, 36, step=3)
-    cut(bonds, 39, step=5)
-    (spall,) = spalls(bonds, PLACES, STEP)
-
-    assert spall.end[1] == PLACES[-1]
-    assert breaks_at_ends([spall], {"right": PLACES[-1]}) == {}
-
-
-def test_springs_count_as_well() -> None:
-    bonds = Bonds(ROD, 0)
-    bonds.spring[12], bonds.spring_broken[12] = 0.0, 4
-
-    (spall,) = spalls(bonds, PLACES, STEP)
-    assert spall.start == (PLACES[12], PLACES[13])
-
-
-def test_a_spall_is_described_in_plain_values() -> None:
-    assert Spall(1e-3, (0.5, 0.75), (0.25, 1.0)).describe() == {"time": 1e-3, "start": [0.5, 0.75], "end": [0.25, 1.0]}
-
-
-def test_rounding_of_products_is_not_told() -> None:
-    assert (3 * 0.1, 696 * 1e-3) == (0.30000000000000004, 0.6960000000000001)
-    described = Spall(3 * 0.1, (696 * 1e-3, 1e-7 / 3.0), (0.25, 1.0)).describe()
-
-    assert described == {"time": 0.3, "start": [0.696, 3.33333333333e-8], "end": [0.25, 1.0]}
 
 
 def opened(bonds: Bonds, plane: int, step: int) -> None:
@@ -162,13 +56,92 @@ def opened(bonds: Bonds, plane: int, step: int) -> None:
             bonds.bond[p - 1, i], bonds.bond_broken[p - 1, i] = 0.0, step + 3
 
 
-@pytest.fixture
-def tough() -> Bonds:
-    """Peridynamics with m = 3 all over, with a fracture energy."""
-    (part,) = ROD.ranges
-    made = Bonds(Rod((replace(part, fracture=Fracture(1e4)),)), 3, complement=False)
-    made.add_zone(0, COUNT)
-    return made
+def test_a_cut_cracks_the_nodes_that_lose_three_tenths(bonds) -> None:
+    assert np.array_equal(cracked_since(bonds), np.full(COUNT, -1))
+    assert spalls(bonds, PLACES, STEP) == []
+    cut(bonds, 20, step=7)
+    since = cracked_since(bonds)
+
+    # of 5 parts of a family 2.5 are beyond the cut, then 1.5, exactly three tenths, then 0.5
+    assert np.flatnonzero(since >= 0).tolist() == [19, 20, 21, 22]
+    assert np.all(since[19:23] == 7)
+    place = (PLACES[19], PLACES[22])
+    assert spalls(bonds, PLACES, STEP) == [Spall(7 * STEP, place, place)]
+
+
+@pytest.mark.parametrize("section", [1.0, 0.1, 0.7])
+def test_three_tenths_count_however_they_are_rounded(section: float) -> None:
+    bonds = all_over(Rod.uniform(COUNT, SPACING, section, modulus=1e9, critical_stretch=1e-3))
+    cut(bonds, 20, step=7)
+
+    # 1.5 of 5 volumes; with these sections the sums come to 0.3, and to the floats above and below it
+    assert bonds.damage()[19] == pytest.approx(0.3, abs=1e-15)
+    assert cracked_since(bonds)[19] == 7
+
+
+def test_a_spall_begins_when_the_first_node_has_lost_enough_with_those_of_that_step_alone(bonds) -> None:
+    cut(bonds, 20, step=5, lengths=(1,))  # a fifth of the families of 20 and 21
+    cut(bonds, 20, step=8, lengths=(2,))  # another fifth of theirs, and one of 19 and 22
+    cut(bonds, 20, step=11, lengths=(3,))
+    before = cracked_since(bonds)
+    assert before[[19, 20, 21, 22]].tolist() == [11, 8, 8, 11]
+    cut(bonds, 21, step=14)
+    after = cracked_since(bonds)
+
+    # 23 is beside the second cut as 22 was beside the first; the crack is not younger by it
+    assert np.array_equal(after[before >= 0], before[before >= 0])
+    assert np.flatnonzero((after >= 0) & (before < 0)).tolist() == [23]
+    assert after[23] == 14
+    (spall,) = spalls(bonds, PLACES, STEP)
+    assert spall.time == pytest.approx(8 * STEP)
+    assert (spall.start, spall.end) == ((PLACES[20], PLACES[21]), (PLACES[19], PLACES[23]))
+
+
+def test_spalls_stand_in_the_order_they_happened(bonds) -> None:
+    cut(bonds, 8, step=9)
+    cut(bonds, 30, step=4)
+    cut(bonds, 20, step=6)
+
+    found = spalls(bonds, PLACES, STEP)
+    assert [round(spall.time / STEP) for spall in found] == [4, 6, 9]
+    assert [spall.start[0] for spall in found] == [PLACES[29], PLACES[19], PLACES[7]]
+
+
+@pytest.mark.parametrize(
+    ("plane", "off", "nodes"), [(0, "left", (0, 0)), (20, None, (19, 22)), (39, "right", (40, 40))]
+)
+def test_a_bar_comes_off_an_end_where_its_node_is_the_first_to_crack(bonds, plane: int, off, nodes) -> None:
+    cut(bonds, plane, step=3)
+    (spall,) = spalls(bonds, PLACES, STEP)
+
+    # the end node has lost all, the next one half a volume of three
+    assert spall.end == (PLACES[nodes[0]], PLACES[nodes[1]])
+    assert breaks_at_ends([spall], ENDS) == ({off: spall} if off else {})
+    assert breaks_at_ends([spall], {}) == {}
+
+
+def test_a_spall_that_grows_to_an_end_later_is_one_all_the_same(bonds) -> None:
+    cut(bonds, 36, step=3)
+    cut(bonds, 39, step=5)
+    (spall,) = spalls(bonds, PLACES, STEP)
+
+    assert spall.end[1] == PLACES[-1]
+    assert breaks_at_ends([spall], ENDS) == {}
+
+
+def test_springs_count_as_well() -> None:
+    bonds = Bonds(ROD, 0)
+    bonds.spring[12], bonds.spring_broken[12] = 0.0, 4
+
+    (spall,) = spalls(bonds, PLACES, STEP)
+    assert spall.start == (PLACES[12], PLACES[13])
+
+
+def test_a_spall_is_described_without_the_rounding_of_products() -> None:
+    assert (3 * 0.1, 696 * 1e-3) == (0.30000000000000004, 0.6960000000000001)
+    described = Spall(3 * 0.1, (696 * 1e-3, 1e-7 / 3.0), (0.25, 1.0)).describe()
+
+    assert described == {"time": 0.3, "start": [0.696, 3.33333333333e-8], "end": [0.25, 1.0]}
 
 
 def test_with_a_fracture_energy_a_spall_is_an_open_plane(tough) -> None:
@@ -177,19 +150,14 @@ def test_with_a_fracture_energy_a_spall_is_an_open_plane(tough) -> None:
     place = (PLACES[20], PLACES[21])
     assert spalls(tough, PLACES, STEP) == [Spall(8 * STEP, place, place, 5 * STEP)]
     assert spalls(tough, PLACES, STEP)[0].describe()["began"] == 5e-3
-
-
-def test_a_plane_that_one_bond_still_crosses_is_no_spall(tough) -> None:
-    opened(tough, 20, step=5)
-    tough.bond[2, 18], tough.bond_broken[2, 18] = 1.0, OPENING
+    tough.bond[2, 18], tough.bond_broken[2, 18] = 1.0, OPENING  # one that still crosses it
     assert spalls(tough, PLACES, STEP) == []
 
 
 def test_open_planes_within_a_horizon_are_one_spall(tough) -> None:
     for plane, step in ((20, 5), (23, 2), (30, 1)):
         opened(tough, plane, step)
-    found = spalls(tough, PLACES, STEP)
-    assert [(spall.start, spall.end) for spall in found] == [
+    assert [(spall.start, spall.end) for spall in spalls(tough, PLACES, STEP)] == [
         ((PLACES[30], PLACES[31]), (PLACES[30], PLACES[31])),
         ((PLACES[23], PLACES[24]), (PLACES[20], PLACES[24])),
     ]
@@ -199,7 +167,6 @@ def test_damage_counts_what_is_left_of_opening_bonds(tough) -> None:
     opened(tough, 20, step=5)
     tough.bond[tough.bond_broken >= 0] = 1.0
     tough.bond_broken[tough.bond_broken >= 0] = OPENING
-    listed = len(tough.opening)
-    tough.opening.bundle.furthest[:listed] = 1e-3 + 0.4 * 9e-3
+    tough.opening.bundle.furthest[: len(tough.opening)] = 1e-3 + 0.4 * 9e-3
     # 0.4 of the half of its family that node 20 would lose
     assert tough.damage()[20] == pytest.approx(0.2, rel=1e-12)

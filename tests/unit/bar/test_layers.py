@@ -5,7 +5,6 @@ import pytest
 
 from dembound.bar.layers import continued
 from dembound.bar.scene import build_bar
-from dembound.boundaries.matched_layer import usual_reflection
 from dembound.errors import CaseError
 from dembound.motion.simulation import Simulation
 
@@ -47,70 +46,44 @@ def test_bonds_and_masses_are_those_of_a_longer_bar(pair) -> None:
 def test_motion_without_decay_is_that_of_a_longer_bar(pair) -> None:
     """Of noise in the bar, until its waves have been at the ends of the longer one and back: five steps of three nodes.
 
-    To the rounding of sums of some ten forces in a step.
+    To the rounding of sums of some ten forces in a step. Stresses within a horizon of a layer have the layer's bonds,
+    at the step of all others.
     """
     short, longer = pair
-    step = 0.5 * longer.step_limit()
+    step, places = 0.5 * longer.step_limit(), np.array([1, 2, 38, 39])
     noise = np.random.default_rng(2).standard_normal(short.count)
-    moved = []
+    moved, stresses = [], []
     for scene, first in ((short, 0), (longer, NODES["left"])):
-        simulation = Simulation(scene, step)
+        simulation = Simulation(scene, step, places + first)
         velocity = np.zeros((3, scene.count))
         velocity[0, first : first + short.count] = noise
         simulation.state.velocity = velocity
         simulation.state.displacement = step * velocity  # from zero a step ago, as the bonds of a layer at rest
-        simulation.run(4)
+        stresses.append(simulation.advance(4)[:, :, 6])
         moved.append(simulation.state.displacement[0, first : first + short.count])
     np.testing.assert_allclose(moved[0], moved[1], rtol=0.0, atol=60 * 2.3e-16 * np.abs(moved[1]).max())
+    np.testing.assert_allclose(stresses[0], stresses[1], rtol=0.0, atol=1e-12 * np.abs(stresses[1]).max())
+    assert np.abs(stresses[1]).max() > 0.0
 
 
-def test_probes_beside_a_layer_see_all_bonds(pair) -> None:
-    """The stress recorded within a horizon of the layer has the layer's bonds, at the step of all others."""
-    short, longer = pair
-    step = 0.5 * longer.step_limit()
-    places = np.array([1, 2, 38, 39])
-    found = []
-    for scene, shift in ((short, 0), (longer, NODES["left"])):
-        simulation = Simulation(scene, step, places + shift)
-        velocity = np.zeros((3, scene.count))
-        velocity[0, [5 + shift, 35 + shift]] = 1.0, -2.0
-        simulation.state.velocity = velocity
-        simulation.state.displacement = step * velocity  # from zero a step ago, as the bonds of a layer at rest
-        found.append(simulation.advance(4)[:, :, 6])  # the ends are 14 nodes away, five steps
-    np.testing.assert_allclose(found[0], found[1], rtol=0.0, atol=1e-12 * np.abs(found[1]).max())
-    assert np.abs(found[1]).max() > 0.0
+RANGES = [{"name": "striker", "length": 0.25, "velocity": 5.0}, {"name": "rock", "length": 0.75}]
 
 
-def test_the_right_nodes_are_bonded_to_layers(spalling) -> None:
-    scene = build_bar(spalling({"method": METHODS["peridynamics"], "bar.strength": 1e12} | ends()))
-    assert {side: layer.inner.tolist() for side, layer in scene.layers.items()} == {
-        "left": [2, 1, 0],
-        "right": [38, 39, 40],
-    }
-    assert {side: nodes.tolist() for side, nodes in scene.tied.items()} == {"left": [0, 1, 2], "right": [38, 39, 40]}
-    left = scene.layers["left"]
-    assert left.layer.reflection == usual_reflection(9)
-    assert left.length == pytest.approx(9 * 0.025)
-    assert np.count_nonzero(left.node_rates) == 9
-
-
-def test_a_layer_shorter_than_two_horizons_is_refused(spalling) -> None:
-    method = {"type": "peridynamics", "horizon": 5}
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        (
+            {"method": {"type": "peridynamics", "horizon": 5}},
+            "boundary.left.nodes: is 9, must be at least 10, twice method.horizon",
+        ),
+        (
+            {"bar": {"spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0, "range": RANGES}},
+            "boundary.left.type: its layer is at rest, but range striker beside it has a velocity",
+        ),
+    ],
+    ids=["shorter than two horizons", "beside a moving range"],
+)
+def test_layers_that_cannot_be_are_refused(spalling, changes: dict, problem: str) -> None:
     with pytest.raises(CaseError) as error:
-        spalling({"method": method} | ends())
-    assert error.value.problems == ["boundary.left.nodes: is 9, must be at least 10, twice method.horizon"]
-
-
-def test_springs_in_a_layer_need_no_more(spalling) -> None:
-    scene = build_bar(spalling({"method": {"type": "patch", "horizon": 5}} | ends()))
-    assert [len(layer.inner) for layer in scene.layers.values()] == [1, 1]
-
-
-def test_a_moving_range_beside_a_layer_is_refused(spalling) -> None:
-    ranges = [{"name": "striker", "length": 0.25, "velocity": 5.0}, {"name": "rock", "length": 0.75}]
-    bar = {"spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0, "range": ranges}
-    with pytest.raises(CaseError) as error:
-        spalling({"bar": bar} | ends())
-    assert error.value.problems == [
-        "boundary.left.type: its layer is at rest, but range striker beside it has a velocity"
-    ]
+        spalling(changes | ends())
+    assert error.value.problems == [problem]

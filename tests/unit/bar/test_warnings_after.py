@@ -11,7 +11,16 @@ from small_cases import SPALLING, small
 
 from dembound.bar.scene import build_bar
 from dembound.bar.warnings_after import warnings_after_bar
+from dembound.results.warnings import still_moving
 from dembound.running import resume_case, run_case
+
+
+def _summary(folder: Path) -> dict:
+    return json.loads((folder / "summary.json").read_text())
+
+
+def after(case, folder: Path) -> list[str]:
+    return warnings_after_bar(build_bar(case), _summary(folder), folder / "run.h5")
 
 
 @pytest.fixture
@@ -20,8 +29,7 @@ def run(spalling, tmp_path):
 
     def make(changes: dict) -> list[str]:
         case = spalling({"output.pictures": False, **changes})
-        folder = run_case(case, tmp_path)
-        return warnings_after_bar(build_bar(case), _summary(folder), folder / "run.h5")
+        return after(case, run_case(case, tmp_path))
 
     return make
 
@@ -36,10 +44,6 @@ def summary_of(*spalls: dict, duration: float = 1.0) -> dict:
         "crack_strain_rates": None,
         "energy": {"supplied": 1.0, "closing": 0.0, "relative_error": 0.0},
     }
-
-
-def _summary(folder: Path) -> dict:
-    return json.loads((folder / "summary.json").read_text())
 
 
 def test_a_bar_that_spalls_is_not_warned_of(run) -> None:
@@ -57,12 +61,9 @@ def test_swings_that_impacts_leave_are_warned_of(tmp_path, courant: float, swing
     ranges[1]["interface"] = "contact"
     bar = {"spacing": 1e-3, "density": 2620.0, "wave_speed": 2740.0, "range": ranges}
     run = {"duration": 3e-4, "courant": courant}
-    tables = {"bar": bar, "method": {"type": "finite_difference"}, "run": run, "output": {"pictures": False}}
-    case = small(tables)
+    case = small({"bar": bar, "method": {"type": "finite_difference"}, "run": run, "output": {"pictures": False}})
     folder = run_case(case, tmp_path)
-    said = [
-        each for each in warnings_after_bar(build_bar(case), _summary(folder), folder / "run.h5") if "swing" in each
-    ]
+    said = [each for each in after(case, folder) if "swing" in each]
     assert len(said) == swings
     if swings:
         assert said[0].startswith("output.snapshots: their velocities swing from step to step, by up to ")
@@ -70,12 +71,7 @@ def test_swings_that_impacts_leave_are_warned_of(tmp_path, courant: float, swing
         with h5py.File(folder / "run.h5", "a") as file:
             for group in file["snapshots"].values():
                 group["velocity"][...] = 1.0
-        assert not [
-            each for each in warnings_after_bar(build_bar(case), _summary(folder), folder / "run.h5") if "swing" in each
-        ]
-
-
-SUDDEN = {"wave.hit.rise": 2.5e-5, "wave.hit.fall": 2.5e-4}
+        assert not [each for each in after(case, folder) if "swing" in each]
 
 
 def test_contacts_that_never_close_are_warned_of(tmp_path) -> None:
@@ -97,82 +93,64 @@ def test_contacts_that_never_close_are_warned_of(tmp_path) -> None:
     assert line.startswith("bar.range[3, far]: its contact with rod, 0.1 m wide at the start, has never closed until ")
 
 
+SUDDEN = {"wave.hit.rise": 2.5e-5, "wave.hit.fall": 2.5e-4}
+
+
+def entering(speed: float, side: str) -> dict:
+    """A wave inwards at an end; 10 m/s are 25 MPa, three times the strength."""
+    end = {side: {"type": "viscous_input", "wave_p": "hit"}}
+    return SUDDEN | {"load": [], "wave.hit.amplitude": speed if side == "left" else -speed, "boundary": end}
+
+
+LONG_BONDS = {"method": {"type": "peridynamics", "horizon": 5, "corrected_ends": True}, "run": {"duration": 1.5e-3}}
+FINER = "take a smaller bar.spacing, or a weaker or slower wave"
+OTHER_SIGN = "change the sign of load.blow.pressure if it is to push"
+
+
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_a_load_that_tears_its_own_end_is_warned_of(run, side: str) -> None:
-    (warning,) = run(SUDDEN | blow(9e7, 1, side))
-
-    assert warning.startswith("load.blow: the load itself broke the bar, at ")
-    assert warning.endswith(
-        f" m from the {side} end, before any reflected wave had returned there; give load.blow.nodes = 3"
-    )
-
-
 @pytest.mark.parametrize(
-    ("speed", "method"),
-    [(10.0, {"horizon": 5, "corrected_ends": True}), (40.0, {"horizon": 10})],
-    ids=["corrected", "plain"],
-)
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_a_wave_that_tears_the_end_where_it_enters_is_warned_of(run, side: str, speed: float, method: dict) -> None:
-    # peridynamics swings behind a front shorter than its horizon; 10 m/s are 25 MPa, three times the strength
-    changes = {
-        **SUDDEN,
-        "load": [],
-        "wave.hit.amplitude": speed if side == "left" else -speed,
-        "boundary": {side: {"type": "viscous_input", "wave_p": "hit"}},
-        "method": {"type": "peridynamics", **method},
-        "run": {"duration": 1.5e-3},
-    }
-    (warning,) = run(changes)
-
-    assert warning.startswith(f"boundary.{side}: the incoming wave itself broke the bar, at ")
-    assert warning.endswith(
-        f" m from the {side} end, before any reflected wave had returned there; take a smaller bar.spacing, or a "
-        "weaker or slower wave"
-    )
-    assert not run(changes | {"bar.spacing": 0.0025})  # fifty cells in a pulse
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_a_load_that_pulls_is_told_to_pull(run, side: str, sign: float) -> None:
-    (warning,) = run(SUDDEN | blow(-3e7 * sign, 3, side) | {"wave.hit.amplitude": sign})
-
-    assert warning.startswith("load.blow: the load pulls, with ")
-    assert warning.endswith("; change the sign of load.blow.pressure if it is to push")
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_a_wave_that_pulls_is_told_to_pull(run, side: str) -> None:
-    # a wave of 10 m/s outwards is a tension of 25 MPa, three times the strength
-    changes = {
-        **SUDDEN,
-        "load": [],
-        "wave.hit.amplitude": -10.0 if side == "left" else 10.0,
-        "boundary": {side: {"type": "viscous_input", "wave_p": "hit"}},
-    }
-    (warning,) = run(changes)
-    assert warning.startswith(f"boundary.{side}: the incoming wave pulls, with ")
-    assert warning.endswith("; change the sign of wave.hit if it is to push")
-
-
-@pytest.mark.parametrize(
-    ("place", "time", "warned"),
+    ("load", "speed", "changes", "key", "what", "cure"),
     [
-        (0.0, 1e-4, True),
-        (0.07, 1e-4, True),
-        (0.08, 1e-4, False),  # beyond the horizon, which is 0.075 m
-        (0.0, 1.99e-3, True),
-        (0.0, 2.01e-3, False),  # the wave is back from the free end
+        (9e7, None, {}, "load.blow", "load itself", "give load.blow.nodes = 3"),
+        # peridynamics swings behind a front shorter than its horizon
+        (None, 10.0, LONG_BONDS, "boundary", "incoming wave itself", FINER),
+        (-3e7, None, {"wave.hit.amplitude": 1.0}, "load.blow", "load pulls, with ", OTHER_SIGN),
+        (3e7, None, {"wave.hit.amplitude": -1.0}, "load.blow", "load pulls, with ", OTHER_SIGN),
+        (None, -10.0, {}, "boundary", "incoming wave pulls, with ", "change the sign of wave.hit if it is to push"),
     ],
 )
-def test_the_first_spall_tells_who_tore_the_bar(spalling, spalled_run, place: float, time: float, warned: bool) -> None:
-    first = {"time": time, "start": [place, 0.5], "end": [place, 0.5]}
-    later = {"time": 1e-6, "start": [0.0, 0.0], "end": [0.0, 0.0]}
-    found = warnings_after_bar(build_bar(spalling()), summary_of(first, later), spalled_run)
+def test_what_tears_the_end_where_it_enters_is_warned_of(run, side, load, speed, changes, key, what, cure) -> None:
+    given = SUDDEN | blow(load, 1 if load == 9e7 else 3, side) if load else entering(speed, side)
+    (warning,) = run(given | changes)
 
-    # the load of this bar is spread over the horizon
-    said = f"load.hit: the load itself broke the bar, at {time:.4g} s and {place:g} m from the left end, before any "
+    assert warning.startswith(f"{key}: the {what}" if load else f"{key}.{side}: the {what}")
+    assert warning.endswith(f" m from the {side} end, before any reflected wave had returned there; {cure}")
+    if changes is LONG_BONDS:  # fifty cells in a pulse
+        assert not run(given | changes | {"bar.spacing": 0.0025})
+
+
+def spall(time: float, start: list[float]) -> dict:
+    return {"time": time, "start": start, "end": start}
+
+
+@pytest.mark.parametrize(
+    ("side", "place", "time", "warned"),
+    [
+        ("left", 0.07, 1e-4, True),
+        ("left", 0.08, 1e-4, False),  # beyond the horizon, which is 0.075 m
+        ("left", 0.0, 1.99e-3, True),
+        ("left", 0.0, 2.01e-3, False),  # the wave is back from the free end
+        ("right", 0.07, 1e-4, True),
+        ("right", 0.08, 1e-4, False),
+    ],
+)
+def test_the_first_spall_tells_who_tore_the_bar(spalling, spalled_run, side, place, time, warned) -> None:
+    """Cracked from the middle up to a place counted from the end that is loaded, on nodes as far as the horizon."""
+    first = spall(time, [place, 0.5] if side == "left" else [0.5, 1.0 - place])
+    scene = build_bar(spalling(blow(12e6, 3, side)))
+    found = warnings_after_bar(scene, summary_of(first, spall(1e-6, [0.0, 0.0])), spalled_run)
+
+    said = f"load.blow: the load itself broke the bar, at {time:.4g} s and {place:g} m from the {side} end, before any "
     assert found == warned * [f"{said}reflected wave had returned there; take a smaller bar.spacing"]
 
 
@@ -180,22 +158,18 @@ FIRM = {"method": {"type": "finite_difference"}, "boundary.right": {"type": "vis
 """At ν = 1 the right end absorbs all, and nothing pulls but rounding."""
 
 
-def test_a_bar_that_nothing_pulls_is_warned_of(run) -> None:
-    (warning,) = run(FIRM)
-
+def test_a_bar_that_nothing_pulls_is_warned_of(spalling, tmp_path) -> None:
+    case = spalling({"output.pictures": False, **FIRM})
+    folder = run_case(case, tmp_path)
+    (warning,) = after(case, folder)
     assert warning.startswith("bar: the largest tension reached is ")
-    assert warning.endswith(" % of the strength, 8 MPa; nothing can break")
-    assert run({**FIRM, "bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}) == []
-
-
-@pytest.mark.parametrize(("tension", "warned"), [(4.1e5, False), (3.9e5, True)])
-def test_the_largest_tension_beside_the_strength(spalling, tmp_path, tension: float, warned: bool) -> None:
-    folder = run_case(spalling({"output.pictures": False, **FIRM}), tmp_path)
-    with h5py.File(folder / "run.h5", "r+") as file:
-        file["histories/gauge/stress"][3] = tension
-    said = "bar: the largest tension reached is 0.39 MPa, 4.9 % of the strength, 8 MPa; nothing can break"
-
-    assert warnings_after_bar(build_bar(spalling(FIRM)), _summary(folder), folder / "run.h5") == warned * [said]
+    for tension, warned in ((4.1e5, False), (3.9e5, True)):
+        with h5py.File(folder / "run.h5", "r+") as file:
+            file["histories/gauge/stress"][3] = tension
+        said = "bar: the largest tension reached is 0.39 MPa, 4.9 % of the strength, 8 MPa; nothing can break"
+        assert after(case, folder) == warned * [said]
+    unbroken = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}
+    assert after(spalling({**FIRM, "bar": unbroken}), folder) == []
 
 
 @pytest.mark.parametrize("changes", [{"run.duration": 5e-4}, blow(5.0, 3)], ids=["too short", "too weak"])
@@ -209,21 +183,10 @@ def test_a_bar_comes_to_rest_where_a_dashpot_holds_the_piece(spalling, spalled_r
         velocity = file["histories/gauge/velocity"]
         velocity[:, 0] = np.linspace(0.0, 1.0, len(velocity)) ** 4
     scene = build_bar(spalling({"boundary.left": {"type": "viscous"}}))
-    spall = {"time": 1.2e-3, "start": [0.9, 0.9], "end": [0.9, 0.95]}
-    for where, warned in ((spall, True), ({**spall, "end": [0.3, 0.4]}, False)):
+    there = {"time": 1.2e-3, "start": [0.9, 0.9], "end": [0.9, 0.95]}
+    for where, warned in ((there, True), ({**there, "end": [0.3, 0.4]}, False)):
         found = warnings_after_bar(scene, summary_of(where, duration=1.5e-3), path)
         assert [warning.split(":")[0] for warning in found] == warned * ["monitor.gauge"]
-
-
-@pytest.mark.parametrize(("near", "warned"), [(0.93, True), (0.92, False)])
-def test_places_count_from_the_end_that_is_loaded(spalling, spalled_run, near: float, warned: bool) -> None:
-    # cracked from the middle up to 0.07 or 0.08 m from the right end; the horizon is 0.075 m
-    first = {"time": 1e-4, "start": [0.5, near], "end": [0.5, near]}
-    scene = build_bar(spalling(blow(12e6, 3, "right")))
-    found = warnings_after_bar(scene, summary_of(first), spalled_run)
-
-    said = "load.blow: the load itself broke the bar, at 0.0001 s and 0.07 m from the right end, before any "
-    assert found == warned * [f"{said}reflected wave had returned there; take a smaller bar.spacing"]
 
 
 @pytest.mark.parametrize(("rates", "beyond"), [([1e-3, 2e-3], "above 0.002"), ([1e4, 2e4], "below 10000")])
@@ -238,13 +201,10 @@ def test_cracks_at_strain_rates_without_a_strength_are_warned_of(run, rates: lis
 
 def test_a_forerunner_beside_the_motion_of_the_body_is_no_motion(tmp_path) -> None:
     """The one monitor has 1e-13 m/s, still growing, while the body moves: nothing that a longer run would end."""
-    from dembound.results.warnings import still_moving
-
     end = {"right": {"type": "viscous"}}
-    case = small(SPALLING | {"boundary": end, "monitor": [{"name": "far", "position": 1.0}]})
+    scene = build_bar(small(SPALLING | {"boundary": end, "monitor": [{"name": "far", "position": 1.0}]}))
     with h5py.File(tmp_path / "run.h5", "w") as file:
         file["histories/far/velocity"] = np.outer(np.linspace(0.0, 1e-13, 100), [1.0, 0.0, 0.0])
-        scene = build_bar(case)
         pieces = np.zeros(scene.count, dtype=np.int64)
         assert list(still_moving(scene, 1e-4, file, pieces))  # without a ledger nothing larger is known
         file["energy/kinetic"] = np.array([0.0, 1.0])

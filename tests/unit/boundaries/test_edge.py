@@ -19,9 +19,6 @@ def test_a_medium_gives_p_dashpots_along_the_normal_and_s_across() -> None:
     # βρc by hand: 0.5·2000·1000 and 3·2000·500
     assert MEDIUM.impedances(0.5, 3.0, normal_axis=0).tolist() == [1e6, 3e6]
     assert MEDIUM.impedances(0.5, 3.0, normal_axis=1).tolist() == [3e6, 1e6]
-
-
-def test_a_medium_has_the_shear_modulus_of_its_s_waves() -> None:
     assert MEDIUM.shear_modulus == 5e8  # 2000·500²
 
 
@@ -37,12 +34,10 @@ def test_matched_factors_make_up_for_speeds_and_for_what_the_disks_cover() -> No
     assert fluid.matched(edge) == pytest.approx({"p": np.nan, "s": 0.8}, rel=1e-15, nan_ok=True)
 
 
-@pytest.mark.parametrize(("side", "axis"), [("left", 0), ("right", 0), ("bottom", 1), ("top", 1)])
-def test_an_edge_knows_its_normal_and_how_much_its_disks_cover(side: str, axis: int) -> None:
-    edge = Edge(side, np.array([4, 2]), positions=np.zeros((2, 2)), diameters=np.array([0.5, 1.0]), length=1.25)
-
-    assert edge.axis == axis
-    assert edge.diameter_sum_ratio == 1.2
+def test_an_edge_knows_its_normal_and_how_much_its_disks_cover() -> None:
+    for side, axis in (("left", 0), ("right", 0), ("bottom", 1), ("top", 1)):
+        edge = Edge(side, np.array([4, 2]), positions=np.zeros((2, 2)), diameters=np.array([0.5, 1.0]), length=1.25)
+        assert (edge.axis, edge.diameter_sum_ratio) == (axis, 1.2)
 
 
 def test_a_disk_shared_by_two_sides_takes_its_part_of_the_width() -> None:

@@ -29,30 +29,18 @@ def test_sides_that_ask_for_it_halve_their_particles(kind: str) -> None:
         assert mass_factor(5, EDGES, boundary).tolist() == factor
 
 
-def test_a_corner_of_two_such_sides_keeps_a_quarter() -> None:
-    half = Viscous(type="viscous", half_mass=True)
-
-    assert mass_factor(5, EDGES, {"left": half, "top": half}).tolist() == [0.5, 1.0, 0.25, 0.5, 1.0]
-
-
-def test_a_side_that_is_no_edge_halves_nothing() -> None:
-    assert mass_factor(5, EDGES, {"bottom": Viscous(type="viscous", half_mass=True)}).tolist() == [1.0] * 5
-
-
 HALF = Viscous(type="viscous", half_mass=True)
 
 
-def test_a_corner_has_half_its_width_on_the_side_across() -> None:
+def test_a_corner_of_two_such_sides_keeps_a_quarter_and_half_its_width() -> None:
     def widths(boundary: dict) -> dict[str, list[float]]:
         return {side: edge.widths.tolist() for side, edge in with_shares(5, EDGES, boundary).items()}
 
+    assert mass_factor(5, EDGES, {"left": HALF, "top": HALF}).tolist() == [0.5, 1.0, 0.25, 0.5, 1.0]
+    assert mass_factor(5, EDGES, {"bottom": HALF}).tolist() == [1.0] * 5  # no edge
     assert widths({"left": HALF}) == {"left": [1.0, 1.0], "right": [1.0, 1.0], "top": [0.5, 1.0]}
     assert widths({"left": HALF, "top": HALF}) == {"left": [1.0, 0.5], "right": [1.0, 0.5], "top": [0.5, 1.0]}
-
-
-def test_the_sides_of_half_cells_are_those_that_ask_for_it() -> None:
     boundary = {"left": HALF, "right": Viscous(type="viscous"), "bottom": HALF, "top": HALF}
-
     assert [found.side for found in half_edges(EDGES, boundary)] == ["left", "top"]
 
 

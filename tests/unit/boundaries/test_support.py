@@ -23,73 +23,39 @@ def row(table: Supports, node: int, component: int) -> int:
 
 
 def test_one_row_per_node_sorted_by_node_with_numbers_or_arrays() -> None:
-    builder = SupportBuilder()
-    builder.add(NODES, 1, damping=np.array([40.0, 20.0]), stiffness=3.0)
+    builder = SupportBuilder(held=(0, 2))  # which leave no rows, as sides without particles
+    for component in range(3):
+        builder.add(NODES, component, damping=np.array([40.0, 20.0]), stiffness=3.0)
+    builder.add(np.zeros(0, dtype=np.int64), 1, damping=1.0)
     table = builder.table()
 
     assert len(table) == 2
-    assert table.node.tolist() == [2, 4]
-    assert table.component.tolist() == [1, 1]
-    assert table.damping.tolist() == [20.0, 40.0]
-    assert table.stiffness.tolist() == [3.0, 3.0]
+    assert (table.node.tolist(), table.component.tolist()) == ([2, 4], [1, 1])
+    assert (table.damping.tolist(), table.stiffness.tolist()) == ([20.0, 40.0], [3.0, 3.0])
     assert len(table.drive) == 0
     assert not table.prescribed.any()
+    empty = SupportBuilder().table()
+    assert len(empty) == 0
+    assert empty.sample(np.zeros(3), 0.5).shape == (3, 0)
 
 
-def test_held_components_and_sides_without_particles_leave_no_rows() -> None:
-    builder = SupportBuilder(held=(0, 2))
-    for component in range(3):
-        builder.add(NODES, component, damping=1.0)
-    builder.add(np.zeros(0, dtype=np.int64), 1, damping=1.0)
-
-    assert builder.table().component.tolist() == [1, 1]
-
-
-def test_an_empty_table_drives_nothing() -> None:
-    table = SupportBuilder().table()
-
-    assert len(table) == 0
-    assert table.sample(np.zeros(3), 0.5).shape == (3, 0)
-
-
-def test_forces_of_two_sides_add_up_at_a_corner() -> None:
+def test_forces_and_drives_of_sides_add_up_at_a_corner() -> None:
     builder = SupportBuilder()
-    builder.add(NODES, 0, damping=10.0, stiffness=100.0)
-    builder.add(np.array([2, 3]), 0, damping=20.0, stiffness=200.0)
+    builder.add(NODES, 0, damping=10.0, stiffness=100.0, drive=np.array([4.0, 2.0]), signal=ramp)
+    builder.add(np.array([2, 3]), 0, damping=20.0, stiffness=200.0, drive=10.0, signal=square)
     builder.add(np.array([2, 3]), 1, damping=5.0)
+    builder.add(np.array([2]), 0, drive=100.0, signal=ramp)
     table = builder.table()
+    values = table.sample(np.array([0.0, 3.0]), half_step=0.5)
 
     assert len(table) == 5
     corner = row(table, 2, 0)
     assert (table.damping[corner], table.stiffness[corner]) == (30.0, 300.0)
     assert table.damping[row(table, 4, 0)] == 10.0
     assert table.damping[row(table, 2, 1)] == 5.0
-
-
-def test_drives_of_two_signals_add_up_at_a_corner() -> None:
-    builder = SupportBuilder()
-    builder.add(NODES, 0, drive=2.0, signal=ramp)
-    builder.add(np.array([2]), 0, damping=1.0)
-    builder.add(np.array([2]), 0, drive=10.0, signal=square)
-    builder.add(np.array([2]), 0, drive=100.0, signal=ramp)
-    table = builder.table()
-    values = table.sample(np.array([0.0, 3.0]), half_step=0.5)
-
-    # at t = 3: 2·3 + 10·9 + 100·3 where all three meet, 2·3 elsewhere
-    assert values[:, row(table, 2, 0)].tolist() == [0.0, 396.0]
-    assert values[:, row(table, 4, 0)].tolist() == [0.0, 6.0]
-
-
-def test_a_row_may_have_several_drives_of_one_side() -> None:
-    builder = SupportBuilder()
-    builder.add(NODES, 1, damping=3.0, drive=np.array([4.0, 2.0]), signal=ramp)
-    builder.add(NODES, 1, drive=0.5, signal=square)
-    table = builder.table()
-
-    assert table.node.tolist() == [2, 4]
-    assert table.damping.tolist() == [3.0, 3.0]
-    # 2·3 + 9/2 on particle 2 and 4·3 + 9/2 on particle 4
-    assert table.sample(np.array([3.0]), half_step=0.5).tolist() == [[10.5, 16.5]]
+    # at t = 3: 2·3 + 10·9 + 100·3 where all three meet, 4·3 elsewhere
+    assert values[:, corner].tolist() == [0.0, 396.0]
+    assert values[:, row(table, 4, 0)].tolist() == [0.0, 12.0]
 
 
 def test_forces_are_sampled_at_whole_steps_and_prescribed_velocities_half_a_step_later() -> None:
@@ -117,22 +83,13 @@ def test_a_prescribed_row_outranks_forces(prescribed_first: bool) -> None:
     assert table.sample(np.array([3.0]), half_step=0.0).tolist() == [[3.0]]
 
 
-@pytest.mark.parametrize("moving_first", [True, False])
-def test_of_two_prescribed_rows_the_moving_one_wins(moving_first: bool) -> None:
-    builder = SupportBuilder()
-    rows = [{"drive": 5.0, "signal": ramp}, {}]
-    for each in rows if moving_first else rows[::-1]:
-        builder.add(np.array([7]), 0, prescribed=True, **each)
-
-    assert builder.table().sample(np.array([2.0]), half_step=0.0).tolist() == [[10.0]]
-
-
-def test_of_two_moving_prescribed_rows_the_first_wins() -> None:
-    builder = SupportBuilder()
-    builder.add(np.array([7]), 0, prescribed=True, drive=1.0, signal=square)
-    builder.add(np.array([7]), 0, prescribed=True, drive=1.0, signal=ramp)
-
-    assert builder.table().sample(np.array([2.0]), half_step=0.0).tolist() == [[4.0]]
+def test_of_two_prescribed_rows_the_moving_one_wins_and_of_two_moving_ones_the_first() -> None:
+    moving, still, other = {"drive": 5.0, "signal": ramp}, {}, {"drive": 1.0, "signal": square}
+    for rows, expected in (((moving, still), 10.0), ((still, moving), 10.0), ((other, moving), 4.0)):
+        builder = SupportBuilder()
+        for each in rows:
+            builder.add(np.array([7]), 0, prescribed=True, **each)
+        assert builder.table().sample(np.array([2.0]), half_step=0.0).tolist() == [[expected]]
 
 
 class Powers:
@@ -144,7 +101,7 @@ class Powers:
         return times[:, None] ** [1.0, 2.0, 3.0] + 100.0 * half_step
 
 
-def test_forces_that_are_computed_together_act_on_their_own_rows() -> None:
+def test_forces_that_are_computed_together_act_on_their_own_rows_and_sides() -> None:
     builder = SupportBuilder(held=(2,))
     builder.side = "bottom"
     builder.add_forces(np.array([4, 2, 7]), np.array([1, 0, 2]), Powers())
@@ -158,9 +115,7 @@ def test_forces_that_are_computed_together_act_on_their_own_rows() -> None:
     assert values[:, row(table, 4, 1)].tolist() == [52.0, 53.0]
     np.testing.assert_allclose(values[:, row(table, 2, 0)], times**2 + 50.0 + 10.0 * ramp(times))
     assert table.shares.power == {"bottom": 4}
-
-
-def test_forces_may_be_of_several_sides() -> None:
+    # they may be of several sides
     builder = SupportBuilder()
     sides = {"left": np.array([4]), "top": np.array([2, 7])}
     builder.add_forces(np.array([4, 2, 7]), np.array([1, 0, 0]), Powers(), sides)

@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Any
 
-import pytest
 import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,7 +12,6 @@ from hypothesis import strategies as st
 from dembound import shipped, starting
 from dembound.casefile.edit import edited, rewritten
 from dembound.casefile.statements import Place, lines_of, statements_of
-from dembound.errors import CaseError
 
 TEXTS = {name: (shipped.folder() / f"{name}.toml").read_text(encoding="utf-8") for name in shipped.names()} | {
     f"new {name}": starting.starting_point(name) for name in starting.names()
@@ -85,43 +83,33 @@ def put(data: Any, place: Place, value: Any) -> None:
     data[place[-1]] = value
 
 
-@pytest.mark.parametrize("name", TEXTS)
-def test_a_changed_value_changes_its_own_lines_alone(name: str) -> None:
-    text = TEXTS[name]
-    found = list(leaves(tomllib.loads(text)))
-    for place, value in found[:: max(1, len(found) // 5)]:
-        wanted = tomllib.loads(text)
-        put(wanted, place, other(value))
-        new = rewritten(text, wanted)
-        assert tomllib.loads(new) == wanted
-        lines = lines_of(text)
-        (held,) = [
-            each for each in statements_of(lines) if each.kind == "key" and each.place == place[: len(each.place)]
-        ]
-        assert new.startswith("".join(lines[: held.begin]))
-        assert new.endswith("".join(lines[held.end :]))
-        assert new != text
+def test_a_changed_value_changes_its_own_lines_alone() -> None:
+    for text in TEXTS.values():
+        found, lines = list(leaves(tomllib.loads(text))), lines_of(text)
+        for place, value in found[:: max(1, len(found) // 3)]:
+            wanted = tomllib.loads(text)
+            put(wanted, place, other(value))
+            new = rewritten(text, wanted)
+            assert tomllib.loads(new) == wanted
+            (held,) = (
+                each for each in statements_of(lines) if each.kind == "key" and each.place == place[: len(each.place)]
+            )
+            assert new.startswith("".join(lines[: held.begin]))
+            assert new.endswith("".join(lines[held.end :]))
+            assert new != text
 
 
-@pytest.mark.parametrize("name", TEXTS)
-def test_added_and_removed_keys_leave_all_other_lines(name: str) -> None:
-    text = TEXTS[name]
-    lines = text.split("\n")
-    added = edited(text, {"output.added": 1.5, "new_table.key": [1, 2], "boundary.top.added": True})
-    data = tomllib.loads(text)
-    for place, value in {
-        ("output", "added"): 1.5,
-        ("new_table", "key"): [1, 2],
-        ("boundary", "top", "added"): True,
-    }.items():
-        table = data
-        for key in place[:-1]:
-            table = table.setdefault(key, {})
-        table[place[-1]] = value
-    assert tomllib.loads(added) == data
-    rest = iter(added.split("\n"))
-    assert all(line in rest for line in lines)  # in their order
-    assert edited(added, {"output.added": None}).count("\n") == added.count("\n") - 1
+def test_added_and_removed_keys_leave_all_other_lines() -> None:
+    for text in TEXTS.values():
+        added = edited(text, {"output.added": 1.5, "new_table.key": [1, 2], "boundary.top.added": True})
+        data = tomllib.loads(text)
+        data.setdefault("output", {})["added"] = 1.5
+        data["new_table"] = {"key": [1, 2]}
+        data.setdefault("boundary", {}).setdefault("top", {})["added"] = True
+        assert tomllib.loads(added) == data
+        rest = iter(added.split("\n"))
+        assert all(line in rest for line in text.split("\n"))  # in their order
+        assert edited(added, {"output.added": None}).count("\n") == added.count("\n") - 1
 
 
 def test_a_line_in_an_odd_layout() -> None:
@@ -194,15 +182,7 @@ def test_line_ends_and_a_missing_last_one_remain() -> None:
     assert edited("a = 1", {"b": 2}) == "a = 1\nb = 2\n"
     assert edited("# top\n[t]\n", {"a": 1}) == "# top\na = 1\n\n[t]\n"
     assert edited("", {"a.b": {}}) == "[a.b]\n"
-
-
-def test_nothing_changed_is_the_same_text() -> None:
     assert edited(ODD, {"boundary.right.beta_p": 0.7138, "run": None, "monitor.a.name": "a"}) == ODD
-
-
-def test_keys_that_lead_nowhere_are_refused() -> None:
-    with pytest.raises(CaseError, match=r"monitor\.c\.position: unknown monitor"):
-        edited(ODD, {"monitor.c.position": [0.0, 0.0]})
 
 
 KEYS = st.sampled_from(["a", "b", "name", "size", "c d", "é.x"])
@@ -255,7 +235,7 @@ def layout(data: Mapping[str, Any], draw: Any, place: tuple[str, ...] = ()) -> l
 
 
 @given(st.data())
-@settings(deadline=None, max_examples=200, derandomize=True)
+@settings(deadline=None, max_examples=100, derandomize=True)
 def test_any_layout_is_edited_to_any_other_tables(data: st.DataObject) -> None:
     before = data.draw(TABLES)
     wanted = deepcopy(before) if data.draw(st.booleans()) else data.draw(TABLES)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
+from small_cases import rows
 
 from dembound.casefile.json_schema import DRAFT, json_schema
 from dembound.kinds import SCHEMAS
@@ -34,40 +35,32 @@ def test_it_is_a_schema_of_its_draft(schema) -> None:
     Draft202012Validator.check_schema(schema)
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
-def test_shipped_cases_are_valid(problems, path: Path) -> None:
-    assert problems(path.read_text(encoding="utf-8")) == []
+def test_shipped_cases_and_starting_points_are_valid(problems) -> None:
+    for text in [*(path.read_text(encoding="utf-8") for path in SHIPPED), *map(starting_point, names())]:
+        assert problems(text) == []
 
 
-@pytest.mark.parametrize("name", names())
-def test_starting_points_are_valid(problems, name: str) -> None:
-    assert problems(starting_point(name)) == []
+MISTAKES = r"""
+long_bar | \nradius = | \nradiuss = | $.packing | 'radiuss' was unexpected
+long_bar | "viscous" | "vicious" | $.boundary.right.type | 'vicious' is not one of
+long_bar | [boundary.right] | [boundary.rihgt] | $.boundary | 'rihgt' was unexpected
+long_bar | amplitude = 0.5 | amplitude = "much" | $.wave.pulse.amplitude | not of type 'number'
+long_bar | density = 2500.0 | density = -1 | $.material.density | less than or equal to the minimum
+long_bar | [[monitor]] | [monitor] | $.monitor | is not of type 'array'
+long_bar | type = "cosine" |  | $.wave.pulse | 'type' is a required property
+tunnel | centre = | center = | $.hole[0] | 'center' was unexpected
+excavation | [static.boundary.left] | [static.boundary.lef] | $.static.boundary | 'lef' was unexpected
+excavation | type = "fixed" | type = "viscous" | $.static.boundary.bottom.type | is not one of
+rock_bar | # [boundary.right] | [boundary.top] | $.boundary | 'top' was unexpected
+rock_bar | [run]\nduration = 5e-4 | [run] | $.run | 'duration' is a required property
+"""
 
 
-@pytest.mark.parametrize(
-    ("name", "old", "new", "place", "said"),
-    [
-        ("long_bar", "\nradius =", "\nradiuss =", "$.packing", "'radiuss' was unexpected"),
-        ("long_bar", "[packing]", "[pakcing]", "$", "'pakcing' was unexpected"),
-        ("long_bar", '"viscous"', '"vicious"', "$.boundary.right.type", "'vicious' is not one of"),
-        ("long_bar", "[boundary.right]", "[boundary.rihgt]", "$.boundary", "'rihgt' was unexpected"),
-        ("long_bar", "amplitude = 0.5", 'amplitude = "much"', "$.wave.pulse.amplitude", "not of type 'number'"),
-        ("long_bar", "density = 2500.0", "density = -1", "$.material.density", "less than or equal to the minimum"),
-        ("long_bar", "[[monitor]]", "[monitor]", "$.monitor", "is not of type 'array'"),
-        ("long_bar", 'type = "cosine"', "", "$.wave.pulse", "'type' is a required property"),
-        ("tunnel", "centre =", "center =", "$.hole[0]", "'center' was unexpected"),
-        ("excavation", "[static.boundary.left]", "[static.boundary.lef]", "$.static.boundary", "'lef' was unexpected"),
-        ("excavation", 'type = "fixed"', 'type = "viscous"', "$.static.boundary.bottom.type", "is not one of"),
-        ("rock_bar", "strength =", "strenght =", "$.bar", "'strenght' was unexpected"),
-        ("rock_bar", "# [boundary.right]", "[boundary.top]", "$.boundary", "'top' was unexpected"),
-        ("rock_bar", "[run]\nduration = 5e-4", "[run]", "$.run", "'duration' is a required property"),
-    ],
-)
+@pytest.mark.parametrize(("name", "old", "new", "place", "said"), rows(MISTAKES))
 def test_a_mistake_is_found_where_it_is(problems, name: str, old: str, new: str, place: str, said: str) -> None:
     text = starting_point(name)
     assert old in text
     found = problems(text.replace(old, new, 1))
-
     assert any(where == place and said in what for where, what in found)
 
 

@@ -4,11 +4,11 @@ import math
 
 import pytest
 import tomli_w
-from small_cases import PUSHED, SPALLING, SURROUNDED, Tables, small
+from small_cases import PUSHED, SPALLING, SURROUNDED, Tables, problems_of, small
 
 from dembound.casefile.disks.outside import MOST_ELEMENTS
 from dembound.errors import CaseError
-from dembound.kinds import loads, with_changes
+from dembound.kinds import with_changes
 from dembound.machine import Memory
 from dembound.motion import ram
 from dembound.running import plan
@@ -16,35 +16,20 @@ from dembound.waves.wave import LATEST
 
 
 def problems(tables: Tables) -> list[str]:
-    try:
-        loads(tomli_w.dumps(tables))
-    except CaseError as error:
-        return error.problems
-    return []
+    return problems_of(tomli_w.dumps(tables))
 
 
-@pytest.mark.parametrize(
-    ("tables", "line"),
-    [
-        (
-            SURROUNDED | {"outside": {"layers": 2**31}},
-            f"outside.layers: is 2147483648, must be at most {MOST_ELEMENTS}",
-        ),
-        (
-            SURROUNDED | {"outside": {"margin": 2**31}},
-            f"outside.margin: is 2147483648, must be at most {MOST_ELEMENTS}",
-        ),
-        (PUSHED | {"output": {"snapshots": 2**31}}, "output.snapshots: is 2147483648, must be at most 10000"),
-        (PUSHED | {"sweep": {"processes": 2**31}}, "sweep.processes: is 2147483648, must be "),
-        (
-            SPALLING | {"load": [SPALLING["load"][0] | {"nodes": 2**31}]},
-            "load[1, hit].nodes: is 2147483648, must be at",
-        ),
-    ],
-)
-def test_a_count_beyond_all_need_is_one_line(tables: Tables, line: str) -> None:
-    (found,) = problems(tables)
-    assert found.startswith(line)
+def test_a_count_beyond_all_need_is_one_line() -> None:
+    many = 2**31
+    for tables, line in (
+        (SURROUNDED | {"outside": {"layers": many}}, f"outside.layers: is {many}, must be at most {MOST_ELEMENTS}"),
+        (SURROUNDED | {"outside": {"margin": many}}, f"outside.margin: is {many}, must be at most {MOST_ELEMENTS}"),
+        (PUSHED | {"output": {"snapshots": many}}, f"output.snapshots: is {many}, must be at most 10000"),
+        (PUSHED | {"sweep": {"processes": many}}, f"sweep.processes: is {many}, must be "),
+        (SPALLING | {"load": [SPALLING["load"][0] | {"nodes": many}]}, f"load[1, hit].nodes: is {many}, must be at"),
+    ):
+        (found,) = problems(tables)
+        assert found.startswith(line)
 
 
 def test_elements_for_which_there_is_no_memory_are_refused_before_they_are_made(monkeypatch) -> None:
@@ -56,40 +41,25 @@ def test_elements_for_which_there_is_no_memory_are_refused_before_they_are_made(
 
 
 @pytest.mark.parametrize("value", [math.inf, -math.inf, math.nan])
-@pytest.mark.parametrize(
-    ("tables", "place"),
-    [
-        (
-            {"chart": {"choice": [{"name": "c", "set": {"packing.size": [10.0, 0.0]}}]}},
-            "chart.choice[1, c].set: packing.size",
-        ),
+def test_a_number_that_is_not_finite_is_refused_in_the_values_of_other_keys(value: float) -> None:
+    choice = {"choice": [{"name": "c", "set": {"packing.size": [10.0, 0.0]}}]}
+    for tables, place in (
+        ({"chart": choice}, "chart.choice[1, c].set: packing.size"),
         ({"chart": {"vary": {"run.safety": [0.5, 0.0]}}}, "chart.vary: run.safety"),
         ({"sweep": {"vary": {"run.safety": [0.5, 0.0]}}}, "sweep.vary: run.safety"),
-    ],
-)
-def test_a_number_that_is_not_finite_is_refused_in_the_values_of_other_keys(tables, place: str, value: float) -> None:
-    text = tomli_w.dumps(PUSHED | tables).replace("0.0,\n]", f"{value},\n]")
-    found = []
-    try:
-        loads(text)
-    except CaseError as error:
-        found = error.problems
-    assert found == [f"{place} is {value:g}, must be finite"]
-
-
-@pytest.mark.parametrize("value", [math.inf, -math.inf, math.nan])
-def test_a_number_that_is_not_finite_is_refused_in_a_changed_key(value: float) -> None:
+    ):
+        text = tomli_w.dumps(PUSHED | tables).replace("0.0,\n]", f"{value},\n]")
+        assert problems_of(text) == [f"{place} is {value:g}, must be finite"]
     for key in ("run.duration", "packing.radius", "material.density", "wave.push.period", "chart.repeats"):
         with pytest.raises(CaseError):
             with_changes(small(PUSHED), {key: value})
 
 
-@pytest.mark.parametrize(("share", "late"), [(0.99, False), (1.01, True)])
-def test_a_wave_that_rounding_would_change_is_refused(share: float, late: bool) -> None:
-    start = share * LATEST * 0.01  # its period
-    changes = PUSHED | {"wave": {"push": PUSHED["wave"]["push"] | {"start": start}, "shake": PUSHED["wave"]["shake"]}}
-    found = problems(changes)
-    assert [line.partition(", must be at most")[0] for line in found] == late * [f"wave.push.start: is {start:g}"]
+def test_a_wave_that_rounding_would_change_is_refused() -> None:
+    for share, late in ((0.99, False), (1.01, True)):
+        start = share * LATEST * 0.01  # its period
+        found = problems(PUSHED | {"wave": PUSHED["wave"] | {"push": PUSHED["wave"]["push"] | {"start": start}}})
+        assert [line.partition(", must be at most")[0] for line in found] == late * [f"wave.push.start: is {start:g}"]
 
 
 def test_a_record_that_rounding_would_change_is_refused(tmp_path) -> None:
@@ -97,7 +67,7 @@ def test_a_record_that_rounding_would_change_is_refused(tmp_path) -> None:
     for first, late in ((1e9, False), (1e12, True)):
         path.write_text("\n".join(f"{first + 0.25 * k!r} {k % 2}" for k in range(5)))
         wave = {"type": "file", "path": str(path)}
-        found = problems(PUSHED | {"wave": {"push": wave, "shake": PUSHED["wave"]["shake"]}})
+        found = problems(PUSHED | {"wave": PUSHED["wave"] | {"push": wave}})
         assert [line.startswith("wave.push.path: a time in ") for line in found] == late * [True]
 
 

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 import pytest
+from small_cases import problems_of, rows
 
-from dembound.casefile.types import LAWS, PACKINGS
+from dembound.casefile.types import PACKINGS
 from dembound.errors import CaseError
 from dembound.kinds import load, loads
 from dembound.table import name_of
 
 PATTERNS = ", ".join(sorted(f'"{name_of(packing)}"' for packing in PACKINGS))
-LAW_NAMES = ", ".join(f'"{name}"' for name in LAWS)
 
 GOOD = """\
 title = "short bar"
@@ -42,17 +42,10 @@ snapshots = 3
 """
 
 
-def problems(text: str, folder: Path = Path()) -> list[str]:
-    """All lines the text is refused with."""
-    with pytest.raises(CaseError) as caught:
-        loads(text, folder)
-    return caught.value.problems
-
-
 def problem(old: str, new: str) -> str:
     """The one line that a change of the good case is refused with."""
     assert GOOD.count(old) == 1
-    (line,) = problems(GOOD.replace(old, new))
+    (line,) = problems_of(GOOD.replace(old, new))
     return line
 
 
@@ -72,160 +65,58 @@ def test_a_good_case_is_read_as_it_stands() -> None:
     assert (case.output.snapshots, case.output.pictures) == (3, True)
 
 
-def test_optional_tables_may_be_absent() -> None:
-    required = ("packing", "material", "run")
-    tables = ["[" + table for table in GOOD.split("[") if table.startswith(required)]
-    text = '[packing]\npattern = "A"\nsize = [1.0, 1.0]\nradius = 0.5\n' + tables[-1]
-    text += "[material]\ndensity = 1.0\nemod = 1e9\npb_emod = 0\n"
+MISTAKES = r"""
+# values out of limits
+radius = 0.25 | radius = -0.25 | packing.radius: is -0.25, must be greater than 0
+[motion] | damp = 1.0\n[motion] | material.damp: is 1.0, must be less than 1
+[motion] | fric = -1\n[motion] | material.fric: is -1, must be at least 0
+duration = 0.1 | duration = inf | run.duration: is inf, must be finite
+duration = 0.1 | duration = nan | run.duration: is nan, must be finite
+duration = 0.1 | duration = 0.1\nsafety = 1.5 | run.safety: is 1.5, must be at most 1
+amplitude = -0.5 | amplitude = 0.0 | wave.pulse.amplitude: is 0, must not be 0
+# values of the wrong kind
+type = "viscous"\n | type = "viscous"\nbeta_p = -1\n | boundary.right.beta_p: is -1, must be a number no less than 0 or
+density = 2500 | density = "2500" | material.density: is "2500", must be a number greater than 0 (kg/m³)
+density = 2500 | density = true | material.density: is true, must be a number greater than 0 (kg/m³)
+density = 2500 | density = {} | material.density: is a table, must be a number greater than 0 (kg/m³)
+snapshots = 3 | snapshots = 3.0 | output.snapshots: is 3.0, must be a whole number no less than 0
+snapshots = 3 | snapshots = true | output.snapshots: is true, must be a whole number no less than 0
+snapshots = 3 | pictures = "yes" | output.pictures: is "yes", must be true or false
+position = [0.0, 5.0] | position = [1] | monitor[1, P1].position: is [1], must be a list of 2 values, each a number (m)
+position = [0.0, 5.0] | position = [1, "2"] | monitor[1, P1].position: is [1, "2"], must be a list of 2 values, each a
+position = [0.0, 5.0] | position = [0, inf] | monitor[1, P1].position: is [0, Infinity], must be finite
+name = "P1" | name = 1 | monitor[1].name: is 1, must be a text
+# choices
+[motion] | law = "glue"\n[motion] | material.law: is "glue", must be one of "
+held = ["y"] | held = ["z"] | motion.held: is ["z"], must be a list of values, each one of "x", "y", "rotation"
+held = ["y"] | held = ["y", "y"] | motion.held: names a motion twice, must name each once
+duration = 0.1 | duration = 0.1\ntime_step = -1 | run.time_step: is -1, must be a number greater than 0 or "auto" (s)
+duration = 0.1 | duration = 0.1\ntime_step = "car" | run.time_step: is "car", must be a number greater than 0 or "auto"
+# keys and tables
+duration = 0.1 |  | run.duration: is missing, must be a number greater than 0 (s)
+duration = 0.1 | duration = 0.1\nq = 1 | run.q: unknown key; allowed: duration, time_step, safety
+[boundary.right] | [boundary.rigth] | boundary.rigth: unknown side; allowed: left, right, bottom, top (did you mean righ
+[output] | [outputs] | outputs: unknown table; allowed: title, ground, packing, material, motion, outside, reduce, boun
+[output]\nsnapshots = 3 | [[output]]\nsnapshots = 3 | output: is [{"snapshots": 3}], must be a table
+[[monitor]] | [monitor] | monitor: is a table, must be made of tables [[monitor]]
+[motion] | [[static]]\n[motion] | static: is [{}], must be a table
+# messages of the tables themselves
+size = [10, 5.0] | size = [10.1, 5.0] | packing.size:
+wave_p = "pulse"\n |  | boundary.left: names no wave;
+name = "P1" | name = "P/1" | monitor[1, P/1].name: is "P/1", must be made of the letters A-Z and a-z, digits, "_", "-" a
+name = "P1" | name = ".." | monitor[1, ..].name: is "..", must be made of
+"""
 
-    case = loads(text)
 
-    assert (case.title, case.boundary, case.wave, case.monitor, case.motion.held) == ("", {}, {}, (), ())
-    assert (case.static, case.load) == (None, ())
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "line"),
-    [
-        # values out of limits
-        ("radius = 0.25", "radius = -0.25", "packing.radius: is -0.25, must be greater than 0"),
-        ("density = 2500", "density = 0", "material.density: is 0, must be greater than 0"),
-        ("[motion]", "damp = 1.0\n[motion]", "material.damp: is 1.0, must be less than 1"),
-        ("[motion]", "fric = -1\n[motion]", "material.fric: is -1, must be at least 0"),
-        ("duration = 0.1", "duration = inf", "run.duration: is inf, must be finite"),
-        ("duration = 0.1", "duration = nan", "run.duration: is nan, must be finite"),
-        ("duration = 0.1", "duration = 0.1\nsafety = 1.5", "run.safety: is 1.5, must be at most 1"),
-        ("amplitude = -0.5", "amplitude = 0.0", "wave.pulse.amplitude: is 0, must not be 0"),
-        (
-            'type = "viscous"\n',
-            'type = "viscous"\nbeta_p = -1\n',
-            'boundary.right.beta_p: is -1, must be a number no less than 0 or "matched"',
-        ),
-        # values of the wrong kind
-        (
-            "density = 2500",
-            'density = "2500"',
-            'material.density: is "2500", must be a number greater than 0 (kg/m³)',
-        ),
-        (
-            "density = 2500",
-            "density = true",
-            "material.density: is true, must be a number greater than 0 (kg/m³)",
-        ),
-        (
-            "density = 2500",
-            "density = {}",
-            "material.density: is a table, must be a number greater than 0 (kg/m³)",
-        ),
-        (
-            "snapshots = 3",
-            "snapshots = 3.0",
-            "output.snapshots: is 3.0, must be a whole number no less than 0",
-        ),
-        (
-            "snapshots = 3",
-            "snapshots = true",
-            "output.snapshots: is true, must be a whole number no less than 0",
-        ),
-        ("snapshots = 3", 'pictures = "yes"', 'output.pictures: is "yes", must be true or false'),
-        (
-            "position = [0.0, 5.0]",
-            "position = [1]",
-            "monitor[1, P1].position: is [1], must be a list of 2 values, each a number (m)",
-        ),
-        (
-            "position = [0.0, 5.0]",
-            "position = [1, 2, 3]",
-            "monitor[1, P1].position: is [1, 2, 3], must be a list of 2 values, each a number (m)",
-        ),
-        (
-            "position = [0.0, 5.0]",
-            'position = [1, "2"]',
-            'monitor[1, P1].position: is [1, "2"], must be a list of 2 values, each a number (m)',
-        ),
-        (
-            "position = [0.0, 5.0]",
-            "position = [0, inf]",
-            "monitor[1, P1].position: is [0, Infinity], must be finite",
-        ),
-        ('name = "P1"', "name = 1", "monitor[1].name: is 1, must be a text"),
-        ('title = "short bar"', "title = 1", "title: is 1, must be a text"),
-        ('wave_p = "pulse"', "wave_p = 1", "boundary.left.wave_p: is 1, must be a text"),
-        # choices
-        ('pattern = "A"', 'pattern = "D"', f'packing.pattern: is "D", must be one of {PATTERNS}'),
-        ('pattern = "A"\n', "", f"packing.pattern: is missing, must be one of {PATTERNS}"),
-        ("[motion]", 'law = "glue"\n[motion]', f'material.law: is "glue", must be one of {LAW_NAMES}'),
-        (
-            "[motion]",
-            'match = "us"\n[motion]',
-            'material.match: is "us", must be one of "lattice", "assembly"',
-        ),
-        (
-            'held = ["y"]',
-            'held = ["z"]',
-            'motion.held: is ["z"], must be a list of values, each one of "x", "y", "rotation"',
-        ),
-        ('held = ["y"]', 'held = ["y", "y"]', "motion.held: names a motion twice, must name each once"),
-        (
-            "duration = 0.1",
-            "duration = 0.1\ntime_step = -1",
-            'run.time_step: is -1, must be a number greater than 0 or "auto" (s)',
-        ),
-        (
-            "duration = 0.1",
-            'duration = 0.1\ntime_step = "car"',
-            'run.time_step: is "car", must be a number greater than 0 or "auto" (s)',
-        ),
-        # keys and tables
-        ("duration = 0.1", "", "run.duration: is missing, must be a number greater than 0 (s)"),
-        ("period = 0.05", "", "wave.pulse.period: is missing, must be a number greater than 0 (s)"),
-        (
-            "duration = 0.1",
-            "duration = 0.1\ntimestep = 1",
-            "run.timestep: unknown key; allowed: duration, time_step, safety, checkpoint, until, silent_level, "
-            "silent_for (did you mean time_step?)",
-        ),
-        (
-            "duration = 0.1",
-            "duration = 0.1\nq = 1",
-            "run.q: unknown key; allowed: duration, time_step, safety",
-        ),
-        (
-            "[boundary.right]",
-            "[boundary.rigth]",
-            "boundary.rigth: unknown side; allowed: left, right, bottom, top (did you mean right?)",
-        ),
-        (
-            "[output]",
-            "[outputs]",
-            "outputs: unknown table; allowed: title, ground, packing, material, motion, outside, reduce, boundary, "
-            "static, incident, wave, hole, load, monitor, run, output, chart, sweep (did you mean output?)",
-        ),
-        (
-            "[output]\nsnapshots = 3",
-            "[[output]]\nsnapshots = 3",
-            'output: is [{"snapshots": 3}], must be a table',
-        ),
-        ("[[monitor]]", "[monitor]", "monitor: is a table, must be made of tables [[monitor]]"),
-        ("[[monitor]]", "[load]\n[[monitor]]", "load: is a table, must be made of tables [[load]]"),
-        ("[motion]", "[[static]]\n[motion]", "static: is [{}], must be a table"),
-        # messages of the tables themselves
-        (
-            "size = [10, 5.0]",
-            "size = [10.1, 5.0]",
-            "packing.size: ",
-        ),
-        ('wave_p = "pulse"\n', "", "boundary.left: names no wave; "),
-        (
-            'name = "P1"',
-            'name = "P/1"',
-            'monitor[1, P/1].name: is "P/1", must be made of the letters A-Z and a-z, digits, "_", "-" and ',
-        ),
-        ('name = "P1"', 'name = ".."', 'monitor[1, ..].name: is "..", must be made of '),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "line"), rows(MISTAKES))
 def test_each_mistake_gets_one_plain_line(old: str, new: str, line: str) -> None:
     assert problem(old, new).startswith(line)
+
+
+def test_choices_and_near_keys_are_named() -> None:
+    assert problem('pattern = "A"', 'pattern = "D"') == f'packing.pattern: is "D", must be one of {PATTERNS}'
+    assert problem('pattern = "A"\n', "") == f"packing.pattern: is missing, must be one of {PATTERNS}"
+    assert problem("duration = 0.1", "duration = 0.1\ntimestep = 1").endswith("(did you mean time_step?)")
 
 
 def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
@@ -238,7 +129,7 @@ def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
         + '[[monitor]]\nname = "P2"\n'
     )
 
-    found = [line.split(" ")[0] for line in problems(text.replace('title = "short bar"', "title = []"))]
+    found = [line.split(" ")[0] for line in problems_of(text.replace('title = "short bar"', "title = []"))]
 
     assert found == [
         "title:",
@@ -253,57 +144,48 @@ def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
 
 
 def test_a_case_of_neither_disks_nor_a_bar_is_asked_what_it_is() -> None:
-    (line,) = problems("")
+    (line,) = problems_of("")
     assert line == (
         "has neither [bar] (a bar) nor [packing] (disks); `dembound new --from rock_bar` and `dembound new` write a "
         "case to start from"
     )
     # what else it holds cannot be judged, but for tables that no case has
-    found = problems(GOOD.replace("[packing]", "[pakcing]").replace("density", "densitty"))
+    found = problems_of(GOOD.replace("[packing]", "[pakcing]").replace("density", "densitty"))
     assert [text.split(":")[0] for text in found] == ["pakcing", line]
     assert found[0].endswith("(did you mean packing?)")
+    missing = ["packing.pattern", "material.density", "run.duration"]
+    assert [text.split(":")[0] for text in problems_of("[packing]")] == missing
+    least = '[packing]\npattern = "A"\nsize = [1.0, 1.0]\nradius = 0.5\n[run]\nduration = 1.0\n'
+    case = loads(least + "[material]\ndensity = 1.0\nemod = 1e9\npb_emod = 0\n")
+    assert (case.title, case.boundary, case.wave, case.monitor, case.motion.held) == ("", {}, {}, (), ())
+    assert (case.static, case.load) == (None, ())
 
 
-def test_one_table_of_disks_names_what_is_missing() -> None:
-    assert [text.split(":")[0] for text in problems("[packing]")] == [
-        "packing.pattern",
-        "material.density",
-        "run.duration",
-    ]
-
-
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
+def test_text_that_is_not_toml_names_the_line() -> None:
+    for text, line in (
         ("a = 1\nb = = 2\n", "line 2: Invalid value, in: b = = 2"),
         ("[run]\n[run]\n", "line 2: "),
         ("a = [1", "at the end: "),
-    ],
-)
-def test_text_that_is_not_toml_names_the_line(text: str, line: str) -> None:
-    (found,) = problems(text)
-    assert found.startswith(line)
-    assert "column" not in found
+    ):
+        (found,) = problems_of(text)
+        assert found.startswith(line)
+        assert "column" not in found
 
 
-def test_load_takes_name_and_folder_from_the_file(tmp_path: Path) -> None:
+def test_a_file_gives_name_and_folder_and_unreadable_ones_are_named(tmp_path: Path) -> None:
     path = tmp_path / "long.bar.toml"
     path.write_text(GOOD, encoding="utf-8")
-
     case = load(path)
-
     assert (case.name, case.folder, case.text) == ("long.bar", tmp_path, GOOD)
     assert case == loads(GOOD)
 
-
-def test_unreadable_files_are_named(tmp_path: Path) -> None:
     binary = tmp_path / "binary.toml"
     binary.write_bytes(b"\xff\xfe")
-    for path, line in [
+    for path, line in (
         (tmp_path / "absent.toml", "no such file"),
         (tmp_path, "cannot be read"),
         (binary, "is not a text file in UTF-8"),
-    ]:
+    ):
         with pytest.raises(CaseError, match=line) as caught:
             load(path)
         assert caught.value.source == str(path)
@@ -314,5 +196,5 @@ def test_wave_files_are_looked_for_beside_the_case(tmp_path: Path) -> None:
     text = GOOD.replace('type = "cosine"\namplitude = -0.5\nperiod = 0.05', 'type = "file"\npath = "quake.txt"')
 
     assert loads(text, tmp_path).wave["pulse"].peak() == 3.0
-    (line,) = problems(text, tmp_path / "elsewhere")
+    (line,) = problems_of(text, tmp_path / "elsewhere")
     assert line == f'wave.pulse.path: no file "{tmp_path / "elsewhere" / "quake.txt"}"'

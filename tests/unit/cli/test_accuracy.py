@@ -17,26 +17,18 @@ def case(tmp_path):
     return path
 
 
-@pytest.mark.parametrize(("text", "bound"), [("1%", 0.01), ("0.01", 0.01), (" 2.5 %", 0.025), (None, None)])
-def test_bounds_are_shares_or_per_cent(text, bound) -> None:
-    assert bound_of(text, None) == (None if bound is None else pytest.approx(bound))
-
-
-@pytest.mark.parametrize("text", ["0", "1", "100%", "-1%", "nan", "small", "1%%", "%", ""])
-def test_other_bounds_are_one_line(text) -> None:
-    with pytest.raises(CaseError, match=r"^--error: is "):
-        bound_of(text, None)
-
-
-@pytest.mark.parametrize(
-    ("error", "name"),
-    [
-        *(("1%", "bar_1pct"), ("0.01", "bar_1pct"), ("0.3%", "bar_0_3pct"), ("0.003", "bar_0_3pct")),
-        *(("12.5 %", "bar_12_5pct"), ("1e-6", "bar_0_0001pct"), ("10%", "bar_10pct")),
-    ],
-)
-def test_results_within_a_bound_have_a_name_of_their_own(error, name) -> None:
-    assert name_within("bar", bound_of(error, None)) == name
+def test_bounds_are_shares_or_per_cent_and_names_have_them() -> None:
+    assert bound_of(None, None) is None
+    for text, bound, name in (
+        *(("1%", 0.01, "bar_1pct"), ("0.01", 0.01, "bar_1pct"), (" 2.5 %", 0.025, "bar_2_5pct")),
+        *(("0.003", 0.003, "bar_0_3pct"), ("12.5 %", 0.125, "bar_12_5pct"), ("1e-6", 1e-6, "bar_0_0001pct")),
+        ("10%", 0.1, "bar_10pct"),
+    ):
+        assert bound_of(text, None) == pytest.approx(bound)
+        assert name_within("bar", bound_of(text, None)) == name
+    for text in ("0", "1", "100%", "-1%", "nan", "small", "1%%", "%", ""):
+        with pytest.raises(CaseError, match=r"^--error: is "):
+            bound_of(text, None)
 
 
 def test_keep_without_error_is_refused(dembound, case) -> None:

@@ -21,22 +21,18 @@ def printed(content: object) -> str:
     return console.file.getvalue().strip()
 
 
-@pytest.mark.parametrize(
-    ("text", "shown"),
-    [
+def test_texts_cells_and_titles_appear_as_they_are() -> None:
+    for text, shown in (
         ("[/bold] [red]x[/red]", "[/bold] [red]x[/red]"),
         (":smile:", ":smile:"),
         ("a\x1b[2Jb\x00c\nd\x9b", r"a\x1b[2Jb\x00c\nd\x9b"),
         ("x\udcff\u2028", r"x\udcff\u2028"),
         ("β = 0.8, 中文", "β = 0.8, 中文"),
-    ],
-)
-def test_texts_cells_and_titles_appear_as_they_are(text: str, shown: str) -> None:
-    table = Table("head", title=text)
-    table.add_row(text)
-
-    assert printed(text) == shown
-    assert printed(table).count(shown) == 2
+    ):
+        table = Table("head", title=text)
+        table.add_row(text)
+        assert printed(text) == shown
+        assert printed(table).count(shown) == 2
 
 
 def test_what_an_encoding_lacks_is_escaped(monkeypatch) -> None:
@@ -63,19 +59,15 @@ def command(*arguments: str) -> str:
     return f"import sys; sys.argv = ['dembound', *{list(arguments)!r}]; from dembound.__main__ import main; main()"
 
 
-@pytest.mark.parametrize("flags", [(), ("-u",)])
-@pytest.mark.parametrize("arguments", [("cases",), ("--help",)])
-def test_what_nobody_reads_any_more_is_dropped(flags: tuple[str, ...], arguments: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("flags", [(), pytest.param(("-u",), marks=pytest.mark.slow)])
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device")
+def test_what_nobody_reads_any_more_is_dropped_and_a_full_disk_one_line(flags: tuple[str, ...]) -> None:
     reading, writing = os.pipe()
     os.close(reading)
-    done = ended(command(*arguments), flags=flags, stdout=writing)
+    for word in ("cases", "--help"):
+        done = ended(command(word), flags=flags, stdout=writing)
+        assert (done.returncode, done.stderr) == (0, "")
     os.close(writing)
-    assert (done.returncode, done.stderr) == (0, "")
-
-
-@pytest.mark.parametrize("flags", [(), ("-u",)])
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device")
-def test_a_full_disk_is_one_line(flags: tuple[str, ...]) -> None:
     with open("/dev/full", "w") as full:
         done = ended(command("cases"), flags=flags, stdout=full)
     assert (done.returncode, done.stderr) == (5, "output: No space left on device\n")

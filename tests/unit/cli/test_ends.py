@@ -34,7 +34,9 @@ def ended(number: str, hangups: str = "SIG_DFL") -> tuple[int, str]:
     return done.returncode, done.stderr
 
 
-@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize(
+    "number", ["SIGINT", *(pytest.param(n, marks=pytest.mark.slow) for n in ("SIGTERM", "SIGHUP"))]
+)
 def test_a_signal_during_imports_has_its_line_and_code(number) -> None:
     assert ended(number) == (128 + getattr(signal, number), "dembound: stopped\n")
 
@@ -66,15 +68,6 @@ def test_a_full_disk_says_how_to_continue(dembound, written, tmp_path, monkeypat
     assert "bar.partial" not in resumed.out + resumed.err
 
 
-def test_warnings_of_a_resumed_run_have_the_name_of_the_run(dembound, written) -> None:
-    path = written("bar", {"wave.pulse.start": 1.0})  # after the end of the run
-    first = dembound("run", path)
-    again = dembound("resume", "results/bar", "--until", "0.011")
-
-    assert "bar: warning: " in first.err
-    assert {line.partition(": ")[0] for line in again.err.splitlines()} == {"bar"}
-
-
 def test_a_run_that_another_process_writes_is_not_resumed(dembound, written, tmp_path) -> None:
     ready, done = threading.Event(), threading.Event()
 
@@ -100,40 +93,27 @@ def test_a_run_that_another_process_writes_is_not_resumed(dembound, written, tmp
     assert (answer.code, answer.err) == (2, "results/bar: there is no such folder of results\n")
 
 
-@pytest.mark.parametrize("name", ["", "CON", "nul.txt", "bar.", "bar ", "a:b", "a/b", "a\\b", "..", "a*"])
-def test_names_that_not_all_systems_can_have_are_refused(dembound, written, tmp_path, name) -> None:
-    answer = dembound("run", written(), "--name", name)
-    assert answer.code == 2
-    (line,) = answer.err.splitlines()
-    assert line.startswith(f"--name: is {name!r}, ")
-    assert not (tmp_path / "results").exists()
-
-
-def test_a_case_with_a_byte_order_mark_is_read(dembound, written) -> None:
+def test_names_that_not_all_systems_can_have_are_refused(dembound, written, tmp_path) -> None:
     path = written()
-    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
-    assert dembound("check", path).code == 0
+    for name in ("", "CON", "nul.txt", "bar.", "bar ", "a:b", "a/b", "a\\b", "..", "a*"):
+        answer = dembound("run", path, "--name", name)
+        assert answer.code == 2
+        (line,) = answer.err.splitlines()
+        assert line.startswith(f"--name: is {name!r}, ")
+    assert not (tmp_path / "results").exists()
 
 
 def test_a_wave_file_that_is_no_file_is_called_so(dembound, written, tmp_path) -> None:
     (tmp_path / "waves").mkdir()
+    case = written()
+    case.write_bytes(b"\xef\xbb\xbf" + case.read_bytes())  # with a byte order mark
+    assert dembound("check", case).code == 0
     for path, problem in (("waves", "is not a regular file"), ("/dev/zero", "is not a regular file"), ("w.txt", "")):
-        answer = dembound("check", written(), "--set", f'wave.pulse={{type="file",path="{path}"}}')
+        answer = dembound("check", case, "--set", f'wave.pulse={{type="file",path="{path}"}}')
         assert answer.code == 2
         (line,) = answer.err.splitlines()
         assert line.endswith(problem)
         assert ("no file" in line) == (problem == "")
-
-
-def test_the_ledger_of_an_earlier_version_is_called_so(dembound, written) -> None:
-    dembound("run", written())
-    with h5py.File("results/bar/run.h5", "a") as file:
-        del file["energy/supplied"]
-    answer = dembound("plot", "results/bar", "--energy")
-
-    assert answer.code == 5
-    (line,) = answer.err.splitlines()
-    assert "is of another version of dembound, its energy ledger has no supplied" in line
 
 
 def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, written, tmp_path) -> None:
@@ -159,15 +139,25 @@ def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, w
     assert (tmp_path / "other" / "bar" / "run.h5").is_file()
 
 
-def test_a_record_whose_case_is_none_and_a_broken_summary_are_one_line(dembound, written) -> None:
-    dembound("run", written())
+def test_a_record_of_an_earlier_version_or_without_a_case_and_a_broken_summary_are_one_line(dembound, written) -> None:
+    # after the end of the run
+    first = dembound("run", written("bar", {"wave.pulse.start": 1.0}))
+    again = dembound("resume", "results/bar", "--until", "0.011")
+    assert "bar: warning: " in first.err
+    assert {line.partition(": ")[0] for line in again.err.splitlines()} == {"bar"}
+
     with open("results/bar/summary.json", "w") as file:
         file.write("{")
     answer = dembound("estimate", "results/bar")
     assert (answer.code, answer.err) == (5, "results/bar/summary.json: is damaged, no JSON\n")
     with h5py.File("results/bar/run.h5", "a") as file:
+        del file["energy/supplied"]
         file.attrs["case"] = "[run\n"
-    answer = dembound("rerun", "results/bar")
-    assert answer.code == 5
-    (line,) = answer.err.splitlines()
-    assert line.startswith("results/bar/run.h5: the case in it is damaged: ")
+    for words, said in (
+        (("rerun", "results/bar"), "results/bar/run.h5: the case in it is damaged: "),
+        (("plot", "results/bar", "--energy"), "is of another version of dembound, its energy ledger has no supplied"),
+    ):
+        answer = dembound(*words)
+        assert answer.code == 5
+        (line,) = answer.err.splitlines()
+        assert said in line

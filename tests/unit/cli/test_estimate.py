@@ -34,35 +34,28 @@ def test_a_run_is_estimated_and_drawn(dembound, tmp_path):
     assert not (folder / "estimate.h5").exists()  # it was that of another run
 
 
-def test_a_case_asks_for_its_estimate(dembound, tmp_path):
-    written(tmp_path, **{"output.estimate": True, "output.pictures": False})
-    answer = dembound("run", "bar.toml")
-    assert "bar: error at front: " in answer.out
-
-
 def test_what_cannot_be_estimated_is_one_line(dembound, tmp_path):
     written(tmp_path, **{"output.pictures": False, "monitor": []})
-    needs = "has no monitor whose error could be estimated; give a [[monitor]]"
-    answer = dembound("run", "bar.toml", "--estimate")
-    assert (answer.code, answer.err.strip()) == (2, f"--estimate: bar {needs}")
-    answer = dembound("run", "bar.toml", "--set", "output.estimate=true")
-    assert (answer.code, answer.err.strip()) == (
-        2,
-        f"bar: output.estimate: is true, but the case {needs}",
-    )
     assert dembound("run", "bar.toml").code == 0
-    answer = dembound("estimate", "results/bar")
-    assert answer.code == 2
-    assert answer.err.strip().endswith("run.h5: has no monitor whose error could be estimated")
-    answer = dembound("estimate", "results/bar", "--budget", "0")
-    assert (answer.code, answer.err.strip()) == (2, "--budget: is 0, must be above 0")
-    answer = dembound("run", "bar.toml", "--budget", "0.5")
-    assert (answer.code, answer.err.strip()) == (2, "--budget: is for estimates; give --estimate, too")
-    answer = dembound("estimate", "nowhere", "results/bar")
-    first, second = answer.err.strip().splitlines()
-    assert answer.code == 2
-    assert first == "nowhere: contains no results, must be a folder with run.h5 or calibration.h5"
-    assert second.endswith("run.h5: has no monitor whose error could be estimated")
+    without, needs = "has no monitor whose error could be estimated", "; give a [[monitor]]"
+    for words, said in (
+        (("run", "bar.toml", "--estimate"), [f"--estimate: bar {without}{needs}"]),
+        (
+            ("run", "bar.toml", "--set", "output.estimate=true"),
+            [f"bar: output.estimate: is true, but the case {without}{needs}"],
+        ),
+        (("run", "bar.toml", "--budget", "0.5"), ["--budget: is for estimates; give --estimate, too"]),
+        (("estimate", "results/bar", "--budget", "0"), ["--budget: is 0, must be above 0"]),
+        (
+            ("estimate", "nowhere", "results/bar"),
+            [
+                "nowhere: contains no results, must be a folder with run.h5 or calibration.h5",
+                f"results/bar/run.h5: {without}",
+            ],
+        ),
+    ):
+        answer = dembound(*words)
+        assert (answer.code, answer.err.splitlines()) == (2, said)
 
 
 def test_a_run_with_cracks_is_repeated_on_request(dembound, tmp_path):

@@ -72,11 +72,12 @@ def check_ends(beside: DiskSystem) -> None:
     assert np.array_equal(outward, expected)
 
 
-def test_the_seams_ends_are_those_of_the_columns_pairs(beside: DiskSystem) -> None:
-    check_ends(beside)
-
-
 def test_a_search_moves_the_ends_and_keeps_them_right(beside: DiskSystem) -> None:
+    assert [contacts.periods for contacts in beside.contacts.values()] == [
+        (beside.scene.seam.width, None),
+        (None, None),
+    ]
+    check_ends(beside)
     before = seam_ends(beside)
     moved = shaken(beside.scene, 0.3)
     for contacts in beside.contacts.values():
@@ -125,62 +126,6 @@ def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple
         tuple(int(number) for number in min((i, j, image), (j, i, -image)))
         for i, j, image in zip(pairs.first.astype(int), pairs.second.astype(int), images, strict=True)
     ]
-
-
-@pytest.mark.parametrize("size", [0.0, 0.2])
-def test_the_column_meets_itself_sideways_the_body_does_not_and_they_never_meet(scene, size: float) -> None:
-    ground = scene()
-    lists, seam = contact_lists(ground), ground.seam
-
-    def all_pairs() -> list[tuple[int, ...]]:
-        return [key for contacts in lists.values() for key in listed(contacts, ground, seam.width)]
-
-    bonded = {key for key, state in zip(all_pairs(), both(lists, "state"), strict=True) if state}
-    moved = shaken(ground, size)
-    for contacts in lists.values():
-        contacts.search(moved)
-    found, skin = all_pairs(), lists["column"].skin
-    column = plain_near(ground, skin, slice(0, seam.count), seam.width, moved)
-    body = plain_near(ground, skin, slice(seam.count, ground.count), 0.0, moved)
-
-    assert list(lists) == ["column", "body"]
-    assert lists["body"].skin == skin
-    assert len(set(found)) == len(found)
-    assert set(found) == column | body | bonded
-    assert any(key[2] for key in found)
-    for name, contacts in lists.items():
-        for i, j, image in listed(contacts, ground, seam.width):
-            assert (i < seam.count) == (j < seam.count) == (name == "column")
-            assert not image or i < seam.count
-
-
-def test_what_comes_across_the_seam_is_what_the_twins_feel_there(scene) -> None:
-    beside = DiskSystem(scene(), STEP)
-    moved, lists = shaken(beside.scene, 1e-3), beside.contacts
-    for contacts in lists.values():
-        contacts.push(moved)
-    total, seam = beside.forces.last(lists), beside.scene.seam
-    expected = np.zeros_like(total)
-    columns = (both(lists, name) for name in ("first", "second", "force"))
-    for i, j, (fx, fy, moment_i, moment_j) in zip(*columns, strict=True):
-        expected[:, i] += [fx, fy, moment_i]
-        expected[:, j] += [-fx, -fy, moment_j]
-    owner, force = np.repeat(seam.node, seam.contact_counts), lists["column"].force
-    for node, end in zip(owner, seam_ends(beside), strict=True):
-        fx, fy, *moments = force[end >> 1]
-        sign = -1.0 if end & 1 else 1.0
-        expected[:, node] += [sign * fx, sign * fy, moments[end & 1]]
-
-    # sums of some five forces, in another order
-    atol = 10.0 * np.finfo(float).eps * np.abs(both(lists, "force")).max()
-    np.testing.assert_allclose(total, expected, rtol=0.0, atol=atol)
-
-
-def test_without_a_column_there_are_no_ends(scene) -> None:
-    alone = DiskSystem(scene(boundary={}), STEP)
-
-    assert alone.ties == ()
-    assert list(alone.contacts) == ["body"]
 
 
 def twins_keys(lists: dict[str, ContactList], ground: DiskScene) -> list[tuple[int, ...]]:
@@ -262,25 +207,6 @@ def test_what_broke_in_the_column_is_noted_as_broken_before_the_first_step(scene
     np.testing.assert_allclose(cracks.position[inside], places[inside], rtol=0.0, atol=1e-14 * 8.0)
 
 
-def test_what_the_column_does_not_list_keeps_its_own_state(scene) -> None:
-    ground = scene("B")
-    bare = column_alone(ground)
-    column, lists = contact_lists(bare)["body"], contact_lists(ground)
-    column.arrays.state[:] = SHEAR
-    column.arrays.shear[:] = 1.0
-    # a pair of the column alone is struck off its list, so that neither it nor any twin of it is known there
-    struck = listed(column, bare, ground.seam.width)[7]
-    kept = [key != struck for key in listed(column, bare, ground.seam.width)]
-    column.live, column.image = column.live[kept], column.image[kept]
-    copy_column(lists, column, ground, np.zeros((3, ground.count)))
-
-    same = np.array([key == struck for key in twins_keys(lists, ground)])
-    assert same.any()
-    assert not (both(lists, "state")[same] == SHEAR).any()
-    assert not both(lists, "shear")[same].any()
-    assert (both(lists, "shear")[~same] == 1.0).all()
-
-
 LATTICE = {"pattern": "A", "size": [2.0, 1.0], "radius": 0.25}
 HALF = {"right": {"type": "viscous", "half_mass": True}}
 
@@ -298,17 +224,6 @@ def sheared(contacts: ContactList, upper: tuple[float, ...], lower: tuple[float,
     """The upper row moved by (m, m, rad), and the lower one."""
     high = contacts.assembly.positions[:, 1] > 0.5
     return np.where(high, np.array(upper)[:, None], np.array(lower)[:, None])
-
-
-def test_half_contacts_push_half_as_hard(bar) -> None:
-    contacts, upright, right = half_cells(bar)
-    contacts.push(sheared(contacts, (2e-5, 1e-5, 3e-5)))
-    force = contacts.force
-
-    assert (np.count_nonzero(upright), np.count_nonzero(right)) == (4, 1)
-    assert np.abs(force[upright]).min() > 0.0
-    # halves of the stiffness are exact, and so are all products with them
-    assert np.array_equal(force[right][0], 0.5 * force[upright & ~right][0])
 
 
 @pytest.mark.parametrize(

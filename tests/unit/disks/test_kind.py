@@ -30,17 +30,6 @@ def begun(case):
     return scene, Disks().begin(scene, STEP, lambda *look: looks.append(look)), looks
 
 
-def test_without_a_static_stage_a_run_begins_as_built(bar) -> None:
-    scene, beginning, looks = begun(bar())
-
-    assert beginning.datum is None
-    assert beginning.stages == ()
-    assert beginning.summary is None
-    assert not beginning.system.parts[0].nodes.start
-    assert beginning.system.parts[0].nodes.stop == scene.count
-    assert looks == []
-
-
 def test_a_run_begins_where_its_static_stage_has_come_to_rest(bar) -> None:
     _, beginning, looks = begun(bar(HANGING))
     settled = settle(Disks().build(bar(HANGING)))
@@ -86,40 +75,10 @@ def test_the_stage_before_an_excavation_is_told_of_the_disks_that_are_left(bar) 
     [
         ({"run.time_step": 5e-3}, "run.time_step"),
         ({"material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0}}, "material"),
-        (
-            {"load": [{"name": "push", "force": [1.0, 0.0], "region": [3.01, 0.3, 3.02, 0.31]}]},
-            "no particle is centred",
-        ),
+        ({"load": [{"name": "a", "force": [1.0, 0.0], "region": [3.01, 0.3, 3.02, 0.31]}]}, "no particle is centred"),
     ],
 )
 def test_what_would_stop_a_run_is_found_before_it(bar, changes: dict, said: str) -> None:
     with pytest.raises(CaseError, match=said):
         preflight(bar(changes))
     preflight(bar())
-
-
-LATER = "the additional time of linearpbond once it begins"
-
-
-@pytest.mark.parametrize(
-    ("changes", "without"),
-    [
-        ({}, []),
-        (HANGING, ["the static stage"]),
-        ({"material.law": "linearpbond"}, [LATER]),
-        ({"material.law": "linearpbond", "material.elastic_start": False}, []),
-        ({**HANGING, "material.law": "linearpbond"}, ["the static stage", LATER]),
-    ],
-)
-def test_what_a_short_trial_does_not_show(bar, changes: dict, without: list[str]) -> None:
-    assert Disks().not_estimated(bar(changes)) == without
-
-
-def test_a_run_is_shown_as_its_scene(small_run) -> None:
-    ((name, figure),) = Disks().pictures(small_run)
-
-    assert name == "scene"
-    assert len(figure.axes) > 0
-    assert len(Disks().field_picture(small_run, "displacement", 0).axes) > 0
-    with pytest.raises(CaseError):
-        Disks().field_picture(small_run, "stress", None)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from dembound.disks.monitors import monitors_of
-from dembound.disks.reports.facts import disk_facts
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes
@@ -83,73 +82,14 @@ def test_the_motion_in_a_lattice_is_interpolated() -> None:
         np.testing.assert_allclose(found[name], expected, rtol=1e-9)
 
 
-@pytest.mark.parametrize("gradient", [[[1.0, 0.0], [0.0, 0.0]], [[0.2, -0.7], [0.4, 0.3]]])
-def test_disks_of_a_random_packing_move_as_in_the_packing_itself(gradient: list) -> None:
-    """Under a uniform gradient forces on each disk of the endless packing are balanced: computed from its contacts."""
-    brick_places = {f"d{k}": (-2.0 - 0.9 * k, 1.5 + 0.2 * k) for k in range(2)}
-    scene = scene_of(brick_places, GRAINS)
-    brick, law, chi = scene.ground.brick, scene.ground.stiffness, scene.ground.continuum.corrector
-    motion = np.pad(scene.positions @ np.transpose(gradient), ((0, 0), (0, 1)))
-    found = moved(scene, motion)
-
-    for name, place in scene.monitored.items():
-        kind = int(np.argmin(np.hypot(*((brick.positions - place + 2.0) % 4.0 - 2.0).T)))
-        np.testing.assert_allclose((brick.positions[kind] - place + 1e-9) % 4.0, 0.0, atol=1e-8)
-        assert np.hypot(*(place - brick_places[name])) < 2.0 * brick.radii.max()
-        total = np.zeros(3)  # force and moment on this disk, whose neighbours have their mean motion and correctors
-        flat = np.ravel(gradient)[[0, 3, 1, 2]]
-        for contact, (i, j) in enumerate(brick.pairs):
-            for own, other, sign, arms in ((i, j, 1.0, (law.arm_i, law.arm_j)), (j, i, -1.0, (law.arm_j, law.arm_i))):
-                if own != kind:
-                    continue
-                vector = sign * brick.vectors[contact]
-                n = vector / np.hypot(*vector)
-                t = np.array([-n[1], n[0]])
-                far = chi[:, other] @ flat
-                apart = np.array(gradient) @ (place + vector) + far[:2] - found[name][:2]
-                normal = law.normal[contact] * (apart @ n)
-                slip = apart @ t - arms[0][contact] * found[name][2] - arms[1][contact] * far[2]
-                shear = law.shear[contact] * slip
-                total += [*(normal * n + shear * t), arms[0][contact] * shear]
-                total[2] += law.bending[contact] * (far[2] - found[name][2])
-        assert np.abs(total).max() < 1e-6 * law.normal.max() * np.abs(gradient).max()
-
-
-def test_beside_a_column_the_motion_of_the_twin_is_added() -> None:
-    places = {"left": (-2.3, 2.2), "right": (11.1, 1.1), "in": (4.0, 2.0)}
-    scene = scene_of(places, GRAINS)
-    joint, seam = with_column(scene.ground.brick, scene.assembly, ("left", "right"))
-    outside = replace(scene.outside, first=len(joint.radii))
-    monitors, between = monitors_of(scene.case, scene.ground, joint, seam, outside)
-
-    assert list(monitors) == [*places, *(f"{name}.free_field" for name in places)]
-    assert list(between) == ["left", "right"]
-    for name, place in between.items():
-        twin = monitors[f"{name}.free_field"]
-        assert twin < seam.count
-        apart = joint.positions[twin] - joint.positions[0] - (place.place - joint.positions[seam.count])
-        np.testing.assert_allclose(apart[1], 0.0, atol=1e-9)  # at the same height, at the same place of the brick
-        np.testing.assert_allclose((apart[0] + 1e-9) % 4.0, 0.0, atol=1e-8)
-        assert place.node[-1] == twin
-        record = np.random.default_rng(1).normal(size=(5, len(place.node), 6))
-        alone = scene.between[name]
-        assert np.array_equal(place.node[:-1] - outside.first, alone.node - scene.outside.first)
-        np.testing.assert_allclose(place.motion(record), alone.motion(record[:, :-1]) + record[:, -1], rtol=1e-12)
-
-
 def test_places_in_the_layer_are_refused_with_the_nearest_one_outside() -> None:
     with pytest.raises(CaseError) as error:
         scene_of({"a": (-5.0, 1.0), "b": (-3.0, 1.0), "c": (12.5, -7.0), "d": (99.0, 4.0)})
-    assert error.value.problems == [
-        "monitor[1, a].position: lies in the layer that absorbs; the nearest place allowed is (-4, 1) m",
-        "monitor[3, c].position: lies in the layer that absorbs; the nearest place allowed is (12, -4) m",
-        "monitor[4, d].position: lies in the layer that absorbs; the nearest place allowed is (12, 4) m",
-    ]
+    words = "position: lies in the layer that absorbs; the nearest place allowed is"
+    places = {"1, a": "(-4, 1) m", "3, c": "(12, -4) m", "4, d": "(12, 4) m"}
+    assert error.value.problems == [f"monitor[{name}].{words} {place}" for name, place in places.items()]
     assert list(scene_of({"a": (-4.0, 1.0), "c": (12.0, -4.0)}).between) == ["a", "c"]
-
-
-def test_the_nearest_place_has_few_digits_and_is_allowed() -> None:
-    """Layers begin 8/3 m beside the body and 2 m below it: places are rounded towards it."""
+    # where layers begin 8/3 m beside the body and 2 m below it: places are rounded towards it
     element = {"outside": {"element": 3.0}}
     with pytest.raises(CaseError) as error:
         scene_of({"a": (-3.0, -2.5), "b": (11.0, 1.234567)}, element)
@@ -171,29 +111,6 @@ def test_below_the_ground_that_waves_enter_there_is_no_monitor(sides: str) -> No
         "allowed is (3, 0) m"
     ]
     assert not scene_of({"b": (3.0, 0.0)}, waves).between
-
-
-def test_a_monitor_in_the_ground_round_a_box_has_the_twin_at_its_height() -> None:
-    waves = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "top")}
-    waves["boundary.bottom"] = {"type": "outside", "wave_s": "pulse"}
-    box = {"ground.size": [40.0, 24.0], "packing.origin": [16.0, 12.0], "outside": {"element": 2.5}}
-    scene = scene_of({"above": (17.1, 23.9), "in": (17.1, 13.1), "low": (15.1, 10.2)}, waves | box)
-
-    assert list(scene.between) == ["above", "low"]
-    for name in ("above", "in", "low"):
-        twin = scene.monitors[f"{name}.free_field"]
-        assert twin < scene.seam.count
-        np.testing.assert_allclose(scene.positions[twin, 1], scene.monitored[name][1], atol=1e-9)
-    np.testing.assert_allclose(scene.monitored["above"], [17.25, 23.75], atol=1e-9)
-    # disks of the box are at the same places of the lattice as those of the continuum
-    np.testing.assert_allclose(scene.monitored["in"], [17.25, 13.25], atol=1e-9)
-
-
-def test_check_tells_disks_from_the_continuum() -> None:
-    facts = dict(disk_facts(scene_of({"in": (0.3, 3.9), "left": (-0.3, 3.9)})))
-
-    assert facts["monitor in"].startswith("particle ")
-    assert facts["monitor left"] == "in the continuum at (-0.250, 3.750) m"
 
 
 def between_contacts(scene: DiskScene, box: list[float], beyond: float) -> dict[str, tuple[float, float]]:
@@ -231,3 +148,25 @@ def test_the_same_disk_is_taken_in_every_box(pattern: str) -> None:
         for name in places:
             np.testing.assert_allclose(scene.monitored[name], expected[name], atol=1e-9, err_msg=name)
     assert kinds == {True, False}
+
+
+def test_beside_a_column_the_motion_of_the_twin_is_added() -> None:
+    places = {"left": (-2.3, 2.2), "right": (11.1, 1.1), "in": (4.0, 2.0)}
+    scene = scene_of(places, GRAINS)
+    joint, seam = with_column(scene.ground.brick, scene.assembly, ("left", "right"))
+    outside = replace(scene.outside, first=len(joint.radii))
+    monitors, between = monitors_of(scene.case, scene.ground, joint, seam, outside)
+
+    assert list(monitors) == [*places, *(f"{name}.free_field" for name in places)]
+    assert list(between) == ["left", "right"]
+    for name, place in between.items():
+        twin = monitors[f"{name}.free_field"]
+        assert twin < seam.count
+        apart = joint.positions[twin] - joint.positions[0] - (place.place - joint.positions[seam.count])
+        np.testing.assert_allclose(apart[1], 0.0, atol=1e-9)  # at the same height, at the same place of the brick
+        np.testing.assert_allclose((apart[0] + 1e-9) % 4.0, 0.0, atol=1e-8)
+        assert place.node[-1] == twin
+        record = np.random.default_rng(1).normal(size=(5, len(place.node), 6))
+        alone = scene.between[name]
+        assert np.array_equal(place.node[:-1] - outside.first, alone.node - scene.outside.first)
+        np.testing.assert_allclose(place.motion(record), alone.motion(record[:, :-1]) + record[:, -1], rtol=1e-12)

@@ -4,7 +4,7 @@ import pytest
 from small_cases import SURROUNDED, small
 
 from dembound.disks.contacts import layout
-from dembound.disks.ram import SceneSizes, expected_bytes, pairs_bytes, run_bytes, scene_bytes
+from dembound.disks.ram import SceneSizes, expected_bytes, pairs_bytes, scene_bytes
 from dembound.disks.scene import build
 from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.errors import CaseError
@@ -121,29 +121,6 @@ def test_the_continuum_is_known_before_the_scene_is_built(bar) -> None:
     assert sizes.moving == pytest.approx(scene.layout.count, rel=0.01)
     assert sizes.ties == 80
     assert expected_bytes(case) == pytest.approx(scene.largest_memory, rel=0.02)
-
-
-def test_an_automatic_size_is_that_of_a_medium_of_the_nominal_speed(bar) -> None:
-    """S waves have half of the speed of P waves here, or more: the elements are no fewer."""
-    case = bar(OUTSIDE | {"outside.accuracy": 1e-2, "material.contact_share": 0.0})
-    expected, sizes = SceneSizes.expected(case), build(case).sizes
-
-    assert sizes.grid.nodes <= expected.grid.nodes < 3.0 * sizes.grid.nodes
-
-
-def test_a_continuum_too_large_is_refused_before_it_is_built(bar, monkeypatch) -> None:
-    monkeypatch.setattr(ram, "memory_here", lambda: Memory(8e9, 6e9))
-    with pytest.raises(CaseError, match=r"^outside: 800 disks and 2.69e\+09 nodes of the continuum beyond them need "):
-        build(bar(OUTSIDE | {"outside": {"element": 1e-3, "margin": 1000, "layers": 1000}}))
-
-
-def test_both_scenes_of_an_excavation_count(bar) -> None:
-    case = bar({**FREE, "packing": RANDOM})
-    one = SceneSizes(1e7, 1e7, 2.2e7, 0.0, in_rows=True)
-
-    added = run_bytes(case, [one], before=one) - run_bytes(case, [one])
-    assert added == pytest.approx(scene_bytes(case, one), rel=1e-12)
-    assert run_bytes(case, [one, one]) - run_bytes(case, [one]) == pytest.approx(scene_bytes(case, one), rel=1e-12)
 
 
 def test_a_monitor_in_a_continuum_records_the_nodes_of_an_element() -> None:

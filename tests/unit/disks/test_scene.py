@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.spatial.distance import cdist
 
 from dembound.casefile import Case
-from dembound.disks.contacts.rows import contact_rows
 from dembound.disks.scene import DiskScene, boundary_medium, build, with_boundaries
 from dembound.errors import CaseError, PackingError
 
@@ -13,12 +11,6 @@ RANDOM = {
     "packing": {"pattern": "B", "size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
     "motion.held": [],
 }
-PERIODIC = {"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}
-
-
-@pytest.fixture
-def random_scene(bar) -> DiskScene:
-    return build(bar(RANDOM))
 
 
 LATTICE = {"motion.held": []}
@@ -28,20 +20,6 @@ KINDS = {"lattice": LATTICE, "half cells": {**LATTICE, "boundary.right.half_mass
 @pytest.fixture(params=KINDS)
 def case(bar, request) -> Case:
     return bar(KINDS[request.param])
-
-
-def test_every_contact_stands_in_two_rows(case: Case) -> None:
-    scene = build(case)
-    rows = contact_rows(scene.assembly, scene.ground)
-    owner = np.repeat(np.arange(scene.count), np.diff(rows.start))
-    i, j = scene.assembly.pairs.T
-    expected = sorted([*zip(i, j, strict=True), *zip(j, i, strict=True)])
-
-    assert (rows.begin, len(rows.start)) == (0, scene.count + 1)
-    assert list(zip(owner, rows.neighbour, strict=True)) == expected
-    # seen from either end, whole and half
-    assert rows.constants.shape == (4 * len(scene.ground.brick.pairs), 6)
-    assert all(array.dtype == np.uint32 for array in (rows.start, rows.neighbour, rows.contact_type))
 
 
 def forces(scene: DiskScene, u: np.ndarray) -> np.ndarray:
@@ -72,36 +50,6 @@ def test_rows_and_constants_make_the_forces_of_the_assemblys_contacts(case: Case
     np.testing.assert_allclose(forces(scene, u), expected, atol=1e-13 * law.normal.max())
 
 
-def test_a_rigid_turn_of_a_random_body_needs_no_force(random_scene: DiskScene) -> None:
-    x, y = random_scene.assembly.positions.T
-    found = forces(random_scene, np.stack([-y, x, np.ones_like(x)]))
-
-    # terms of size k·12 m cancel
-    np.testing.assert_allclose(found, 0.0, atol=1e-13 * 12.0 * random_scene.ground.stiffness.normal.max())
-
-
-def test_masses_are_those_of_the_bricks_particles(random_scene: DiskScene) -> None:
-    # 2 × 2 bricks; a sum of some 500 terms
-    assert random_scene.mass.sum() == pytest.approx(2500.0 * 12.0 * 10.0, rel=1e-13)
-    np.testing.assert_allclose(
-        random_scene.inertia, random_scene.mass * random_scene.assembly.radii**2 / 2.0, rtol=1e-14
-    )
-
-
-def test_a_monitor_is_the_nearest_particle(bar) -> None:
-    places = {"low": [0.1, 0.1], "middle": [6.2, 4.9], "high": [12.0, 10.0]}
-    scene = build(bar({**RANDOM, "monitor": [{"name": n, "position": p} for n, p in places.items()]}))
-    distances = cdist(list(places.values()), scene.assembly.positions)
-
-    assert list(scene.monitors) == list(places)
-    for distance, node in zip(distances, scene.monitors.values(), strict=True):
-        assert distance[node] == distance.min()
-
-
-def test_a_scene_without_monitors_has_none(bar) -> None:
-    assert build(bar({"monitor": []})).monitors == {}
-
-
 def test_edges_are_the_outer_rows_with_their_lengths(bar) -> None:
     edges = build(bar()).edges
 
@@ -109,16 +57,6 @@ def test_edges_are_the_outer_rows_with_their_lengths(bar) -> None:
     assert [len(edge.nodes) for edge in edges.values()] == [2, 2, 20, 20]
     assert [edge.length for edge in edges.values()] == [1.0, 1.0, 10.0, 10.0]
     assert all(edge.diameter_sum_ratio == 1.0 for edge in edges.values())
-
-
-def test_periodic_sides_have_bonds_across_and_no_edge(bar) -> None:
-    open_scene, scene = build(bar()), build(bar(PERIODIC))
-
-    assert list(scene.edges) == ["left", "right"]
-    # one vertical contact more in each of the 20 columns
-    assert len(scene.assembly.pairs) == len(open_scene.assembly.pairs) + 20
-    # all are alike sideways: every disk has two vertical contacts, the ends lack one horizontal one
-    assert np.bincount(scene.assembly.pairs.ravel()).tolist() == [3, 3] + 36 * [4] + [3, 3]
 
 
 def test_supports_come_from_all_sides_but_not_for_held_motions(bar) -> None:
@@ -129,26 +67,6 @@ def test_supports_come_from_all_sides_but_not_for_held_motions(bar) -> None:
     assert supports.prescribed.sum() == 20
     # the upper disk of each end has the dashpot ρc_pD, the lower is fixed
     assert sorted(supports.damping[supports.damping > 0.0]) == [2500.0 * 1000.0 * 0.5] * 2
-
-
-def test_held_components_are_marked(bar) -> None:
-    assert build(bar({"motion.held": ["y", "rotation"]})).free.tolist() == [1.0, 0.0, 0.0]
-
-
-def test_other_boundaries_on_the_same_body(bar) -> None:
-    scene = build(bar())
-    other = with_boundaries(scene, bar({"boundary.right.beta_p": 0.5}))
-
-    assert other.assembly is scene.assembly
-    assert other.rows is scene.rows
-    changed = other.supports.damping / scene.supports.damping
-    assert sorted(changed) == [0.5, 0.5, 1.0, 1.0]
-
-
-def test_edges_know_where_their_particles_are(bar) -> None:
-    scene = build(bar())
-    for edge in scene.edges.values():
-        assert (edge.positions == scene.assembly.positions[edge.nodes]).all()
 
 
 def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
@@ -232,16 +150,6 @@ def test_an_excavated_scene_knows_what_was_before(bar, boundary: dict) -> None:
         assert found.monitors == expected.monitors
     assert np.array_equal(scene.before.assembly.positions[scene.kept], scene.assembly.positions)
     assert scene.before.before is None
-
-
-def test_a_side_that_a_hole_cuts_stands_for_what_is_left_of_it(bar) -> None:
-    tables = {"packing.size": [4.0, 4.0], "monitor": [], "motion.held": []}
-    pit = {"name": "pit", "type": "rectangle", "corners": [1.0, 3.0, 3.0, 4.5]}
-    edge = build(bar({**tables, "hole": [pit]})).edges["top"]
-
-    # four of its eight disks, and nothing of the pit's floor
-    assert edge.positions.tolist() == [[x, 3.75] for x in (0.25, 0.75, 3.25, 3.75)]
-    assert (edge.length, edge.diameter_sum_ratio) == (2.0, 1.0)
 
 
 def test_holes_that_leave_nothing_are_refused(bar) -> None:

@@ -9,12 +9,8 @@ from small_cases import GROUND, Tables, small
 from dembound.casefile import Case
 from dembound.disks.beyond.mesh import ElementSizes, box_of
 from dembound.disks.beyond.settings import least_element
-from dembound.disks.reports.facts import disk_facts
-from dembound.disks.rest.settled import among, settling_keys
-from dembound.disks.rest.static_scene import without_own_continua
-from dembound.disks.scene import DiskScene, build, column_alone, ground_of
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.continuum_ties import TwinTie, disks_on_foot
+from dembound.disks.rest.settled import settling_keys
+from dembound.disks.scene import DiskScene, build, ground_of
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
@@ -33,7 +29,6 @@ BOX: Tables = GROUND | {
     "outside": {"element": 6.0},
 }
 WAVE = {"boundary.bottom.wave_s": "w"}
-AT_THE_FOOT = {"packing.origin": [14.0, 0.0]}
 WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -10.0]}], "static.boundary.bottom": {"type": "fixed"}}
 
 
@@ -80,39 +75,10 @@ def test_the_continuum_reaches_from_the_box_to_the_surface(shaken: DiskScene) ->
     assert (shaken.foot.box[1], shaken.foot.sides) == (0.0, ("bottom",))
 
 
-def test_forces_of_the_foot_are_repeated_where_the_box_stands_on_it(shaken: DiskScene) -> None:
-    assert len(disks_on_foot(shaken)) == 0
-    low = scene(WAVE, AT_THE_FOOT)
-    assert len(disks_on_foot(low)) > 5
-    twins = low.seam.twin[disks_on_foot(low)]
-    assert np.isin(twins, low.foot.wall.bonds.particle).all()
-    disks = disks_on_foot(low)
-    tie = TwinTie(disks, low.twin)
-    assert tie.nodes is disks
-    supported = np.union1d(disks, low.foot.tied)
-    bundle = tie.bundle(supported)
-    assert np.array_equal(supported[bundle.target], disks)
-    assert np.array_equal(supported[bundle.source], twins)
-
-
-def test_at_rest_its_ties_have_no_forces_where_all_moves_as_the_column(shaken: DiskScene) -> None:
-    """Of the disks; the column moves relative to its foot."""
-    rng = np.random.default_rng(0)
-    moved = np.zeros((3, shaken.count))
-    moved[:, : shaken.seam.count] = rng.normal(size=(3, shaken.seam.count))
-    moved[:, : shaken.disk_count] = moved[:, shaken.seam.twin]
-    force = DiskSystem(shaken, 1e-5).forces.of_ties(moved)
-    assert np.abs(force[:, : shaken.seam.count]).max() > 0.0
-    assert not force[:, shaken.seam.count : shaken.disk_count].any()
-    assert not force[:, shaken.outside.nodes].any()
-
-
-@pytest.mark.parametrize("stage", ["before", "after"])
-def test_a_hole_that_reaches_a_side_is_refused(stage: str) -> None:
-    hole = {"name": "shaft", "type": "circle", "centre": [20.0, 17.0], "radius": 2.0, "stage": stage}
-    more = WEIGHT if stage == "after" else {}
+def test_a_hole_that_reaches_a_side_is_refused() -> None:
+    hole = {"name": "shaft", "type": "circle", "centre": [20.0, 17.0], "radius": 2.0, "stage": "after"}
     with pytest.raises(CaseError, match=r"^hole\[1, shaft\]: reaches boundary.top, where the continuum has no hole"):
-        scene({"hole": [hole]}, more)
+        scene({"hole": [hole]}, WEIGHT)
 
 
 def test_between_box_and_surface_there_is_room_for_an_element() -> None:
@@ -146,29 +112,6 @@ def test_sizes_of_elements_round_a_narrow_column() -> None:
     assert not any(sizes(1.0, False).narrow)
 
 
-def test_a_column_alone_has_free_ends_and_no_column_of_its_own() -> None:
-    for changes in (WEIGHT, WEIGHT | WAVE, WEIGHT | WAVE | AT_THE_FOOT):
-        beside = scene(changes)
-        alone = column_alone(beside)
-        assert (alone.seam, alone.continua) == (None, ())
-        count = beside.seam.count
-        assert alone.count == count
-        np.testing.assert_array_equal(alone.assembly.brick_particle, beside.assembly.brick_particle[:count])
-
-
-def test_in_a_static_stage_supports_hold_what_the_foot_does() -> None:
-    whole = scene(WEIGHT)
-    settling = without_own_continua(whole)
-    assert settling.continua == (whole.outside,)
-    moved = np.arange(3.0 * settling.count).reshape(3, -1)
-    of_all = among(moved, whole)
-    assert of_all.shape == (3, whole.count)
-    assert np.array_equal(of_all[:, : whole.disk_count], moved[:, : whole.disk_count])
-    assert not of_all[:, whole.disk_count :].any()
-    tied_by_itself = scene({})
-    assert without_own_continua(tied_by_itself).continua == ()
-
-
 def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
     """That beside a column does; that beside a periodic body is left out of the stage."""
 
@@ -182,24 +125,13 @@ def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
     assert keys(endless) == keys(endless, {"outside.layers": 5})
 
 
-def test_contacts_of_a_static_stage_are_those_of_the_run() -> None:
-    """The run has nodes of the foot, which the static stage has not."""
-    whole = scene(WEIGHT, {"material.law": "linearpbond", "material.pb_ten": 1e9, "material.pb_coh": 1e9})
-    contacts = contact_lists(without_own_continua(whole))
-    displacement = np.zeros((3, whole.count))
-    displacement[0, whole.seam.count] = 1e-4
-    force = np.zeros((3, whole.count))
-    contacts["body"].start_from_displacements(displacement)
-    contacts["body"].push(displacement)
-    contacts["body"].add_forces(force)
-    assert np.abs(force[:, whole.seam.count]).max() > 0.0
-    assert not force[:, whole.disk_count :].any()
-
-
-def test_facts_are_of_the_box_s_own_sides(shaken: DiskScene) -> None:
-    facts = dict(disk_facts(shaken))
-    for side in ("bottom", "top"):
-        words = facts[f"{side} side"].split()
-        assert words[0] == "outside;"
-        assert int(words[1]) == len(shaken.outside.tied_by_side[side])
-        assert int(words[1]) > 8
+def test_at_rest_its_ties_have_no_forces_where_all_moves_as_the_column(shaken: DiskScene) -> None:
+    """Of the disks; the column moves relative to its foot."""
+    rng = np.random.default_rng(0)
+    moved = np.zeros((3, shaken.count))
+    moved[:, : shaken.seam.count] = rng.normal(size=(3, shaken.seam.count))
+    moved[:, : shaken.disk_count] = moved[:, shaken.seam.twin]
+    force = DiskSystem(shaken, 1e-5).forces.of_ties(moved)
+    assert np.abs(force[:, : shaken.seam.count]).max() > 0.0
+    assert not force[:, shaken.seam.count : shaken.disk_count].any()
+    assert not force[:, shaken.outside.nodes].any()

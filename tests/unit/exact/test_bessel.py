@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import ive, kve
 
-from dembound.exact.bessel import decaying_ratios, from_ratios, growing_ratios
+from dembound.exact.bessel import decaying_ratios, growing_ratios
 
 Z = np.array([0.01, 0.3 + 2.0j, 0.05 + 25.0j, 1.0 + 60.0j])
 ORDERS = 90
@@ -18,11 +18,6 @@ def test_ratios_are_those_of_scipys_functions() -> None:
         assert within[:, 1:].mean() > 0.9
         # scipy's own error is some 1e-13 here, near zeros of I_n more
         np.testing.assert_allclose(ratios(Z, ORDERS)[within], expected[within], rtol=1e-10)
-
-
-def test_functions_of_all_orders_from_the_first() -> None:
-    functions = from_ratios(ive(0, Z), growing_ratios(Z, ORDERS))
-    np.testing.assert_allclose(functions, ive(np.arange(ORDERS)[:, None], Z), rtol=1e-9, atol=1e-300)
 
 
 def test_orders_of_thousands_obey_the_wronskian() -> None:

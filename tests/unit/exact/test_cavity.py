@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from dembound.exact import Solid, cavity_moment, cavity_motion
+from dembound.exact import Solid, cavity_motion
 
 RADIUS, PERIOD, PRESSURE = 10.0, 0.03, 1e6
 SOLID = Solid(2500.0, 1000.0, 600.0)
@@ -36,20 +36,6 @@ def test_step_arrives_as_a_front_that_spreads() -> None:
         np.testing.assert_allclose(history / jump, [0.0, 0.0, 1.0], rtol=0.0, atol=2e-3)
 
 
-def test_lasting_pressure_ends_in_the_static_solution() -> None:
-    distance, times = 3.0 * RADIUS, np.linspace(0.0, 5.0, 51)
-
-    def slow(t: np.ndarray) -> np.ndarray:
-        return PRESSURE * np.sin(0.5 * math.pi * np.minimum(t, 1.0)) ** 2
-
-    motion = cavity_motion(times, distance, slow, RADIUS, SOLID)
-    stress = PRESSURE * (RADIUS / distance) ** 2
-    # what is left falls as (r/c_p t)² = (30 m/4000 m)² = 6e-5, with a factor of the order of one
-    assert motion.displacement[-1] == pytest.approx(stress * distance / (2.0 * SOLID.shear), rel=3e-4)
-    assert motion.radial_stress[-1] == pytest.approx(-stress, rel=3e-4)
-    assert motion.hoop_stress[-1] == pytest.approx(stress, rel=3e-4)
-
-
 def test_motion_obeys_hookes_and_newtons_laws() -> None:
     r, step, times = 17.0, 0.02, np.linspace(0.0, 0.1, 1001)
     inner, here, outer = (cavity_motion(times, r + d, pulse, RADIUS, SOLID, 1e-8) for d in (-step, 0.0, step))
@@ -65,33 +51,6 @@ def test_motion_obeys_hookes_and_newtons_laws() -> None:
     force = (outer.radial_stress - inner.radial_stress) / (2.0 * step) + (here.radial_stress - here.hoop_stress) / r
     inertia = SOLID.density * np.gradient(here.velocity, times)
     np.testing.assert_allclose(force[1:-1], inertia[1:-1], atol=1e-2 * np.abs(force).max())
-
-
-def test_work_of_the_pressure_passes_through_every_circle() -> None:
-    times = np.linspace(0.0, 1.0, 20001)
-    step = times[1]
-
-    def passed(distance: float) -> float:
-        motion = cavity_motion(times, distance, pulse, RADIUS, SOLID)
-        return float(-2.0 * math.pi * distance * step * np.sum(motion.radial_stress * motion.velocity))
-
-    # after 1 s, 30 pulses, what moves and strains still is below (a/c_p t)² = 1e-4 of the pulse, its energy the square
-    # of that; the sum over steps of 50 µs of a smooth pulse is exact to (2π·50e-6/0.03)²
-    assert passed(3.0 * RADIUS) == pytest.approx(passed(RADIUS), rel=2e-5)
-
-
-def test_moment_of_a_slow_pressure() -> None:
-    def slow(t: np.ndarray) -> np.ndarray:
-        return PRESSURE * np.sin(0.5 * math.pi * np.minimum(t, 20.0) / 20.0) ** 2
-
-    moment, rate, second = cavity_moment(np.array([10.0, 18.0, 19.0]), slow, RADIUS, SOLID)
-    area = math.pi * RADIUS**2 * (SOLID.p_wave_speed / SOLID.s_wave_speed) ** 2
-    angle = 0.5 * math.pi * np.array([10.0, 18.0, 19.0]) / 20.0
-    # the source lags by the order of a/c_p = 0.01 s of 20 s
-    np.testing.assert_allclose(moment, area * slow(np.array([10.0, 18.0, 19.0])), rtol=2e-3)
-    np.testing.assert_allclose(rate, area * PRESSURE * math.pi / 40.0 * np.sin(2.0 * angle), rtol=1e-2)
-    expected = area * PRESSURE * math.pi**2 / 800.0 * np.cos(2.0 * angle)
-    np.testing.assert_allclose(second[1:], expected[1:], rtol=1e-2)
 
 
 def test_places_in_the_cavity_are_refused() -> None:

@@ -7,7 +7,7 @@ from scipy.integrate import quad
 from dembound.exact import Lattice, cells_per_wavelength, courant_limit
 from dembound.exact.dispersion import usual_shares
 
-HORIZONS = [1, 2, 3, 4, 5, 8, 10]
+HORIZONS = [1, 2, 3, 8]
 
 
 def lattice(horizon: int, courant: float) -> Lattice:
@@ -17,15 +17,12 @@ def lattice(horizon: int, courant: float) -> Lattice:
 
 def printed_sum(horizon: int, phase: np.ndarray) -> np.ndarray:
     """(2/m²) Σ (w_p/p)(cos pkΔx − 1), L eq. 12 with the outermost neighbour's half weight once."""
-    return (
-        2.0
-        / horizon**2
-        * sum((0.5 if p == horizon else 1.0) / p * (np.cos(p * phase) - 1.0) for p in range(1, horizon + 1))
-    )
+    weights = np.array((horizon - 1) * [1.0] + [0.5]) / np.arange(1, horizon + 1)
+    return 2.0 / horizon**2 * sum(w * (np.cos(p * phase) - 1.0) for p, w in enumerate(weights, start=1))
 
 
 @pytest.mark.parametrize("horizon", HORIZONS)
-@pytest.mark.parametrize("share", [0.1, 0.5, 0.99])
+@pytest.mark.parametrize("share", [0.1, 0.99])
 def test_frequency_solves_the_printed_equation(horizon: int, share: float) -> None:
     courant = share * courant_limit(horizon)
     phase = np.linspace(0.01, np.pi, 200)
@@ -45,27 +42,6 @@ def test_units_are_those_of_spacing_step_and_speed() -> None:
     np.testing.assert_allclose(small.group_velocity(phase / 0.005), plain.group_velocity(phase) * 2763.0, rtol=1e-14)
 
 
-def test_central_differences_at_the_limit_have_no_dispersion() -> None:
-    plain = lattice(1, 1.0)
-    phase = np.linspace(0.01, 3.0, 100)
-    # arcsin multiplies roundings by tan(θ/2) ≤ 14, the square root of 1 − s² by its square, 200
-    np.testing.assert_allclose(plain.phase_velocity(phase), 1.0, rtol=1e-13)
-    np.testing.assert_allclose(plain.group_velocity(phase), 1.0, rtol=1e-12)
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
-@pytest.mark.parametrize("courant", [0.0, 0.5, 0.9])
-def test_leading_error_of_long_waves(horizon: int, courant: float) -> None:
-    phase = 0.01 / horizon
-    leading = -(phase**2) * ((horizon**2 + 1) / 2 - courant**2) / 24.0
-    # the next term of the series is below (mθ)⁴/100, and the leading one above (mθ)²/24 times 0.19 (m = 1, ν = 0.9)
-    relative = (phase * horizon) ** 2 * 24.0 / 19.0
-    speeds = lattice(horizon, courant)
-    assert speeds.phase_velocity(phase) - 1.0 == pytest.approx(leading, rel=relative)
-    # ω = ck(1 + e k²) has the slope c(1 + 3e k²), and in the next term 5 stands for 3
-    assert speeds.group_velocity(phase) - 1.0 == pytest.approx(3.0 * leading, rel=5.0 / 3.0 * relative)
-
-
 @pytest.mark.parametrize("horizon", HORIZONS)
 def test_nothing_cancels_in_very_long_waves(horizon: int) -> None:
     phase = np.array([0.0, 1e-12, 1e-8]) / horizon  # there L's cosines differ from 1 by rounding only
@@ -83,7 +59,7 @@ def test_group_velocity_is_the_slope_of_the_frequency(horizon: int) -> None:
         assert rise == pytest.approx(float(speeds.frequency(high) - speeds.frequency(low)), rel=1e-11, abs=1e-14)
 
 
-@pytest.mark.parametrize("horizon", range(1, 13))
+@pytest.mark.parametrize("horizon", [1, 2, 3, 6, 12])
 def test_shortest_wave_is_the_first_to_grow(horizon: int) -> None:
     phase = np.linspace(0.0, np.pi, 20001)
     largest = -0.5 * printed_sum(horizon, phase)
@@ -91,11 +67,6 @@ def test_shortest_wave_is_the_first_to_grow(horizon: int) -> None:
     assert largest[-1] >= largest.max() - horizon * np.finfo(float).eps
     assert courant_limit(horizon) == pytest.approx(1.0 / np.sqrt(largest.max()), rel=1e-14)
     assert np.all(np.diff(lattice(horizon, 0.0).frequency(phase)) > -1e-14)
-
-
-@pytest.mark.parametrize(("horizon", "limit"), [(1, 1.000), (2, 1.414), (3, 1.964), (5, 2.953), (10, 5.289)])
-def test_known_limits(horizon: int, limit: float) -> None:
-    assert courant_limit(horizon) == pytest.approx(limit, abs=5e-4)  # printed to three digits
 
 
 @pytest.mark.parametrize("horizon", HORIZONS)
@@ -112,20 +83,7 @@ def test_waves_that_grow_have_no_frequency(horizon: int) -> None:
 
 
 @pytest.mark.parametrize("horizon", HORIZONS)
-def test_no_step_is_the_limit_of_short_steps(horizon: int) -> None:
-    phase = np.linspace(0.0, 3.0, 50)
-    # they differ by a part s²/6 of the phase velocity and s²/2 of the group velocity, s ≤ 1e-6
-    np.testing.assert_allclose(
-        lattice(horizon, 0.0).phase_velocity(phase), lattice(horizon, 1e-6).phase_velocity(phase), rtol=1e-12
-    )
-    np.testing.assert_allclose(
-        lattice(horizon, 0.0).group_velocity(phase), lattice(horizon, 1e-6).group_velocity(phase), rtol=1e-12
-    )
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
-@pytest.mark.parametrize("share", [0.0, 0.5, 0.9])
-@pytest.mark.parametrize("of", ["phase", "group"])
+@pytest.mark.parametrize(("of", "share"), [("phase", 0.0), ("phase", 0.9), ("group", 0.5)])
 def test_wavelengths_of_so_many_cells_and_all_longer_ones_keep_to_the_error(horizon: int, share: float, of) -> None:
     courant = share * courant_limit(horizon)
     cells = cells_per_wavelength(horizon, courant, of=of)
@@ -135,16 +93,7 @@ def test_wavelengths_of_so_many_cells_and_all_longer_ones_keep_to_the_error(hori
     assert abs(float(speed(phase)) - 1.0) == pytest.approx(0.01, rel=1e-9)  # brentq's 1e-12 of a phase, twice over
     assert np.all(np.abs(speed(np.linspace(0.0, 0.999 * phase, 1000)) - 1.0) < 0.01)
     assert abs(float(speed(1.001 * phase)) - 1.0) > 0.01
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
-@pytest.mark.parametrize(("of", "times"), [("phase", 1.0), ("group", 3.0)])
-def test_small_errors_follow_the_leading_term(horizon: int, of, times: float) -> None:
-    error, courant = 1e-6, 0.5
-    expected = 2.0 * np.pi * np.sqrt(times * ((horizon**2 + 1) / 2 - courant**2) / (24.0 * error))
-    # (mθ)² ≤ 48·error, so the next term, below (mθ)⁴/100, is below 24·error of the leading one; in the group velocity
-    # it is five times as large, at a third of (mθ)². Half of it goes into the wavelength
-    assert cells_per_wavelength(horizon, courant, error, of) == pytest.approx(expected, rel=12.0 * error)
+    assert cells_per_wavelength(1, 1.0, of=of) == 2.0  # there is no error at all
 
 
 @pytest.mark.parametrize("horizon", HORIZONS)
@@ -171,11 +120,6 @@ def test_bonds_of_two_spacings_alone_are_a_bar_of_twice_the_spacing() -> None:
     assert double.courant_limit == pytest.approx(2.0, rel=1e-12)
     np.testing.assert_allclose(double.frequency(wavenumber), single.frequency(wavenumber), rtol=1e-14)
     np.testing.assert_allclose(double.group_velocity(wavenumber), single.group_velocity(wavenumber), rtol=1e-12)
-
-
-@pytest.mark.parametrize("of", ["phase", "group"])
-def test_a_bar_without_error_needs_two_cells(of) -> None:
-    assert cells_per_wavelength(1, 1.0, of=of) == 2.0
 
 
 def test_what_makes_no_sense_is_refused() -> None:

@@ -23,8 +23,7 @@ def moved(times: np.ndarray, x: float, z: float, solid: Solid, depth: float = DE
     return buried_explosion(times, x, z, depth, rate, solid, 1e-7)
 
 
-@pytest.mark.parametrize("solid", SOLIDS)
-@pytest.mark.parametrize("x", [4.0, 40.0])
+@pytest.mark.parametrize(("solid", "x"), [(SOLIDS[0], 4.0), (SOLIDS[1], 40.0), (SOLIDS[2], 4.0)])
 def test_laplace_transform_is_the_solution_in_wave_numbers(solid: Solid, x: float) -> None:
     """Signs, factors and the Rayleigh wave, from the problem before its inversion."""
     s = 60.0
@@ -54,9 +53,7 @@ def test_laplace_transform_is_the_solution_in_wave_numbers(solid: Solid, x: floa
     np.testing.assert_allclose(transform + rest, expected, rtol=0.0, atol=1e-5 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize(
-    ("solid", "x", "z"), [(SOLIDS[0], 7.0, 4.0), (SOLIDS[1], 0.0, 3.0), (SOLIDS[2], 12.0, 25.0), (SOLIDS[2], 7.0, 4.0)]
-)
+@pytest.mark.parametrize(("solid", "x", "z"), [(SOLIDS[0], 7.0, 4.0), (SOLIDS[1], 0.0, 3.0), (SOLIDS[2], 12.0, 25.0)])
 def test_interior_obeys_newtons_law(solid: Solid, x: float, z: float) -> None:
     h, step = 0.05, 0.25e-3
     times = (np.linspace(0.004, 0.15, 25)[:, None] + step * np.arange(-1, 2)).ravel()
@@ -71,8 +68,7 @@ def test_interior_obeys_newtons_law(solid: Solid, x: float, z: float) -> None:
     np.testing.assert_allclose(force[:, 1::3] / h**2, solid.density * second, rtol=0.0, atol=5e-3 * size)
 
 
-@pytest.mark.parametrize("solid", SOLIDS)
-@pytest.mark.parametrize("x", [-6.0, 30.0])
+@pytest.mark.parametrize(("solid", "x"), [(SOLIDS[0], -6.0), (SOLIDS[2], 30.0)])
 def test_surface_is_free_of_tractions_and_the_limit_of_the_interior(solid: Solid, x: float) -> None:
     h, times = 0.02, np.linspace(0.0, 0.2, 31)
     top, one, two = (moved(times, x, h * j, solid) for j in range(3))
@@ -108,33 +104,6 @@ def test_before_echoes_it_is_the_cavity_with_the_same_moment() -> None:
         found = buried_explosion(times + advance, *place, deep, signal, solid, 1e-5)
         # linear interpolation over 60 µs of a pulse of 10 ms errs by (2π·60e-6/0.01)²/8 = 2e-4
         np.testing.assert_allclose(found, direction[:, None] * history, rtol=0.0, atol=5e-4 * np.abs(history).max())
-
-
-@pytest.mark.parametrize("solid", SOLIDS)
-def test_dilatation_and_source_may_be_exchanged(solid: Solid) -> None:
-    """Betti: the dilatation that an explosion makes elsewhere is that which an explosion there makes here."""
-    h, times = 0.05, np.linspace(0.0, 0.15, 61)
-
-    def dilatation(x: float, z: float, depth: float) -> np.ndarray:
-        along = moved(times, x + h, z, solid, depth)[0] - moved(times, x - h, z, solid, depth)[0]
-        return along + moved(times, x, z + h, solid, depth)[1] - moved(times, x, z - h, solid, depth)[1]
-
-    one, other = dilatation(9.0, 4.0, 7.0), dilatation(9.0, 7.0, 4.0)
-    # differences over 0.1 m err by some (h/3 m)² = 3e-4
-    np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-3 * np.abs(one).max())
-
-
-@pytest.mark.parametrize("solid", SOLIDS)
-@pytest.mark.parametrize("x", [0.0, 20.0])
-def test_lasting_moment_ends_in_the_static_solution(solid: Solid, x: float) -> None:
-    """4(1 − ν) times the full space's M/(2πρc_p² r), Mogi's factor; see Verruijt & Booker (1996) for the plane."""
-    ratio = (solid.s_wave_speed / solid.p_wave_speed) ** 2
-    poisson = (1.0 - 2.0 * ratio) / (2.0 - 2.0 * ratio)
-    time = 200.0 * math.hypot(x, DEPTH) / solid.s_wave_speed
-    found = moved(np.array([time]), x, 0.0, solid)[:, 0]
-    full = MOMENT / (2.0 * math.pi * solid.uniaxial) / (x**2 + DEPTH**2) * np.array([x, -DEPTH])
-    # what is left falls as (r/c_s t)² = 2.5e-5
-    np.testing.assert_allclose(found, 4.0 * (1.0 - poisson) * full, rtol=5e-4, atol=1e-15)
 
 
 def test_what_is_no_buried_source_is_refused() -> None:

@@ -1,4 +1,4 @@
-"""A cavity under a plane wave: its wall, the equations, causality, symmetry, energy and the static limits.
+"""A cavity under a plane wave: its wall, the equations and causality.
 
 Outgoing functions that obey the equations and make the wall free of tractions are the only solution, so the first tests
 together leave no freedom.
@@ -36,7 +36,7 @@ def circle(radius: float, number: int) -> np.ndarray:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_wall_is_free_of_tractions_and_orders_are_enough(kind: WaveKind, monkeypatch) -> None:
-    times, wall = np.linspace(-0.02, 0.2, 45), circle(RADIUS, 7)
+    times, wall = np.linspace(-0.02, 0.1, 31), circle(RADIUS, 7)
     few, orders = motion(times, wall, kind, 0.4), module._Cavity._orders
     monkeypatch.setattr(module._Cavity, "_orders", lambda cavity, s: orders(cavity, s) + 20)
     many = motion(times, wall, kind, 0.4)
@@ -46,21 +46,22 @@ def test_wall_is_free_of_tractions_and_orders_are_enough(kind: WaveKind, monkeyp
     np.testing.assert_allclose(few.velocity, many.velocity, rtol=0.0, atol=1e-10)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("place", [(18.0, 7.0), (-13.0, 4.0)])
+@pytest.mark.parametrize(("kind", "place"), [("p", (18.0, 7.0)), ("sv", (-13.0, 4.0))])
 def test_motion_obeys_hookes_and_newtons_laws(kind: WaveKind, place: tuple[float, float]) -> None:
-    h, times = 0.1, np.linspace(-0.02, 0.2, 881)
+    h, times = 0.1, np.linspace(-0.02, 0.08, 401)
     offsets = h * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]])
     found = motion(times, place + offsets, kind, 0.4, tolerance=1e-7)
     u, v = found.displacement, found.velocity[0]
     xx, yy, xy = u[1] - 2.0 * u[0] + u[2], u[3] - 2.0 * u[0] + u[4], 0.25 * (u[5] - u[6] - u[7] + u[8])
     mixed = SOLID.lame + SOLID.shear
     force = SOLID.shear * (xx + yy) + mixed * np.stack([xx[0] + xy[1], xy[0] + yy[1]])
-    inertia = SOLID.density * np.gradient(v, times, axis=-1)
+    inertia = SOLID.density * np.gradient(v, times, axis=-1)[:, 1:-1]
     # differences in time err by (2π·0.25e-3·3/0.06)²/6 = 1e-3 of a pulse of three such frequencies; those in space,
     # over 0.1 m of 36 m/3, by 4e-4, and the tolerance by 1e-7/(h k)² = 4e-5
-    np.testing.assert_allclose(force / h**2, inertia, rtol=0.0, atol=2e-3 * np.abs(inertia).max())
-    np.testing.assert_allclose(np.gradient(u[0], times, axis=-1), v, rtol=0.0, atol=2e-3 * np.abs(v).max())
+    np.testing.assert_allclose(force[:, 1:-1] / h**2, inertia, rtol=0.0, atol=2e-3 * np.abs(inertia).max())
+    np.testing.assert_allclose(
+        np.gradient(u[0], times, axis=-1)[:, 1:-1], v[:, 1:-1], rtol=0.0, atol=2e-3 * np.abs(v).max()
+    )
 
     x, y = (u[1] - u[2]) / (2.0 * h), (u[3] - u[4]) / (2.0 * h)
     mean, half, shear = mixed * (x[0] + y[1]), SOLID.shear * (x[0] - y[1]), SOLID.shear * (x[1] + y[0])
@@ -91,70 +92,6 @@ def test_wave_is_undisturbed_until_the_scattered_one_arrives(kind: WaveKind, acr
     behind = motion(times, 1.5 * RADIUS * direction[None], kind, angle)
     early = times < -RADIUS / speed + 2.5 * RADIUS / SOLID.p_wave_speed  # through the cavity
     assert np.abs(behind.velocity[..., early]).max() < 1e-5 < 0.1 < np.abs(behind.velocity).max()
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_mirror_image_across_the_direction(kind: WaveKind) -> None:
-    times, place = np.linspace(-0.02, 0.2, 45), np.array([[12.0, 9.0]])
-    one, other = motion(times, place, kind).velocity[0], motion(times, place * [1.0, -1.0], kind).velocity[0]
-    sign = 1.0 if kind == "p" else -1.0
-    np.testing.assert_allclose(other, sign * one * [[1.0], [-1.0]], rtol=0.0, atol=1e-12)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_turned_wave_makes_a_turned_motion(kind: WaveKind) -> None:
-    times, place, angle = np.linspace(-0.02, 0.2, 45), np.array([[12.0, 9.0]]), 2.1
-    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-    straight, turned = motion(times, place, kind), motion(times, place @ turn.T, kind, angle)
-    np.testing.assert_allclose(turned.velocity[0], turn @ straight.velocity[0], rtol=0.0, atol=1e-10)
-    np.testing.assert_allclose(turned.stress[0], straight.stress[0], rtol=0.0, atol=1e-10 * SOLID.uniaxial)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_no_energy_stays_at_the_cavity(kind: WaveKind) -> None:
-    """What flows through a circle into its inside flows out again."""
-    radius, number, times = 2.0 * RADIUS, 64, np.linspace(-0.1, 0.5, 3001)
-    places = circle(radius, number)
-    found = motion(times, places, kind, 0.4)
-    normal = places / radius
-    v_r = np.einsum("mc,mck->mk", normal, found.velocity)
-    v_t = normal[:, 0, None] * found.velocity[:, 1] - normal[:, 1, None] * found.velocity[:, 0]
-    inwards = -(found.stress[:, 0] * v_r + found.stress[:, 2] * v_t)
-    step, arc = times[1] - times[0], 2.0 * math.pi * radius / number
-    speed = SOLID.p_wave_speed if kind == "p" else SOLID.s_wave_speed
-    incident = 2.0 * radius * SOLID.density * speed * step * np.sum(pulse(np.maximum(times, 0.0)) ** 2)
-    through = 0.5 * arc * step * np.abs(inwards).sum()
-    assert through > 0.5 * incident  # the circle cuts out of the wave what its diameter does
-    # sums over angle and time converge faster than any power; motions are exact to 1e-6 of their largest values; at the
-    # end, 8 pulses later, what moves is (a/c_s t)² = 1e-3 of the pulse, in energy the square of that
-    assert abs(arc * step * inwards.sum()) < 2e-5 * through
-
-
-def slow_stress(kind: WaveKind, angle: float, wall: np.ndarray) -> np.ndarray:
-    """σ_θ at the wall over ρc v, at the crest of a pulse of 2000 a/c_s."""
-    period = 2000.0 * RADIUS / SOLID.s_wave_speed
-    wave = PlaneWave(kind, angle, lambda t: np.where(t < period, np.sin(math.pi * t / period) ** 2, 0.0))
-    found = scattered_motion(np.array([0.5 * period, period]), wall, wave, RADIUS, SOLID)
-    speed = SOLID.p_wave_speed if kind == "p" else SOLID.s_wave_speed
-    return found.stress[:, 1, 0] / (SOLID.density * speed)
-
-
-WALL = RADIUS * np.array([[1.0, 0.0], [0.0, 1.0], [math.sqrt(0.5), math.sqrt(0.5)]])
-
-
-def test_slow_p_wave_concentrates_as_uniaxial_strain_and_two_as_uniaxial_stress() -> None:
-    """Kirsch: σ_θ = σ_1 + σ_2 − 2(σ_1 − σ_2) cos 2θ."""
-    ratio = SOLID.lame / SOLID.uniaxial
-    along, upwards = slow_stress("p", 0.0, WALL), slow_stress("p", 0.5 * math.pi, WALL)
-    # a pulse (2π a/c_s T)² = 1e-5 times a logarithm from being static
-    np.testing.assert_allclose(along, [1.0 - 3.0 * ratio, ratio - 3.0, -1.0 - ratio], rtol=0.0, atol=5e-4)
-    uniaxial = (along - ratio * upwards) / (1.0 - ratio**2)  # σ_y = 0
-    np.testing.assert_allclose(uniaxial, [1.0, -3.0, -1.0], rtol=0.0, atol=5e-4)
-
-
-def test_slow_sv_wave_concentrates_as_pure_shear() -> None:
-    """σ_θ = −4τ sin 2θ, τ = ρc_s v."""
-    np.testing.assert_allclose(slow_stress("sv", 0.0, WALL), [0.0, 0.0, -4.0], rtol=0.0, atol=5e-4)
 
 
 def test_places_in_the_cavity_are_refused() -> None:

@@ -63,7 +63,3 @@ def test_before_it_arrives_a_response_is_small_beside_its_usual_size() -> None:
 def test_a_velocity_that_jumps_does_not_converge() -> None:
     with pytest.raises(RuntimeError, match="does not converge to 1e-06"):
         respond(late, lambda t: 1.0 * (t < 0.1), np.linspace(0.0, 1.0, 500), 1e-6, [0.0], most=2**14)
-
-
-def test_nothing_comes_of_nothing() -> None:
-    assert not respond(decay, np.zeros_like, np.linspace(0.0, 1.0, 5), 1e-6, [0.0, 0.0])[0].any()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from gauge_records import drift, hum, noise, offset, signal
 
+from dembound.errors import CaseError
 from dembound.gauge.baseline import find_baseline, quiet_samples
 from dembound.gauge.filters import Filters
 from dembound.gauge.noise import noise_of
@@ -39,8 +40,8 @@ def test_what_is_added_is_found(changes, names):
     np.testing.assert_allclose(found.values, exact, atol=10.0 * QUIET)
 
 
-@pytest.mark.parametrize("frequency", [50.0, 60.0])
-def test_mains_are_told_apart_in_long_records(frequency):
+def test_mains_are_told_apart_in_long_records():
+    frequency = 60.0
     exact = added(offset(0.1), hum(0.05, frequency), hum(0.02, 3.0 * frequency), time=LONG_TIME)
     found = find_baseline(LONG_TIME, LONG_VALUES + exact + added(noise(0.01), time=LONG_TIME))
     assert found.names == ("offset", f"{frequency:g} Hz hum")
@@ -48,16 +49,8 @@ def test_mains_are_told_apart_in_long_records(frequency):
     np.testing.assert_allclose(found.values, exact, atol=5.0 * np.sqrt(7.0) * 1e-4)
 
 
-def test_terms_that_are_excluded_are_not_fitted():
-    bent, tilted = VALUES + added(hum(0.1)), VALUES + added(drift(0.2))
-    assert find_baseline(TIME, bent, drift=False).names == ("offset", "slow curve as of 50 Hz hum")
-    assert find_baseline(TIME, tilted, mains=()).names == ("offset", "drift")
-    assert find_baseline(TIME, tilted, drift=False, mains=()).names == ("offset",)
-
-
-@pytest.mark.parametrize("level", [0.0, 0.01])
-def test_a_signal_without_a_baseline_keeps_its_bits(level):
-    values = VALUES + added(noise(level))
+def test_a_signal_without_a_baseline_keeps_its_bits():
+    values = VALUES + added(noise(0.01))
     signal, _ = treated(Signal(TIME, values, "V"))
     np.testing.assert_array_equal(signal.values, values)
     assert "baseline: nothing to remove" in signal.notes[0]
@@ -73,6 +66,13 @@ def test_a_long_wave_has_the_offset_of_its_beginning():
     assert found.before < 220
 
 
+def test_terms_that_are_excluded_are_not_fitted():
+    bent, tilted = VALUES + added(hum(0.1)), VALUES + added(drift(0.2))
+    assert find_baseline(TIME, bent, drift=False).names == ("offset", "slow curve as of 50 Hz hum")
+    assert find_baseline(TIME, tilted, mains=()).names == ("offset", "drift")
+    assert find_baseline(TIME, tilted, drift=False, mains=()).names == ("offset",)
+
+
 def test_quiet_samples_are_away_from_waves():
     quiet = quiet_samples(VALUES)
     arrival = 20e-6 + 0.6 / 2740.0
@@ -81,7 +81,7 @@ def test_quiet_samples_are_away_from_waves():
     assert not quiet[(arrival - 0.2 * width < TIME) & (arrival + 120e-6 + 0.2 * width > TIME)].any()
 
 
-def test_draws_are_as_the_noise_and_always_the_same():
+def test_draws_are_as_the_noise_with_a_baseline_that_is_left_in_and_always_the_same():
     values = LONG_VALUES + added(noise(0.02), offset(0.1), time=LONG_TIME)
     found = find_baseline(LONG_TIME, values)
     noise_found = noise_of(values - found.values, found)
@@ -91,9 +91,6 @@ def test_draws_are_as_the_noise_and_always_the_same():
     assert draws.std() == pytest.approx(0.02, rel=5.0 / np.sqrt(2000.0))
     np.testing.assert_array_equal(draws, np.array(list(noise_found.draws())))
     assert not np.array_equal(draws[0], draws[1])
-
-
-def test_a_baseline_that_is_left_in_makes_uncertain():
     values = VALUES + 0.002  # below 0.3 %
     found = find_baseline(TIME, values)
     assert not found.worthwhile
@@ -118,17 +115,12 @@ def test_filters_keep_waves_where_they_are():
     assert np.ptp(at_corner[5000:-5000]) == pytest.approx(1.0, rel=1e-3)  # half of 2: 6 dB
 
 
-@pytest.mark.parametrize(
-    ("filters", "said"),
-    [
+def test_filters_that_a_record_does_not_allow_are_refused():
+    for filters, said in (
         (Filters(low_pass=6e5), "--low-pass: is 600000 Hz, must be from 600 to below 5e+05 Hz in this record"),
         (Filters(high_pass=10.0), "--high-pass: is 10 Hz, must be from 600"),
         (Filters(notches=(50.0,)), "--notch: is 50 Hz, must be from 600"),
         (Filters(low_pass=2e3, high_pass=3e3), "--high-pass: is 3000 Hz, must be below the low pass, 2000 Hz"),
-    ],
-)
-def test_filters_that_a_record_does_not_allow_are_refused(filters, said):
-    from dembound.errors import CaseError
-
-    with pytest.raises(CaseError, match=said.replace("+", r"\+")):
-        treated(Signal(TIME, VALUES, "V"), Treatment(filters=filters))
+    ):
+        with pytest.raises(CaseError, match=said.replace("+", r"\+")):
+            treated(Signal(TIME, VALUES, "V"), Treatment(filters=filters))

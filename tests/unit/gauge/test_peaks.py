@@ -27,24 +27,19 @@ def test_peaks_are_found_between_samples():
     # even about its crest, the smoothed bell has a slope of q²x(1 − q²x²/6) beside it; the parabola takes x² for 1
     # and bends by q²(1 − q²/12): by q²/6 of at most half a sample it is out
     assert found.time == pytest.approx(CRESTS, abs=0.5 * 0.5 * (2.0 * np.pi / 80.0) ** 2 / 6.0)
-
-
-def test_the_first_peaks_are_kept():
-    every, first = positive_peaks(TIME, bells(TIME)), positive_peaks(TIME, bells(TIME), 2)
-    assert first.time.tolist() == every.time[:2].tolist()
-    assert first.height.tolist() == every.height[:2].tolist()
+    first = positive_peaks(TIME, bells(TIME), 2)
+    assert (first.time.tolist(), first.height.tolist()) == (found.time[:2].tolist(), found.height[:2].tolist())
+    nothing = Peaks(*positive_peaks(TIME, -np.abs(bells(TIME))))
+    assert len(nothing.time) == len(nothing.height) == 0
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_noise_makes_no_peaks_and_hides_none(seed):
+def test_noise_and_ringing_make_no_peaks_and_hide_none(seed):
     noise = 0.05 * np.random.default_rng(seed).standard_normal(len(TIME))
     found = positive_peaks(TIME, bells(TIME) + noise)
     # smoothed over 5 samples to either side, 3/√(8·5) = 0.47 of the noise is left: the lowest crest is 12 times that,
     # and five times that is found with a probability of 1e-6 a sample where nothing is
     assert found.height == pytest.approx(HEIGHTS, abs=5.0 * 0.47 * 0.05)
-
-
-def test_ringing_behind_a_peak_is_not_taken_for_one():
     ringing = 0.2 * np.sin(2.0 * np.pi * (TIME - 130.0) / 8.0) * (np.abs(TIME - 145.0) < 15.0)  # 4 s wide
     assert len(positive_peaks(TIME, bells(TIME) + ringing).time) == len(CRESTS)
 
@@ -57,16 +52,8 @@ def test_two_peaks_may_stand_as_close_as_the_higher_is_wide():
     values[20:27], values[23] = 0.8, 0.85
     found = positive_peaks(np.arange(100.0), values)
     assert (found.time.tolist(), found.height.tolist()) == ([14.0, 23.0], [1.0, 0.85])
-
-
-def test_where_nothing_is_positive_there_is_no_peak():
-    nothing = Peaks(*positive_peaks(TIME, -np.abs(bells(TIME))))
-    assert len(nothing.time) == len(nothing.height) == 0
-
-
-def test_a_flat_top_is_a_peak_in_its_middle():
     values = np.zeros(50)
-    values[20:25] = 1.0, 2.0, 2.0, 2.0, 1.0
+    values[20:25] = 1.0, 2.0, 2.0, 2.0, 1.0  # a flat top is a peak in its middle
     found = positive_peaks(np.arange(50.0), values)
     assert (found.time.tolist(), found.height.tolist()) == ([22.0], [2.0])
 
@@ -83,29 +70,16 @@ def test_a_clean_history_is_not_smoothed_and_a_noisy_one_is():
     assert abs(left[400] + 3.0 / 16.0 * 5 * 0.5) < 4.0 * 0.47
 
 
-def test_the_first_fall_ends_where_it_rises_again():
+def test_the_first_fall_ends_where_it_rises_again_and_bears_noise():
     # up to 4, down to 1.5, up to 2, down to 0
     values = np.interp(TIME, [0.0, 50.0, 100.0, 150.0, 450.0], [0.0, 4.0, 1.5, 2.0, 0.0])
     assert first_fall(values) == pytest.approx(2.5, rel=1e-12)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_the_first_fall_bears_noise(seed):
-    values = np.interp(TIME, [0.0, 50.0, 100.0, 150.0, 450.0], [0.0, 4.0, 1.5, 2.0, 0.0])
-    noisy = values + 0.04 * np.random.default_rng(seed).standard_normal(len(TIME))
-    # r = (√32 · 0.04/2.5 · 100)^(2/3) = 4: the top loses (3/16)·4 samples of (0.04 + 0.025)/2 each, the bottom of
-    # (0.025 + 0.005)/2: 0.036 in all; of the noise 3/√(8·4) = 0.53 is left on each, of which four are allowed
-    assert first_fall(noisy) == pytest.approx(2.5, abs=0.036 + 4.0 * np.sqrt(2.0) * 0.53 * 0.04)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_a_fall_is_the_same_seen_backwards_and_upside_down(seed):
-    values = np.interp(TIME, [0.0, 50.0, 100.0, 150.0], [0.0, 4.0, 1.5, 2.0])
-    noisy = values + 0.04 * np.random.default_rng(seed).standard_normal(len(TIME))
-    # sums of nine samples, the other way round
-    assert first_fall(-noisy[::-1]) == pytest.approx(first_fall(noisy), rel=1e-13)
-
-
-@pytest.mark.parametrize("values", [np.zeros(1000), TIME, -TIME, np.minimum(TIME, 200.0), -np.abs(TIME - 200.0)])
-def test_without_a_minimum_after_a_maximum_there_is_no_fall(values):
-    assert np.isnan(first_fall(values))
+    for seed in range(3):
+        noisy = values + 0.04 * np.random.default_rng(seed).standard_normal(len(TIME))
+        # r = (√32 · 0.04/2.5 · 100)^(2/3) = 4: the top loses (3/16)·4 samples of (0.04 + 0.025)/2 each, the bottom of
+        # (0.025 + 0.005)/2: 0.036 in all; of the noise 3/√(8·4) = 0.53 is left on each, of which four are allowed
+        assert first_fall(noisy) == pytest.approx(2.5, abs=0.036 + 4.0 * np.sqrt(2.0) * 0.53 * 0.04)
+    risen = noisy[:301]  # the same backwards and upside down: sums of nine samples, the other way round
+    assert first_fall(-risen[::-1]) == pytest.approx(first_fall(risen), rel=1e-13)
+    for without in (np.zeros(1000), TIME, -TIME, np.minimum(TIME, 200.0), -np.abs(TIME - 200.0)):
+        assert np.isnan(first_fall(without))

@@ -44,6 +44,10 @@ def test_strengths_follow_from_where_it_spalled_and_how_its_end_moved(gauge):
     assert found.strength.way == pytest.approx(0.39 + 0.04, rel=1e-12)
     assert found.strength.attenuated == pytest.approx(found.strength.nominal * np.exp(-0.52 * 0.43), rel=1e-12)
     assert found.pull_back == pytest.approx(0.5 * 2620.0 * 2740.0 * 6.0, rel=1e-12)
+    once = gauge.time < 700e-6  # one tension peak: without attenuation the strength stays nominal
+    short = evaluate(replace(gauge, time=gauge.time[once], stress=gauge.stress[once]), spall=0.9, speed=2740.0)
+    assert (short.attenuation, short.strength.attenuated) == (None, None)
+    assert short.strength.nominal > 0.0
 
 
 def test_a_record_knows_speed_and_attenuation_unless_an_estimate_is_asked_for(gauge):
@@ -57,13 +61,13 @@ def test_a_record_knows_speed_and_attenuation_unless_an_estimate_is_asked_for(ga
     assert (first.speed.points, first.attenuation.points) == (3, 3)
     half = evaluate(recorded, estimate=True, speed=2740.0)
     assert (half.speed.points, half.attenuation.points) == (0, 5)
-
-
-def test_attenuation_is_that_along_the_way_at_the_speed_that_is_given(gauge):
     # decay in time, at peaks that are where they are, is βc
     slow, fast = (evaluate(gauge, speed=speed).attenuation for speed in (2700.0, 2780.0))
     assert slow.points == fast.points == 5
     assert slow.value * 2700.0 == pytest.approx(fast.value * 2780.0, rel=1e-12)
+    with pytest.raises(CaseError, match="--attenuation: give it, the tension peaks give a wave speed of 27"):
+        evaluate(gauge, speed=2000.0)
+    assert evaluate(gauge, speed=2000.0, coefficient=0.0).peaks is None
 
 
 ESTIMATE = {"estimate": True}
@@ -74,62 +78,37 @@ FIRST, SECOND = (20e-6 + (1.38 + 1.98 * turn) / 2740.0 + 40e-6 for turn in range
 @pytest.mark.parametrize(
     ("changes", "given", "said"),
     [
-        (
-            {"ends": ("free", "viscous")},
-            {"spall": 0.9},
-            "--spall: assumes a pulse reflected by a free end, the end opposite",
-        ),
+        ({"ends": ("free", "viscous")}, {"spall": 0.9}, "--spall: assumes a pulse reflected by a free end, the end"),
         ({"ends": ("free", "fixed")}, ESTIMATE, "free ends, the end opposite the load is fixed"),
         ({"ends": ("viscous_input", "free")}, {"count": 2}, "free ends, the loaded end is viscous_input"),
+        ({"ends": ("viscous_input", "free"), "broken": FIRST}, {"spall": 0.9}, None),
         ({"broken": FIRST - 1e-5}, ESTIMATE, "before 5 of its 5; it gives neither speed nor attenuation"),
         ({"broken": FIRST + 1e-5}, ESTIMATE, "before 4 of its 5; it gives neither speed nor attenuation"),
         ({"broken": SECOND + 1e-5}, {"count": 4}, "before 2 of its 4; use --peaks 2"),
+        ({"broken": SECOND + 1e-5}, {"count": 2}, None),
         # the peaks are 2740 m/s to 0.04 %, so 5 % of the record's is just met at 2610 and 2884 m/s and missed beyond
         ({"speed": 2605.0}, ESTIMATE, "--estimate: the tension peaks give a wave speed of 27"),
+        ({"speed": 2615.0}, ESTIMATE, None),
+        ({"speed": 2880.0}, ESTIMATE, None),
         ({"speed": 2890.0}, ESTIMATE | {"speed": 2740.0}, "must be within 5 % of 2890 m/s"),
     ],
 )
 def test_a_record_that_contradicts_an_estimate_refuses_it(gauge, changes, given, said):
+    recorded = replace(gauge, metadata=replace(METADATA, **changes))
+    if said is None:
+        assert evaluate(recorded, **given).speed.value > 0.0
+        return
     with pytest.raises(CaseError) as caught:
-        evaluate(replace(gauge, metadata=replace(METADATA, **changes)), **given)
+        evaluate(recorded, **given)
     assert said in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("changes", "given"),
-    [
-        ({"broken": SECOND + 1e-5}, {"count": 2}),
-        ({"speed": 2615.0}, ESTIMATE),
-        ({"speed": 2880.0}, ESTIMATE),
-        ({"ends": ("viscous_input", "free"), "broken": FIRST}, {"spall": 0.9}),
-    ],
-)
-def test_a_record_that_does_not_contradict_lets_it_pass(gauge, changes, given):
-    assert evaluate(replace(gauge, metadata=replace(METADATA, **changes)), **given).speed.value > 0.0
-
-
-def test_peaks_that_contradict_a_given_speed_tell_no_attenuation(gauge):
-    with pytest.raises(CaseError, match="--attenuation: give it, the tension peaks give a wave speed of 27"):
-        evaluate(gauge, speed=2000.0)
-    assert evaluate(gauge, speed=2000.0, coefficient=0.0).peaks is None
-
-
-def test_without_attenuation_the_strength_stays_nominal(gauge):
-    once = gauge.time < 700e-6  # one tension peak
-    found = evaluate(Gauge(gauge.time[once], gauge.stress[once], 0.6, 0.99, None), spall=0.9, speed=2740.0)
-    assert found.attenuation is None
-    assert found.strength.attenuated is None
-    assert found.strength.nominal > 0.0
 
 
 @pytest.mark.parametrize(
     ("given", "said"),
     [
         ({"spall": 0.99}, "--spall: is 0.99 m, must be above 0 and below the length, 0.99 m"),
-        ({"spall": np.nan}, "--spall: is nan m, must be above 0 and below the length, 0.99 m"),
         ({"speed": 0.0}, "--wave-speed: is 0 m/s, must be finite and above 0"),
         ({"speed": np.inf}, "--wave-speed: is inf m/s, must be finite and above 0"),
-        ({"coefficient": -0.1}, "--attenuation: is -0.1 1/m, must be finite and not below 0"),
         ({"coefficient": np.nan}, "--attenuation: is nan 1/m, must be finite and not below 0"),
         ({"free_end": FREE_END}, "--density: is missing, must be that of the bar (kg/m³)"),
         (
@@ -142,11 +121,8 @@ def test_without_attenuation_the_strength_stays_nominal(gauge):
 )
 def test_what_is_not_enough_is_refused(gauge, given, said):
     with pytest.raises(CaseError) as caught:
-        evaluate(Gauge(gauge.time, gauge.stress, 0.6, 0.99, None), **given)
+        evaluate(replace(gauge, density=None), **given)
     assert str(caught.value) == said
-
-
-def test_a_free_end_that_never_falls_tells_nothing(gauge):
     with pytest.raises(CaseError, match="--free-end: must fall and rise again before the pulse is back there"):
         evaluate(gauge, free_end=(TIME, np.linspace(0.0, 1.0, 400)))
 

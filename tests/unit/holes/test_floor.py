@@ -30,20 +30,17 @@ def test_a_slope_leaves_a_floor_at_one_side() -> None:
     assert floor_beside([], BOX, "left", 1.0) is None
 
 
-def test_holes_join() -> None:
-    steps = [rectangle(0.0, 20.0, 30.0, 31.0), rectangle(5.0, 12.0, 16.0, 20.5)]
-    floor = floor_beside(steps, BOX, "left", 1.0)
-
+def test_holes_join_and_floors_may_be_below_the_disks_or_narrow() -> None:
+    floor = floor_beside([rectangle(0.0, 20.0, 30.0, 31.0), rectangle(5.0, 12.0, 16.0, 20.5)], BOX, "left", 1.0)
     assert floor is not None
     assert floor.height == pytest.approx(12.0, abs=1e-12)
     assert floor.width == pytest.approx(6.0, abs=0.125)
-
-
-def test_a_floor_below_the_disks_is_at_their_lower_side() -> None:
     floor = floor_beside([rectangle(60.0, -5.0, 80.0, 40.0)], BOX, "right", 1.0)
-
     assert floor is not None
-    assert floor.height == 0.0
+    assert floor.height == 0.0  # the lower side of the disks
+    floor = floor_beside([polygon((35.0, 31.0), (71.0, 10.0), (71.0, 31.0))], BOX, "right", 1.0)
+    assert floor is not None
+    assert floor.width < 2.0  # of a slope up to the side
 
 
 @pytest.mark.parametrize(
@@ -57,10 +54,3 @@ def test_a_floor_below_the_disks_is_at_their_lower_side() -> None:
 )
 def test_without_a_way_down_along_the_side_there_is_none(hole) -> None:
     assert floor_beside([hole], BOX, "right", 1.0) is None
-
-
-def test_slopes_up_to_the_side_are_narrow() -> None:
-    floor = floor_beside([polygon((35.0, 31.0), (71.0, 10.0), (71.0, 31.0))], BOX, "right", 1.0)
-
-    assert floor is not None
-    assert floor.width < 2.0

@@ -53,23 +53,12 @@ def test_an_ellipse_is_turned_counter_clockwise() -> None:
     assert hole.contains(places + np.array([1.0, 2.0])).tolist() == [True, False, True, True, False]
 
 
-def test_an_ellipse_of_equal_axes_is_a_circle() -> None:
-    circle = SHAPES[0]
-    ellipse = Ellipse(name="h", type="ellipse", centre=(3.0, -1.0), semi_axes=(2.0, 2.0), angle=17.0)
-
-    assert np.array_equal(circle.contains(scattered(circle)), ellipse.contains(scattered(circle)))
-    np.testing.assert_allclose(ellipse.box, circle.box, rtol=1e-15)
-
-
-@pytest.mark.parametrize("turned", [False, True])
-def test_a_polygon_may_go_round_either_way_and_hollows_stay_out(turned: bool) -> None:
-    hole = Polygon(name="h", type="polygon", points=HORSESHOE[::-1] if turned else HORSESHOE)
+@pytest.mark.parametrize("points", [HORSESHOE, HORSESHOE[::-1]])
+def test_a_polygon_may_go_round_either_way_and_hollows_stay_out(points) -> None:
+    hole = Polygon(name="h", type="polygon", points=points)
     places = np.array([(1.5, 4.0), (2.5, 1.5), (3.5, 2.0), (2.5, 2.0 + 1e-9), (2.5, 4.0), (0.5, 3.0), (4.5, 1.5)])
-
     assert hole.contains(places).tolist() == [True, True, True, False, False, False, False]
-
-
-def test_a_corner_on_the_ray_counts_once() -> None:
+    # a corner on the ray counts once
     rhomb = Polygon(name="h", type="polygon", points=((0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)))
     places = np.array([(0.5, 0.0), (-2.0, 0.0), (-2.0, 1.0), (0.0, 0.0)])
     assert rhomb.contains(places).tolist() == [True, False, False, True]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.kernels.bar import plane_force, stored
-from dembound.kernels.bar_cracks import OPENING, WHOLE, soften
+from dembound.kernels.bar_cracks import soften
 from dembound.methods.bonds import Bonds
 from dembound.methods.fracture import Fracture
 from dembound.methods.rod import Range, Rod
@@ -36,9 +36,7 @@ def a_zone(horizon: int) -> Bonds:
 
 LAYOUTS = {
     "finite differences": lambda: Bonds(rod(), 0),
-    "one spacing": lambda: all_over(1),
     "three": lambda: all_over(3),
-    "eight": lambda: all_over(8),
     "a seam": lambda: a_zone(3),
 }
 
@@ -80,7 +78,7 @@ def test_a_crack_follows_its_law_and_takes_its_energy(bonds) -> None:
     straight line of each bond, so that the triangles of the balance add up to the area below it, except in the first
     one, of a share 1/N of the opening: from half of the limit on, it takes half of what it should.
     """
-    steps, run = 1000, Driven(bonds)
+    steps, run = 400, Driven(bonds)
     run.to(cracked(0.0, 0.5 * STRETCH))
     for share in np.arange(1, steps + 1) / steps:
         run.to(cracked(share * OPEN, (1.0 - share) * STRETCH))
@@ -115,17 +113,6 @@ def test_unloading_is_a_line_to_the_origin_and_pressure_meets_whole_bonds() -> N
     run.to(cracked(-2e-5, 0.0))  # pieces that meet again
     assert run.force(13) == pytest.approx(MODULUS * SECTION / SPACING * -2e-5, rel=1e-12)
     assert run.bonds.spring_broken[13] == run.number - 1
-
-
-@pytest.mark.parametrize("horizon", [0, 3])
-def test_no_motion_gains_energy_from_cracks(horizon: int) -> None:
-    run = Driven(all_over(horizon) if horizon else Bonds(rod(), 0))
-    rng = np.random.default_rng(5)
-    taken = [run.to(rng.normal(0.0, 0.3 * OPEN, COUNT)) for _ in range(300)]
-
-    assert min(taken) >= 0.0
-    assert np.count_nonzero(taken) > 250
-    assert {OPENING, WHOLE} & set(run.bonds.spring_broken.tolist()) or np.all(run.bonds.spring_broken > 0)
 
 
 def test_of_two_that_reach_the_limit_equally_one_begins() -> None:

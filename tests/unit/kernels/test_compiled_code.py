@@ -11,15 +11,11 @@ from dembound.kernels import loop
 FOLDER = Path(kernels.__file__).parent
 
 
-def test_compiled_code_is_kept_apart_for_every_state_of_the_sources() -> None:
+def test_compiled_code_is_kept_apart_for_every_state_of_the_sources(tmp_path) -> None:
     assert kernels.sources_digest(FOLDER) in loop._advance._cache.cache_path
-
-
-def test_a_change_in_any_file_is_another_state(tmp_path) -> None:
     copy = shutil.copytree(FOLDER, tmp_path / "kernels", ignore=shutil.ignore_patterns("__pycache__"))
     digests = {kernels.sources_digest(copy)}
     assert digests == {kernels.sources_digest(FOLDER)}
-
     for changed in (copy / "step.py", copy / "tables" / "motion.py"):
         changed.write_text(changed.read_text() + "\n")
         digests.add(kernels.sources_digest(copy))

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from moving_pairs import GEOMETRIES, PAIRS, PARTICLES, STEP, UNBREAKABLE, motion, pushed, two
+from plain_kernels import PlainPairs, one_pair, random_pairs
 
 from dembound.kernels.contact_measures import slack, strain_energy
-from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, sum_forces
+from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
 from dembound.kernels.tables import Contacts, Limits
 
 
@@ -30,10 +31,10 @@ def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:
 LIMITS = Limits(friction=0.8, tension=0.9, cohesion=0.8, tan_fa=0.5, geometry=REFERENCE)
 
 
-def test_a_motion_smaller_than_the_slack_takes_no_pair_out_of_the_elastic_law(random_pairs, plain) -> None:
+def test_a_motion_smaller_than_the_slack_takes_no_pair_out_of_the_elastic_law() -> None:
     rng = np.random.default_rng(8)
     pairs = random_pairs(PARTICLES, PAIRS, gap=0.2)
-    law = plain(pairs, LIMITS)
+    law = PlainPairs(pairs, LIMITS)
     arm = 1.1  # half of the longest distance and the largest difference of radii
     tried = 0
     for _ in range(60):
@@ -49,10 +50,10 @@ def test_a_motion_smaller_than_the_slack_takes_no_pair_out_of_the_elastic_law(ra
     assert tried > 20
 
 
-def test_slack_is_negative_just_where_a_pair_is_outside(random_pairs, plain) -> None:
+def test_slack_is_negative_just_where_a_pair_is_outside() -> None:
     rng = np.random.default_rng(9)
     pairs = random_pairs(PARTICLES, PAIRS, gap=0.2)
-    law = plain(pairs, LIMITS)
+    law = PlainPairs(pairs, LIMITS)
     found = []
     for size in np.repeat([0.03, 0.08, 0.2], 20):
         u = size * rng.uniform(-1.0, 1.0, (3, PARTICLES))
@@ -61,21 +62,21 @@ def test_slack_is_negative_just_where_a_pair_is_outside(random_pairs, plain) -> 
     assert 10 < sum(found) < 50
 
 
-@pytest.mark.parametrize(
-    ("motion", "room"),
-    [
-        (two(), 0.2 / 4.0),  # friction: 0.5·4·0.1 N left, k_s + μ k_n = 4 N/m
-        (two(-0.05), 0.3 / 4.0),
-        (two(0.099), 0.001 * 0.5),
-        (two(0.11), -0.01),
-    ],
-)
-def test_the_slack_of_one_contact_by_hand(one_pair, motion: np.ndarray, room: float) -> None:
+def test_the_slack_of_one_pair_by_hand() -> None:
     limits = UNBREAKABLE._replace(geometry=BONDED)
-    assert slack(motion, one_pair(overlap=0.1), limits, False) == pytest.approx(room, rel=1e-12)
+    torn, shorn = {"friction": 100.0, "tension": 0.3}, {"friction": 100.0, "cohesion": 0.4, "tan_fa": 0.6}
+    for moved, pair, changes, room in (
+        (two(-0.05), one_pair(overlap=0.1), {}, 0.3 / 4.0),  # 0.5·4·0.15 N left, k_s + μ k_n = 4 N/m
+        (two(0.099), one_pair(overlap=0.1), {}, 0.001 * 0.5),
+        # σ = 3 x/2 + 0.75 |θ|, whose two parts change by 1.5 per metre of relative motion at most
+        (two(0.04, turn=-0.08), one_pair(INTACT, overlap=1.0), torn, (0.3 - 0.06 - 0.06) / 3.0),
+        # τ = y/2 against 0.4 − 0.6 · 3 x/2: 0.5 and 0.6 · 1.5 per metre
+        (two(-0.1, -0.3), one_pair(INTACT, overlap=1.0), shorn, (0.4 + 0.09 - 0.15) / 1.4),
+    ):
+        assert slack(moved, pair, limits._replace(**changes), False) == pytest.approx(room, rel=1e-12)
 
 
-def test_a_pair_that_turns_leaves_small_displacements(one_pair) -> None:
+def test_a_pair_that_turns_leaves_small_displacements() -> None:
     pair = one_pair(overlap=10.0)
     limits = UNBREAKABLE._replace(friction=100.0)
     distance = pair.constants[0, 2]
@@ -84,36 +85,13 @@ def test_a_pair_that_turns_leaves_small_displacements(one_pair) -> None:
     assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED), False) > 0.0
 
 
-@pytest.mark.parametrize(
-    ("motion", "changes", "room"),
-    [
-        # σ = 3 x/2 + 0.75 |θ|, whose two parts change by 1.5 per metre of relative motion at most
-        (two(0.04, turn=-0.08), {"tension": 0.3}, (0.3 - 0.06 - 0.06) / 3.0),
-        (two(0.2, turn=0.2), {"tension": 0.3}, (0.3 - 0.3 - 0.15) / 3.0),
-        # τ = y/2 against 0.4 − 0.6 · 3 x/2: 0.5 and 0.6 · 1.5 per metre
-        (two(-0.1, -0.3), {"cohesion": 0.4, "tan_fa": 0.6}, (0.4 + 0.09 - 0.15) / 1.4),
-        (two(0.3, 0.3), {"cohesion": 0.4, "tan_fa": 0.6}, (0.4 - 0.27 - 0.15) / 1.4),
-    ],
-)
-def test_the_slack_of_one_bond_by_hand(one_pair, motion: np.ndarray, changes: dict, room: float) -> None:
-    # the contact is pressed together so much that it is far from opening and sliding
-    limits = UNBREAKABLE._replace(friction=100.0, geometry=BONDED, **changes)
-    assert slack(motion, one_pair(INTACT, overlap=1.0), limits, False) == pytest.approx(room, rel=1e-12)
-
-
-def test_without_pairs_there_is_all_the_slack_there_is(one_pair) -> None:
-    pair = one_pair()
-    nobody = Contacts(pair.begin, *(column[:0] for column in pair[1:]))
-    assert slack(two(), nobody, UNBREAKABLE, False) == np.inf
-
-
 @GEOMETRIES
-def test_stored_energy_is_that_of_all_springs(random_pairs, plain, geometry: int) -> None:
+def test_stored_energy_is_that_of_all_springs(geometry: int) -> None:
     limits = UNBREAKABLE._replace(geometry=geometry)
     pairs = random_pairs(PARTICLES, PAIRS)
     for u, v in motion(5):
         pushed(pairs, limits, u, v)
-    law, contact, bond = plain(pairs, limits), 0.0, 0.0
+    law, contact, bond = PlainPairs(pairs, limits), 0.0, 0.0
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
         _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], v[:, i], v[:, j], 0.0)
         _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, _, _ = pairs.constants[c]
@@ -126,18 +104,3 @@ def test_stored_energy_is_that_of_all_springs(random_pairs, plain, geometry: int
 
     # 60 terms of size 0.1
     assert strain_energy(u, pairs, geometry) == pytest.approx((contact, bond), rel=1e-13)
-
-
-def test_forces_are_the_slope_of_the_stored_energy(random_pairs) -> None:
-    pairs = random_pairs(PARTICLES, PAIRS)
-    closed = pairs._replace(constants=pairs.constants.copy())
-    closed.constants[:, 3] = closed.constants[:, 2] + 0.05
-    limits, (u, v) = UNBREAKABLE._replace(geometry=REFERENCE), motion(1)[0]
-    pushed(closed, limits, u, v)
-    force = np.empty_like(u)
-    sum_forces(closed, force)
-    way = np.random.default_rng(6).uniform(-1.0, 1.0, u.shape)
-    ahead, behind = (sum(strain_energy(u + side * way, closed, REFERENCE)) for side in (0.5, -0.5))
-
-    # quadratic, so the difference quotient is exact but for rounding of energies of size 100
-    assert ahead - behind == pytest.approx(-np.sum(force * way), abs=1e-12)

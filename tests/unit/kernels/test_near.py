@@ -1,27 +1,13 @@
-"""Near pairs by the grid of cells are those that a k-d tree and a trial of all images find."""
+"""Near pairs by the grid of cells are those that a trial of all pairs and images finds."""
 
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
 
 from dembound.kernels import near
 
 
-def by_tree(positions, radii, gap, periods):
-    """Rows i, j, image x, image y of near pairs in a wide box, by a k-d tree; axes of period 0.0 are not periodic."""
-    tree = cKDTree(positions, boxsize=periods)
-    pairs = tree.query_pairs(2.0 * radii.max() + gap, output_type="ndarray")
-    pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
-    first, second = pairs.T
-    between = positions[second] - positions[first]
-    images = -np.rint(np.divide(between, periods, out=np.zeros_like(between), where=periods > 0.0)).astype(int)
-    vectors = positions[second] + images * periods - positions[first]
-    close = np.hypot(*vectors.T) - radii[first] - radii[second] <= gap
-    return np.column_stack([pairs, images])[close]
-
-
 def by_trial(positions, radii, gap, periods):
-    """The same in a box of any width, by trial of all pairs and images, in the same order."""
+    """Rows i, j, image x, image y of near pairs, in order; axes of period 0.0 are not periodic."""
     found = []
     steps = [(-1, 0, 1) if period else (0,) for period in periods]
     for a, b in ((a, b) for a in steps[0] for b in steps[1]):
@@ -35,18 +21,18 @@ def by_grid(positions, radii, gap, periods):
     return np.hstack(near.near_pairs(positions, radii, gap, periods))
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("axes", [(1, 1), (1, 0), (0, 0)], ids=["periodic", "periodic along x", "open"])
-def test_pairs_are_those_of_a_tree_in_the_same_order(axes, seed):
+def test_pairs_are_those_of_a_trial_in_the_same_order(axes, seed):
     rng = np.random.default_rng(seed)
     count, ratio, gap = rng.integers(2, 400), rng.uniform(1.0, 4.0), rng.uniform(0.0, 0.5) * (seed % 3 > 0)
     radii = rng.uniform(1.0, ratio, count)
-    box = rng.uniform(1.0, 4.0, 2) * (4.0 * radii.max() + 2.0 * gap)  # from the least that a tree can do
+    box = rng.uniform(1.0, 4.0, 2) * (4.0 * radii.max() + 2.0 * gap)
     positions, periods = rng.random((count, 2)) * box, box * axes
-    assert by_grid(positions, radii, gap, periods).tolist() == by_tree(positions, radii, gap, periods).tolist()
+    assert by_grid(positions, radii, gap, periods).tolist() == by_trial(positions, radii, gap, periods).tolist()
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(8))
 def test_disks_may_lie_outside_and_touch_their_own_images(seed):
     rng = np.random.default_rng(100 + seed)
     count = rng.integers(1, 60)
@@ -67,11 +53,8 @@ def test_single_disks_far_away_neither_hide_pairs_nor_enlarge_the_table():
     assert np.prod(near.table_shape(np.array([1e12, 1e7]), 1.0, 300)) <= 1200
 
 
-def test_crowded_disks_all_find_each_other():
+def test_crowded_disks_all_find_each_other_and_none_has_no_pairs():
     positions = np.full((50, 2), 3.0)  # more pairs than there is room for at first
     found = by_grid(positions, np.ones(50), 0.0, np.zeros(2))
     assert found[:, :2].tolist() == [[i, j] for i in range(50) for j in range(i + 1, 50)]
-
-
-def test_no_disk_has_no_pairs():
     assert by_grid(np.empty((0, 2)), np.empty(0), 0.1, np.zeros(2)).shape == (0, 4)

@@ -104,13 +104,13 @@ def forces(bundle: WallTies, u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return force[LINES]
 
 
-@pytest.mark.parametrize("relative", [False, True])
-def test_forces_are_the_derivatives_of_the_energy(relative) -> None:
+def test_forces_are_the_derivatives_of_the_energy_and_add_to_what_is_there() -> None:
     of, u = given(), motion()
-    if not relative:
-        of = given(twin=np.full(TIES, -1))
     bundle, twins = ties(of), of.twin[of.twin >= 0]
-    force = forces(bundle, u, np.zeros_like(u))
+    already = np.random.default_rng(5).normal(size=(SUPPORTED, 3))
+    both = already.copy()
+    wall_forces(bundle, u, np.zeros_like(u), both)
+    force = (both - already)[LINES]
     for i in range(SUPPORTED):
         for c in range(3):
             ahead, behind = u.copy(), u.copy()
@@ -145,19 +145,6 @@ def test_a_tie_is_half_a_bond() -> None:
     np.testing.assert_allclose(forces(bundle, u, np.zeros_like(u)), expected, rtol=0.0, atol=1e-13)
 
 
-def test_nodes_out_of_reach_are_left_out() -> None:
-    """Where shape functions are zero, forces are the same without these nodes, whatever their motion."""
-    of, u = given(corrector=np.zeros((12, TIES))), motion()
-    of.along[[0, 2]] = 0.0
-    of.up[0] = 0.0
-    bundle = ties(of)
-    near = bundle._replace(reach=np.array([[1, 2, 1, POINTS], [0, POINTS, 0, POINTS]]))
-    force = forces(bundle, u, np.zeros_like(u))
-    u[:2, bundle.node.reshape(ELEMENTS, POINTS, POINTS)[0, :, [0, 2]]] = np.nan
-
-    np.testing.assert_array_equal(forces(near, u, np.zeros_like(u)), force)
-
-
 def test_velocities_count_as_displacements_in_the_lag() -> None:
     bundle, u, v = ties(lag=0.3), motion(), motion(4)
     force = forces(bundle, u, v)
@@ -167,16 +154,6 @@ def test_velocities_count_as_displacements_in_the_lag() -> None:
     u[:] = 0.0
     v[:, bundle.twin[bundle.twin >= 0]] = 0.0
     assert np.sum(forces(bundle, u, v) * v.T) < 0.0
-
-
-def test_forces_add_to_what_is_there() -> None:
-    bundle, u = ties(lag=0.1), motion()
-    already = np.random.default_rng(5).normal(size=(SUPPORTED, 3))
-    both = already.copy()
-    wall_forces(bundle, u, u, both)
-    alone = np.zeros((SUPPORTED, 3))
-    wall_forces(bundle, u, u, alone)
-    np.testing.assert_allclose(both, already + alone, rtol=0.0, atol=1e-13)
 
 
 def test_repeated_forces_are_added_at_other_lines() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from dembound.casefile.types import LAWS
-from dembound.laws import Elastic, Moduli, Stiffness
+from dembound.laws import Moduli, Stiffness
 
 ROUNDING = 1e-14
 """Relative: a handful of operations of 1.1e-16 each."""
@@ -33,15 +33,9 @@ def test_ratios_radii_and_the_bond_radius_enter_where_they_should() -> None:
     np.testing.assert_allclose(found.bending, [2.0 / 12.0], rtol=ROUNDING)
 
 
-def test_without_friction_only_the_bond_carries_shear() -> None:
-    found = stiffness(Moduli(emod=12.0, pb_emod=10.0), 1.0, 1.0, 2.0)
-
-    np.testing.assert_allclose(found.shear, [10.0], rtol=ROUNDING)
-
-
-def test_across_a_gap_only_the_bond_acts() -> None:
+def test_without_friction_or_across_a_gap_only_the_bond_carries() -> None:
+    np.testing.assert_allclose(stiffness(Moduli(emod=12.0, pb_emod=10.0), 1.0, 1.0, 2.0).shear, [10.0], rtol=ROUNDING)
     moduli = Moduli(emod=12.0, pb_emod=10.0, fric=1.0)
-
     for distance, contact in ((2.1, 0.0), (2.0, 12.0), (1.9, 12.0)):
         found = stiffness(moduli, 1.0, 1.0, distance)
         np.testing.assert_allclose([found.normal, found.shear], [[contact + 10.0]] * 2, rtol=ROUNDING)
@@ -56,7 +50,3 @@ def test_arms_meet_in_the_middle_of_overlap_or_gap() -> None:
     np.testing.assert_allclose(found.arm_i + found.arm_j, distance, rtol=ROUNDING)
     # either disk's surface is as far from the contact point
     np.testing.assert_allclose(found.arm_i - radius_i, found.arm_j - radius_j, atol=ROUNDING)
-
-
-def test_the_law_is_found_by_its_name_in_a_case() -> None:
-    assert isinstance(LAWS["elastic"], Elastic)

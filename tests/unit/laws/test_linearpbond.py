@@ -25,19 +25,12 @@ def test_the_columns_are_those_of_the_law() -> None:
     np.testing.assert_allclose(constants()[0], expected, rtol=1e-14)
 
 
-def test_overlapping_disks_just_touch() -> None:
+def test_overlapping_disks_just_touch_and_push_by_their_part_of_a_locked_in_stress() -> None:
     np.testing.assert_allclose(constants()[:, 3], [0.5, 0.6, 0.6], rtol=1e-15)
-
-
-@pytest.mark.parametrize("part", [0.25, 1.0, 3.0])
-def test_of_a_locked_in_stress_overlaps_push_by_their_part(part: float) -> None:
-    np.testing.assert_allclose(constants(locked_in=part)[:, 3], [0.5 + part * 0.1, 0.6, 0.6], rtol=1e-15)
-
-
-def test_disks_that_touch_but_for_rounding_touch() -> None:
-    ahead = np.array([[0.6 * (1.0 + 1e-12), 0.0]])
+    for part in (0.25, 3.0):
+        np.testing.assert_allclose(constants(locked_in=part)[:, 3], [0.5 + part * 0.1, 0.6, 0.6], rtol=1e-15)
+    ahead = np.array([[0.6 * (1.0 + 1e-12), 0.0]])  # touches but for rounding
     (row,) = LAWS["linearpbond"].pair_constants(MODULI, *(radii[:1] for radii in RADII), ahead, bonded=True)
-
     assert row[3] == row[2]
 
 

@@ -1,7 +1,5 @@
 """Springs and bonds of a bar as methods lay them: what they carry, when they give way, and what that leaves."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -42,12 +40,7 @@ def pulled(*planes: int, elongation: float = LIMIT) -> np.ndarray:
     return u
 
 
-def test_end_nodes_have_half_a_volume() -> None:
-    assert ROD.volumes.tolist() == [0.0625] + 39 * [0.125] + [0.0625]
-    assert np.all(ROD.springs == WHOLE)
-
-
-@pytest.mark.parametrize("horizon", [1, 2, 3, 5])
+@pytest.mark.parametrize("horizon", [1, 3])
 def test_bonds_are_those_of_the_law(horizon: int) -> None:
     rows = ROD.bond_rows(horizon)
 
@@ -62,7 +55,7 @@ def test_bonds_are_those_of_the_law(horizon: int) -> None:
         assert not rows[p - 1, COUNT - p :].any()
 
 
-@pytest.mark.parametrize("horizon", [1, 3, 4])
+@pytest.mark.parametrize("horizon", [1, 4])
 def test_another_micromodulus_leaves_youngs_modulus(horizon: int) -> None:
     influence = 1.0 - np.arange(1, horizon + 1) / (horizon + 1.0)  # of a cone
     bonds = zoned(horizon, (0, COUNT), complement=False, influence=influence)
@@ -89,7 +82,7 @@ def test_bonds_without_a_stiffness_are_none() -> None:
             ROD.bond_rows(len(influence), np.array(influence))
 
 
-@pytest.mark.parametrize("horizon", [1, 2, 3, 5])
+@pytest.mark.parametrize("horizon", [1, 3])
 def test_shares_of_the_stress_are_those_of_the_middle(horizon: int) -> None:
     everywhere, at_the_end = zoned(horizon, (0, COUNT)), zoned(horizon, (0, horizon + 3))
 
@@ -98,30 +91,30 @@ def test_shares_of_the_stress_are_those_of_the_middle(horizon: int) -> None:
     assert at_the_end.shares(ROD.ranges[0]) == Bonds(ROD, 0).shares(ROD.ranges[0]) == (1.0,)
 
 
-def test_without_a_horizon_there_are_springs_alone() -> None:
-    bonds = Bonds(ROD, 0)
-
+def test_without_a_horizon_there_are_springs_alone_that_ask_at_their_share_of_the_critical_stretch() -> None:
+    bonds = Bonds(ROD, 0, trigger_ratio=0.8)
     assert bonds.bond.shape == (0, COUNT)
     assert np.array_equal(bonds.spring, np.full(40, WHOLE))
     assert bonds.triggers.all()
-    assert np.array_equal(bonds.spring_limit, np.full(40, LIMIT))
     assert bonds.alive == 40
-
-
-def test_a_spring_asks_at_its_share_of_the_critical_stretch() -> None:
-    bonds = Bonds(ROD, 3, trigger_ratio=0.8)
     nearly, reached = pulled(7, elongation=0.8 * LIMIT * (1 - 1e-9)), pulled(7, 30, elongation=0.8 * LIMIT)
-
     assert bonds.triggered(nearly).tolist() == []
     assert bonds.triggered(reached).tolist() == [7, 30]
     assert bonds.triggered(-reached).tolist() == []
+    bonds.stop_triggering()
+    assert bonds.triggered(reached).size == 0
+    assert np.array_equal(bonds.spring_limit, np.full(40, LIMIT))
+    # the kernel has to look at each of them: no node is plain any more
+    plain, mixed = ranges(bonds, supported=[])
+    assert plain.size == 0
+    assert mixed.tolist() == [[0, COUNT, 1]]
 
 
-ZONES = [[(10, 30)], [(10, 20), (25, 35)], [(0, 20)], [(15, 41)], [(0, 41)], [(18, 20)], [(10, 20), (15, 32)]]
+ZONES = [[(10, 20), (25, 35)], [(0, 20)], [(0, 41)], [(18, 20)], [(15, 32), (10, 20)]]
 
 
 @pytest.mark.parametrize("zones", ZONES, ids=str)
-@pytest.mark.parametrize("horizon", [1, 2, 3, 5])
+@pytest.mark.parametrize("horizon", [1, 3, 5])
 def test_springs_carry_what_bonds_leave(horizon: int, zones: list[tuple[int, int]]) -> None:
     bonds = zoned(horizon, *zones)
 
@@ -134,9 +127,14 @@ def test_springs_carry_what_bonds_leave(horizon: int, zones: list[tuple[int, int
         assert not bonds.spring[first + horizon : last - horizon - 1].any()
     assert np.all(bonds.spring[outside] == WHOLE)
     assert bonds.spring.min() >= 0.0
+    # bonds join the nodes of a zone alone
+    inside = {(i, p) for a, b in bonds.zones for p in range(1, horizon + 1) for i in range(a, b - p)}
+    assert {(i, row + 1) for row, i in zip(*np.nonzero(bonds.bond), strict=True)} == inside
+    assert np.array_equal(bonds.laid, bonds.bond > 0.0)
+    assert bonds.alive == len(inside) + np.count_nonzero(bonds.spring)
 
 
-@pytest.mark.parametrize("horizon", [2, 3, 5])
+@pytest.mark.parametrize("horizon", [2, 5])
 def test_without_complement_a_plane_has_springs_or_bonds(horizon: int) -> None:
     bonds = zoned(horizon, (10, 30), complement=False)
     spanned = stress(bonds) - bonds.spring / WHOLE > 0.0
@@ -144,15 +142,6 @@ def test_without_complement_a_plane_has_springs_or_bonds(horizon: int) -> None:
     assert np.array_equal(bonds.spring == 0.0, spanned)
     assert np.flatnonzero(spanned).tolist() == list(range(10, 29))
     assert stress(bonds).min() < 0.9
-
-
-def test_bonds_join_the_nodes_of_a_zone_alone() -> None:
-    bonds = zoned(3, (10, 20), (25, 40))  # the second reaches the end, see below
-    inside = {(i, p) for a, b in ((10, 20), (25, 41)) for p in (1, 2, 3) for i in range(a, b - p)}
-
-    assert {(i, row + 1) for row, i in zip(*np.nonzero(bonds.bond), strict=True)} == inside
-    assert np.array_equal(bonds.laid, bonds.bond > 0.0)
-    assert bonds.alive == len(inside) + np.count_nonzero(bonds.spring)
 
 
 @pytest.mark.parametrize(
@@ -163,24 +152,14 @@ def test_bonds_join_the_nodes_of_a_zone_alone() -> None:
         ([(3, 12)], [(0, 12)]),  # three nodes would be left, less than a family
         ([(4, 12)], [(4, 12)]),
         ([(30, 38)], [(30, 41)]),
-        ([(30, 37)], [(30, 37)]),
         ([(10, 20), (20, 30)], [(10, 30)]),
         ([(10, 20), (21, 30)], [(10, 20), (21, 30)]),
         ([(20, 30), (5, 9), (8, 21)], [(5, 30)]),
-        ([(10, 20), (12, 15)], [(10, 20)]),
     ],
     ids=str,
 )
 def test_zones_end_with_the_bar_and_grow_together(asked: list, zones: list) -> None:
     assert zoned(3, *asked).zones == zones
-
-
-def test_bonds_of_zones_do_not_depend_on_their_order() -> None:
-    whole = zoned(3, (8, 32))
-    for parts in (((8, 20), (15, 32)), ((15, 32), (8, 20)), ((8, 20), (20, 32))):
-        bonds = zoned(3, *parts)
-        assert np.array_equal(bonds.bond, whole.bond)
-        assert np.array_equal(bonds.spring, whole.spring)
 
 
 def test_springs_ask_until_bonds_cover_their_plane_as_far_as_they_can() -> None:
@@ -196,44 +175,6 @@ def test_springs_ask_until_bonds_cover_their_plane_as_far_as_they_can() -> None:
     assert not everywhere.triggers.any()
     assert np.flatnonzero(everywhere.spring).tolist() == [0, 1, 2, 37, 38, 39]
     assert everywhere.triggered(pulled(0)).size == 0
-
-
-def test_soft_ends_are_those_of_one_spacing() -> None:
-    soft = Bonds(ROD, 3)
-    soft.soften_ends()
-    one = zoned(1, (0, COUNT), complement=False)
-
-    np.testing.assert_allclose(soft.spring, one.bond[0, :-1], rtol=8 * EPS)
-
-
-@pytest.mark.parametrize("zones", [[], *ZONES], ids=str)
-def test_stiffness_is_that_of_all_pairs(zones: list[tuple[int, int]]) -> None:
-    bonds = zoned(3, *zones)
-    dense = np.zeros((COUNT, COUNT))
-    pairs = [(k, k + 1, bonds.spring[k]) for k in range(40)]
-    pairs += [(i, i + row + 1, bonds.bond[row, i]) for row, i in zip(*np.nonzero(bonds.bond), strict=True)]
-    for i, j, k in pairs:
-        dense[np.ix_((i, j), (i, j))] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    bands = bonds.stiffness()
-
-    assert bands.shape == (4, COUNT)
-    for d, band in enumerate(bands):
-        np.testing.assert_allclose(band[: COUNT - d], np.diag(dense, -d), atol=16 * EPS * WHOLE)
-
-
-@pytest.mark.parametrize("horizon", [0, 3])
-def test_springs_that_ask_no_more_break_at_the_critical_stretch(horizon: int) -> None:
-    bonds = Bonds(ROD, horizon, trigger_ratio=0.8)
-    u = pulled(7, elongation=2.0 * LIMIT)
-    assert bonds.triggered(u).tolist() == [7]
-    bonds.stop_triggering()
-
-    assert bonds.triggered(u).size == 0
-    assert np.array_equal(bonds.spring_limit, np.full(40, LIMIT))
-    # the kernel has to look at each of them: no node is plain any more
-    plain, mixed = ranges(bonds, supported=[])
-    assert plain.size == 0
-    assert mixed.tolist() == [[0, COUNT, 1]]
 
 
 def broken_at(bonds: Bonds, plane: int, step: int) -> Bonds:
@@ -256,18 +197,13 @@ def test_what_is_broken_stays_broken_when_a_zone_grows() -> None:
     carried = stress(bonds)
     assert carried[20] == 0.0
     assert bonds.bond_broken[2, 18] == 5
+    everywhere = zoned(3, (0, COUNT))
+    everywhere.spring[0], everywhere.spring_broken[0] = 0.0, 3
+    everywhere.add_zone(0, COUNT)
+    assert everywhere.spring[0] == 0.0 < everywhere.spring[1]
     # bonds of up to three across that plane are missing on two planes on each side of it, too
     np.testing.assert_allclose(np.delete(carried, range(18, 23)), 1.0, atol=12 * EPS)
     assert carried[18:23].max() < 0.99
-
-
-def test_a_broken_spring_is_not_replaced() -> None:
-    bonds = zoned(3, (0, COUNT))
-    bonds.spring[0], bonds.spring_broken[0] = 0.0, 3
-    bonds.add_zone(0, COUNT)
-
-    assert bonds.spring[0] == 0.0
-    assert bonds.spring[1] > 0.0
 
 
 def lost_beside(horizon: int, away: int) -> float:
@@ -276,8 +212,7 @@ def lost_beside(horizon: int, away: int) -> float:
     return float(weights[away:].sum() / (2.0 * weights.sum()))
 
 
-@pytest.mark.parametrize("horizon", [1, 2, 3, 5])
-@pytest.mark.parametrize("zones", [[(0, COUNT)], [(10, 31)], []], ids=["all", "zone", "none"])
+@pytest.mark.parametrize(("horizon", "zones"), [(1, [(10, 31)]), (3, [(0, COUNT)]), (3, [(10, 31)]), (5, [])], ids=str)
 def test_damage_beside_a_crack_is_the_same_whatever_was_there(horizon: int, zones: list[tuple[int, int]]) -> None:
     bonds = broken_at(zoned(horizon, *zones), 20, step=4)
     damage = np.zeros(COUNT)
@@ -299,31 +234,6 @@ def test_damage_of_finite_differences() -> None:
     assert bonds.damage(6)[[0, 1, 2]].tolist() == pytest.approx([1.0, 1.0 / 3.0, 0.0], abs=4 * EPS)
 
 
-def test_damage_near_an_end_is_of_the_cut_family() -> None:
-    bonds = broken_at(zoned(3, (0, COUNT), complement=False), 0, step=4)
-
-    # node 1 has 0.5 on its left, 1 + 1 + 0.5 on its right; nodes 2 and 3 have it in the second and third place
-    expected = [1.0, 0.5 / 3.0, 0.5 / 4.0, 0.25 / 4.75, 0.0]
-    np.testing.assert_allclose(bonds.damage()[:5], expected, atol=4 * EPS)
-
-
-def test_damage_at_the_edge_of_a_zone_counts_the_spring_for_what_is_left_out() -> None:
-    bonds = zoned(3, (10, 31))
-    # the spring beside the zone: node 9 has springs alone, node 10 bonds on its right
-    damage = broken_at(bonds, 9, step=2).damage()
-
-    assert damage[[9, 10]].tolist() == pytest.approx([0.5, 0.5], abs=4 * EPS)
-    assert not np.delete(damage, [9, 10]).any()
-
-
-def test_damage_at_the_end_of_an_earlier_step() -> None:
-    bonds = broken_at(broken_at(zoned(3, (0, COUNT)), 10, step=4), 30, step=9)
-
-    assert not bonds.damage(3).any()
-    assert np.flatnonzero(bonds.damage(4)).tolist() == list(range(8, 14))
-    assert np.array_equal(bonds.damage(9), bonds.damage())
-
-
 def test_breaks_are_told_in_the_order_of_their_steps() -> None:
     bonds = zoned(3, (10, 31))
     bonds.bond_broken[2, 15], bonds.bond_broken[0, 12] = 7, 3
@@ -341,15 +251,7 @@ def ranges(bonds: Bonds, supported: list[int]) -> tuple[np.ndarray, np.ndarray]:
     return arrays.plain, arrays.mixed
 
 
-def test_ranges_of_a_zone_between_springs() -> None:
-    plain, mixed = ranges(zoned(3, (15, 25)), supported=[0, 1])
-
-    # springs next to the zone are whole as bonds reach no further than its nodes; so nodes up to it are plain
-    assert plain.tolist() == [[2, 15], [25, 40]]
-    assert mixed.tolist() == [[0, 2, 1], [15, 25, 1], [40, 41, 1]]
-
-
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(10))
 def test_every_node_is_moved_once_and_holds_on_to_what_its_range_says(seed: int) -> None:
     rng = np.random.default_rng(seed)
     horizon = int(rng.integers(0, 6))
@@ -375,34 +277,3 @@ def test_every_node_is_moved_once_and_holds_on_to_what_its_range_says(seed: int)
         assert held == bonds.spring[max(a - 1, 0) : b].any()
     zoned_nodes = [i for a, b in bonds.zones for i in range(a, b)]
     assert np.all(np.isin(np.flatnonzero(bonded), zoned_nodes))
-
-
-def test_arrays_for_kernels_are_the_bonds_own() -> None:
-    bonds = zoned(3, (10, 30), trigger_ratio=0.5)
-    bonds.rod = Rod((replace(ROD.ranges[0], density=4.0),))
-    arrays = bonds.arrays(np.array([0]), 1.0)
-
-    for name in ("spring", "spring_limit", "triggers", "bond", "spring_broken", "bond_broken"):
-        assert getattr(arrays, name) is getattr(bonds, name)
-    assert arrays.contacts.closed is bonds.closed
-    assert arrays.zones.tolist() == [[10, 30]]
-    np.testing.assert_allclose(arrays.bond_limit, LIMIT * np.array([[1.0, 2.0, 3.0]]), rtol=2 * EPS)
-    # of 4 kg/m³ · 0.5 m² · 0.25 m a node
-    assert (arrays.plain_push.tolist(), arrays.plain_limit.tolist()) == ([2.0 * WHOLE] * 2, [0.5 * LIMIT] * 2)
-    assert (arrays.sections.tolist(), arrays.space.size) == ((COUNT - 1) * [0.5], COUNT + 4)
-    assert arrays.mobility.tolist() == [0.0, *(COUNT - 2) * [2.0], 4.0]
-    assert (arrays.plain_keep.tolist(), arrays.mixed_keep.tolist()) == (2 * [1.0], 3 * [1.0])
-    assert (arrays.drag.size, arrays.before.size) == (0, 1)
-
-
-def test_attenuation_slows_every_node_down_alike() -> None:
-    bonds = zoned(3, (10, 30))
-    swift = bonds.arrays(np.array([0]), 0.25)
-    bonds.rod = Rod((replace(ROD.ranges[0], drag_rate=1.6),))
-    slow = bonds.arrays(np.array([0]), 0.25)
-
-    # m (v⁺ − v)/Δt = F − C (v⁺ + v)/2 with C = 1.6 m/s: v⁺ = (1 − 0.2)/(1 + 0.2) v + F Δt/m/(1 + 0.2)
-    assert [*slow.plain_keep, *slow.mixed_keep] == pytest.approx(5 * [0.8 / 1.2], rel=2 * EPS)
-    assert slow.plain_push == pytest.approx(swift.plain_push / 1.2, rel=4 * EPS)
-    np.testing.assert_allclose(slow.mobility, swift.mobility / 1.2, rtol=4 * EPS)
-    np.testing.assert_allclose(slow.drag, 1.6 * ROD.mass, rtol=2 * EPS)

@@ -48,14 +48,11 @@ def test_what_a_method_does_at_first(keys: dict, name: str, largest: int, carryi
 @pytest.mark.parametrize(
     "keys",
     [
-        {"type": "peridynamics"},
         {"type": "peridynamics", "horizon": 0},
         {"type": "switch", "horizon": 3, "trigger": 1.1},
-        {"type": "switch", "horizon": 3, "trigger": 0.0},
         {"type": "switch", "horizon": 3, "before": "patch"},
         {"type": "patch", "horizon": 3, "reach": 0},
         {"type": "finite_difference", "horizon": 1},
-        {"type": "finite_elements"},
     ],
     ids=str,
 )
@@ -89,8 +86,9 @@ def test_peridynamics_never_asks(corrected: bool) -> None:
     assert np.flatnonzero(bonds.spring).tolist() == ([0, 1, 2, 57, 58, 59] if corrected else [])
 
 
-@pytest.mark.parametrize("corrected", [False, True])
-@pytest.mark.parametrize("before", ["finite_difference", "peridynamics"])
+@pytest.mark.parametrize(
+    ("before", "corrected"), [("finite_difference", False), ("peridynamics", False), ("peridynamics", True)]
+)
 def test_a_switch_turns_into_peridynamics_all_over(before: str, corrected: bool) -> None:
     found = method("switch", horizon=3, before=before, trigger=0.8, corrected_ends=corrected)
     bonds = found.begin(ROD)
@@ -118,17 +116,6 @@ def test_a_patch_lays_zones_around_all_that_asks() -> None:
     assert not bonds.triggers[[20, 50]].any()
 
 
-def test_a_patch_grows_from_where_its_edge_asks() -> None:
-    found = method("patch", horizon=2, reach=3)
-    bonds = found.begin(ROD)
-    bonds.add_zone(20, 40)
-    assert bonds.triggered(pulled(39)).tolist() == [39]
-    found.on_trigger(bonds, pulled(39))
-
-    # by half of its twenty nodes, which is more than three horizons, beyond the two nodes of the spring
-    assert bonds.zones == [(20, 51)]
-
-
 @pytest.mark.parametrize(("beyond", "zone"), [(-1, (11, 41)), (0, (10, 41)), (1, (15, 41)), (2, (14, 41))], ids=str)
 def test_a_patch_grows_alike_to_the_left_and_to_the_right(beyond: int, zone: tuple[int, int]) -> None:
     found = method("patch", horizon=2, reach=2)
@@ -145,8 +132,8 @@ def test_a_patch_grows_alike_to_the_left_and_to_the_right(beyond: int, zone: tup
     assert zones == [zone, (61 - zone[1], 61 - zone[0])]
 
 
-@pytest.mark.parametrize("horizon", [1, 2, 3, 8])
-@pytest.mark.parametrize("plane", [0, 1, 5, 30, 57, 59])
+@pytest.mark.parametrize("horizon", [1, 3, 8])
+@pytest.mark.parametrize("plane", [0, 1, 30, 57, 59])
 def test_what_a_patch_has_answered_does_not_ask_again(horizon: int, plane: int) -> None:
     found = method("patch", horizon=horizon, reach=1, trigger=1.0)
     bonds = found.begin(ROD)

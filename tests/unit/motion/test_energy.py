@@ -15,8 +15,6 @@ from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.start import Start
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
-from dembound.kernels.contact_measures import strain_energy
-from dembound.kernels.contacts import REFERENCE, UPDATED
 from dembound.kinds import loads
 from dembound.motion.energy import GAIN, Entry, Ledger
 from dembound.motion.simulation import Simulation
@@ -31,7 +29,7 @@ FALL = {"load": [{"name": "weight", "acceleration": [0.0, -10.0]}]}
 
 def simulated(bar, step: float | None = None, **changes: object) -> Simulation:
     scene = build(bar(changes))
-    return Simulation(scene, step or choose_step(scene)[0])
+    return Simulation(scene, step or choose_step(scene)[0], np.array([0]))
 
 
 def booked(simulation: Simulation, interval: int = 1, last: int = NEVER) -> Ledger:
@@ -41,20 +39,24 @@ def booked(simulation: Simulation, interval: int = 1, last: int = NEVER) -> Ledg
     return ledger
 
 
-def test_a_falling_disk_turns_the_work_of_its_weight_into_motion(bar) -> None:
-    simulation = simulated(bar, STEP, **LONE, **FALL)
+@pytest.mark.parametrize("damp", [0.0, 0.3])
+def test_a_falling_disk_turns_the_work_of_its_weight_into_motion(bar, damp: float) -> None:
+    simulation = simulated(bar, STEP, **LONE, **FALL, **{"material.damp": damp})
     ledger = booked(simulation)
     simulation.advance(20)
     entry = ledger.entries[-1]
 
-    # at step k the velocities half a step before and after are g Δt k and g Δt (k + 1); it fell g Δt² k(k + 1)/2
-    work = 0.5 * MASS * (10.0 * STEP) ** 2 * 19 * 20
+    # after its first step, which finds it at rest, it is held back by a part of its weight in every step; undamped, at
+    # step k the velocities half a step before and after are g Δt k and g Δt (k + 1), and it fell g Δt² k(k + 1)/2
+    fallen = entry.load / (10.0 * MASS)
+    assert entry.damping == pytest.approx(damp * 10.0 * MASS * (fallen - 0.5 * 10.0 * STEP**2), rel=1e-12)
     assert entry.time == pytest.approx(19 * STEP, rel=1e-15)
-    assert entry.kinetic == pytest.approx(0.5 * MASS * (10.0 * 19.5 * STEP) ** 2, rel=1e-12)
-    assert entry.kinetic + entry.stepping == pytest.approx(work, rel=1e-12)
-    assert entry.load == pytest.approx(work, rel=1e-12)
-    assert abs(entry.error) < 1e-12 * work
-    assert (entry.contact, entry.bond, entry.outside, entry.damping, entry.friction, entry.crack) == (0.0,) * 6
+    assert abs(entry.error) < 1e-12 * entry.load
+    assert (entry.contact, entry.bond, entry.outside, entry.friction, entry.crack) == (0.0,) * 5
+    if damp == 0.0:
+        assert entry.load == pytest.approx(0.5 * MASS * (10.0 * STEP) ** 2 * 19 * 20, rel=1e-12)
+        assert entry.kinetic == pytest.approx(0.5 * MASS * (10.0 * 19.5 * STEP) ** 2, rel=1e-12)
+        assert entry.kinetic + entry.stepping == pytest.approx(entry.load, rel=1e-12)
 
 
 @pytest.mark.parametrize(("came", "counts"), [(9e-8, False), (1.1e-7, True)])
@@ -67,25 +69,11 @@ def test_what_is_rounding_of_the_stored_energy_is_not_supplied(bar, came: float,
         assert ledger._supplied(outside, load) == (came if counts else 0.0)
 
 
-def test_local_damping_takes_its_share(bar) -> None:
-    simulation = simulated(bar, STEP, **LONE, **FALL, **{"material.damp": 0.3})
-    ledger = booked(simulation)
-    simulation.advance(20)
-    entry = ledger.entries[-1]
-
-    # after its first step, which finds it at rest, it is held back by 0.3 of its weight in every step
-    assert abs(entry.error) < 1e-12 * entry.load
-    fallen = entry.load / (10.0 * MASS)
-    first = 0.5 * 10.0 * STEP**2  # half a step's way at the first velocity is not damped
-    assert entry.damping == pytest.approx(0.3 * 10.0 * MASS * (fallen - first), rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("interval", "last", "steps"),
     [
         (10, NEVER, [0, 10, 20]),
         (10, 27, [0, 10, 20, 27]),
-        (14, 28, [0, 14, 28]),
         (40, 4, [0, 4]),
         (1, NEVER, list(range(29))),
     ],
@@ -93,70 +81,18 @@ def test_local_damping_takes_its_share(bar) -> None:
 def test_entries_may_be_made_at_any_step(bar, interval: int, last: int, steps: list[int]) -> None:
     each, other = simulated(bar), simulated(bar)
     every, some = booked(each), booked(other, interval, last)
-    each.advance(29)
-    for part in (4, 9, 12, 4):  # wherever the run is cut
-        other.advance(part)
+    assert some.columns.shape == (0, len(fields(Entry)))
+    record = each.advance(29)
+    records = [other.advance(part) for part in (4, 9, 12, 4)]  # wherever the run is cut
 
     assert np.array_equal(some.columns, every.columns[steps])
+    assert [entry.time for entry in some.entries] == [step * other.time_step for step in steps]
+    assert some.columns.tolist() == [[getattr(entry, field.name) for field in fields(Entry)] for entry in some.entries]
     assert np.array_equal(other.state.displacement, each.state.displacement)
+    assert np.array_equal(np.concatenate(records), record)
 
 
-def test_an_entry_is_complete_after_its_step(bar) -> None:
-    simulation = simulated(bar)
-    ledger = booked(simulation, 5)
-    simulation.advance(5)
-    assert len(ledger.entries) == 1
-
-    simulation.advance(1)
-    assert [entry.time for entry in ledger.entries] == [0.0, 5 * simulation.time_step]
-
-
-def test_entries_leave_no_gap_in_what_probes_record(bar) -> None:
-    scene = build(bar())
-    plain, kept = (Simulation(scene, choose_step(scene)[0], np.array([7])) for _ in range(2))
-    booked(kept, 9)
-    records = [kept.advance(9), kept.advance(1), kept.advance(5)]
-
-    assert np.array_equal(np.concatenate(records), plain.advance(15))
-
-
-def test_columns_stand_in_the_order_of_an_entry(bar) -> None:
-    simulation = simulated(bar)
-    ledger = booked(simulation, 10)
-    assert ledger.columns.shape == (0, len(fields(Entry)))
-    simulation.advance(11)
-
-    assert len(ledger.entries) == 2
-    assert ledger.columns.tolist() == [
-        [getattr(entry, field.name) for field in fields(Entry)] for entry in ledger.entries
-    ]
-
-
-CHAIN = {
-    "packing.size": [2.0, 0.5],
-    "monitor": [],
-    "motion.held": ["y", "rotation"],
-    "boundary.right": {"type": "fixed"},
-}
-PULL = {"boundary.left": {"type": "velocity", "wave_p": "pulse"}, "wave.pulse.amplitude": -1.0}
 BRITTLE = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e6}
-
-
-def test_a_chain_that_is_pulled_apart_closes_its_books_with_the_crack(bar) -> None:
-    # contacts that only touch let go without force, so all that the step of the crack loses is the bond's energy
-    step, rate = 2e-5, 1.0
-    simulation = simulated(bar, step, **CHAIN, **PULL, **BRITTLE)
-    ledger = booked(simulation)
-    while simulation.state.step < 1000 and (not ledger.entries or ledger.entries[-1].crack == 0.0):
-        simulation.advance(1)
-    simulation.advance(1)
-    *_, last_whole, cracked, after = ledger.entries
-
-    assert last_whole.crack == 0.0 < cracked.crack == after.crack
-    # σ = k̄_n u reaches 1 MPa at 0.4 mm, with k̄_n A = 1.25e9 N/m; within a step the pull adds up to 1 m/s · Δt
-    assert cracked.crack == pytest.approx(0.5 * 1.25e9 * 4e-4**2, rel=rate * step / 4e-4)
-    # before and after, sums of some ten terms a step, each rounded
-    assert np.abs(ledger.columns[:, -1]).max() < 10.0 * len(ledger.entries) * np.finfo(float).eps * after.outside
 
 
 def test_what_was_locked_in_is_no_energy_gained(bar) -> None:
@@ -171,25 +107,18 @@ def test_what_was_locked_in_is_no_energy_gained(bar) -> None:
 
 
 def test_energies_of_a_bar_are_in_springs_and_in_bonds(spalling) -> None:
-    ends = {"method.corrected_ends": True, "bar.attenuation": 0.5, "bar.strength": 1e9}
-    scene = build_bar(spalling(ends))
+    scene = build_bar(spalling({"method.corrected_ends": True, "bar.attenuation": 0.5, "bar.strength": 1e9}))
     simulation = Simulation(scene, bar_stability.choose_step(scene)[0])
     ledger = booked(simulation)
-    for _ in range(12):
-        place, before = simulation.state.displacement[0].copy(), simulation.state.velocity[0].copy()
-        simulation.advance(1)
-    (part,) = simulation.system.parts
-    entry, bonds = ledger.entries[-1], part.bonds
+    simulation.advance(11)
+    place = simulation.state.displacement[0].copy()
+    simulation.advance(1)
+    entry, bonds = ledger.entries[-1], simulation.system.parts[0].bonds
 
     stretched = [place[p:] - place[:-p] for p in (1, 2, 3)]
-    after = simulation.state.velocity[0]
-    assert entry.kinetic == pytest.approx(0.5 * np.sum(scene.mass * (0.5 * (before + after)) ** 2), rel=1e-12)
-    assert entry.stepping == pytest.approx(-0.125 * np.sum(scene.mass * (after - before) ** 2), rel=1e-9)
     assert entry.contact == pytest.approx(0.5 * np.sum(bonds.spring * stretched[0] ** 2), rel=1e-12)
     of_bonds = sum(0.5 * np.sum(bonds.bond[p, : 40 - p] * each**2) for p, each in enumerate(stretched))
     assert entry.bond == pytest.approx(of_bonds, rel=1e-12)
-    assert min(entry.kinetic, entry.contact, entry.bond, entry.damping, entry.outside) > 0.0
-    assert (entry.load, entry.friction, entry.crack, entry.law_switch) == (0.0,) * 4
     # twelve steps of sums over 41 nodes and 120 bonds
     assert abs(entry.error) < 12 * 41 * np.finfo(float).eps * entry.outside
 
@@ -242,74 +171,6 @@ def rigid(simulation: Simulation) -> np.ndarray:
     return np.stack([-y, x, np.ones(scene.count)])
 
 
-def test_forces_that_turn_with_a_body_do_what_its_contacts_take(bar) -> None:
-    simulation = at_rest(bar, **PACKED, **{"material.elastic_start": False})
-    ledger, scene = booked(simulation), simulation.scene
-    simulation.state.velocity = 0.5 * rigid(simulation)
-    works = [0.0]
-    for _ in range(40):
-        force, before = simulation.system.balance.force.copy(), simulation.state.velocity.copy()
-        u = simulation.state.displacement.copy()
-        simulation.advance(1)
-        extra = np.zeros_like(force)
-        followers = simulation.system.balance.followers
-        extra[:2, followers.node] = followers.extra
-        assert (np.abs(extra).max() > 0.0) == (np.abs(u).max() > 0.0)
-        half = 0.5 * simulation.time_step * np.sum((force + extra) * before)
-        # up to the whole step of the entry; what balances has sums of 60 forces of 1e6 N
-        assert ledger.entries[-1].balance == pytest.approx(works[-1] + half, rel=0.0, abs=1e-9)
-        works.append(
-            works[-1] + half + 0.5 * simulation.time_step * np.sum((force + extra) * simulation.state.velocity)
-        )
-
-    assert simulation.state.laws == [("linearpbond", 0)]
-    # a constant force would do −½θ²·2pA: what turns does nothing on the whole, but for what stretches the body
-    angle = 0.5 * 39 * simulation.time_step
-    area = np.prod(scene.size)
-    assert abs(ledger.entries[-1].balance) < 0.1 * angle**2 * 10e6 * area
-    assert abs(simulation.system.balance.work(simulation.state.displacement)) > 0.5 * angle**2 * 10e6 * area
-
-
-def test_the_jump_of_the_potential_where_the_law_changes_is_its_handover(bar) -> None:
-    simulation = at_rest(bar, **PACKED)
-    ledger = booked(simulation)
-    simulation.state.velocity = rigid(simulation)
-    arm = np.stack([rigid(simulation)[1], -rigid(simulation)[0]])
-    while len(simulation.state.laws) == 1:
-        there = simulation.state.displacement.copy()
-        assert not simulation.state.work[:, 4].any()
-        simulation.advance(1)
-    (_, _), (law, number) = simulation.state.laws
-    contacts = simulation.system.contacts["body"]
-    force, pairs = simulation.system.balance.force, contacts.arrays
-    angle = np.sum(scene_inertia(simulation) * there * rigid(simulation)) / np.sum(
-        scene_inertia(simulation) * rigid(simulation) ** 2
-    )
-    (c, s), turned = (np.cos(angle), np.sin(angle)), there.copy()
-    stretched = there[:2] - angle * np.stack([-arm[1], arm[0]]) + arm
-    turned[:2] = np.array([[c, -s], [s, c]]) @ stretched - arm
-    # under the history-dependent law contacts and bonds have what they sheared by along the way
-    contacts.start_from_displacements(there)
-    before = sum(strain_energy(there, pairs, REFERENCE)) - np.sum(force * there)
-    contacts.start_from_displacements(turned)
-    after = sum(strain_energy(turned, pairs, UPDATED)) - np.sum(force * turned)
-
-    assert law == "linearpbond"
-    assert number == simulation.state.step - 1
-    assert not np.array_equal(there, simulation.state.displacement)
-    # the step to come counts the turning's work from half a step before, when it did none
-    extra = (np.array([[c, -s], [s, c]]) - np.eye(2)) @ force[:2]
-    half = 0.5 * simulation.time_step * np.sum(extra * simulation.state.switch_velocity[:2])
-    assert abs(half) > 0.01 * abs(after - before)
-    # sides turn as the body does, but for its strain of 1e-2 MPa/E
-    assert simulation.state.work[:, 4].tolist() == pytest.approx([after - before - half] * 2, rel=1e-5)
-    # most of it is that the forces have come nearer to the body: (1 − cos θ) Σ F·r, with Σ F·r = −2pA
-    assert after - before == pytest.approx((1.0 - c) * np.sum(force[:2] * arm), rel=1e-4)
-
-    assert ledger.entries[-2].law_switch == 0.0
-    assert ledger.entries[-1].law_switch == simulation.state.work[1, 4]
-
-
 def scene_inertia(simulation: Simulation) -> np.ndarray:
     """Mass, mass and moment of inertia (3, n)."""
     return np.stack([simulation.scene.mass, simulation.scene.mass, simulation.scene.inertia])
@@ -347,26 +208,6 @@ def test_a_run_that_gains_energy_from_nothing_is_stopped(bar, gain: float, stops
     assert f"had supplied {came:.3g} J/m at most; take a smaller run.safety or run.time_step" in message
 
 
-@pytest.mark.parametrize(("gain", "stops"), [(0.99 * GAIN, False), (1.01 * GAIN, True)])
-def test_what_loads_bring_in_a_run_may_have(bar, gain: float, stops: bool) -> None:
-    simulation = simulated(bar, STEP, **LONE, **FALL)
-    # until step k it falls g Δt² k(k + 1)/2
-    brought = 0.5 * MASS * (10.0 * STEP) ** 2 * 12 * 13
-    # downwards at w and half a step on at w + g Δt: ½m w (w + g Δt) is what came in and the gain
-    speed = np.sqrt((0.5 * 10.0 * STEP) ** 2 + 2.0 * (1.0 + gain) * brought / MASS) - 5.0 * STEP
-    simulation.track(Push(12, lambda state: np.array([[0.0], [-speed], [0.0]])))
-    ledger = booked(simulation, 2)
-    simulation.advance(11)
-    assert abs(ledger.entries[-1].error) < 1e-12 * ledger.entries[-1].load
-    if not stops:
-        simulation.advance(2)
-        assert len(ledger.entries) == 7
-        assert ledger.entries[-1].error == pytest.approx(gain * brought, rel=1e-10)
-        return
-    with pytest.raises(RunError, match=f"gained {gain * brought:.3g} J/m .* had supplied {brought:.3g} J/m at most"):
-        simulation.advance(2)
-
-
 PASSING = {
     "bar": {"length": 1.0, "spacing": 0.01, "density": 2620.0, "wave_speed": 2740.0},
     "method": {"type": "finite_difference"},
@@ -377,7 +218,7 @@ PASSING = {
 """A pulse of 91 µs that takes 365 µs to leave through the other end, of which nothing returns."""
 
 
-@pytest.mark.parametrize("interval", [1, 60, 300, 450])  # steps of 3.65 µs: it has left after 125
+@pytest.mark.parametrize("interval", [1, 300])  # steps of 3.65 µs: it has left after 125
 def test_a_pulse_that_comes_and_goes_between_two_entries_was_supplied(interval: int) -> None:
     scene = build_bar(loads(tomli_w.dumps(PASSING)))
     simulation = Simulation(scene, bar_stability.choose_step(scene)[0])

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.special import airy
 
-from dembound.motion.paths import PRECURSOR, Front, Source, first_arrivals, plane_needed
+from dembound.motion.paths import Front, Source, first_arrivals, plane_needed
 from dembound.table import EVERYWHERE
 
 LEVEL = {"left": (-np.inf, 0.0, np.inf, 0.0), "bottom": (0.0, -np.inf, 0.0, np.inf)}
@@ -13,11 +12,6 @@ LEVEL = {"left": (-np.inf, 0.0, np.inf, 0.0), "bottom": (0.0, -np.inf, 0.0, np.i
 
 def source(box, start=0.0):
     return Source(box, start, np.inf, 1.0)
-
-
-def test_precursors_are_weak_where_they_end() -> None:
-    assert airy(PRECURSOR)[0] < 1e-9 * airy(0.0)[0]
-    assert airy(0.9 * PRECURSOR)[0] > 1e-9 * airy(0.0)[0]
 
 
 def test_a_front_has_come_its_way_and_the_length_of_its_precursor() -> None:
@@ -52,9 +46,15 @@ def test_from_a_source_at_the_side_it_is_the_way_back_alone() -> None:
     assert source(EVERYWHERE).distance_over("top", 9.0, place) == pytest.approx([3.0])
 
 
-@pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
 @pytest.mark.parametrize(
-    "box", [(3.0, 2.0, 3.0, 2.0), (2.0, 1.0, 30.0, 30.0), EVERYWHERE, LEVEL["left"], LEVEL["bottom"]]
+    ("side", "box"),
+    [
+        ("left", (3.0, 2.0, 3.0, 2.0)),
+        ("right", (2.0, 1.0, 30.0, 30.0)),
+        ("bottom", LEVEL["left"]),
+        ("top", LEVEL["bottom"]),
+        ("top", EVERYWHERE),
+    ],
 )
 def test_at_the_plane_needed_the_last_way_is_as_long_as_waves_get(side: str, box) -> None:
     rng = np.random.default_rng(3)

@@ -78,11 +78,6 @@ def test_monitors_have_to_be_silent_not_their_nodes() -> None:
     assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1, lambda record, _: record.sum(axis=1, keepdims=True)) == 10 + 9
 
 
-def test_what_never_rests_never_ends() -> None:
-    steady = np.full((100, 1), 0.3)
-    assert ended_at(steady, Silent(1e-3, 4.0, 0.0), 10) is None
-
-
 def rule_of(case):
     kind = kind_of(case)
     scene = kind.build(case)
@@ -109,16 +104,10 @@ def test_a_run_waits_for_the_last_wave_at_the_farthest_monitor(bar) -> None:
     near = scene.positions[scene.monitors["near"]]
     slow = 500.0
     assert later.earliest == pytest.approx(0.52 + np.hypot(9.75 - near[0], 0.75 - near[1]) / slow, rel=1e-12)
+    constant = {"type": "constant", "amplitude": 0.1, "start": 0.2}  # waited for until it comes
+    assert rule_of(bar({**changes, "wave.pulse": constant}))[0].earliest == pytest.approx(0.2 + far / 1000.0, rel=1e-12)
     assert rule_of(bar({**changes, "wave.pulse.period": 0.9}))[0].hold == pytest.approx(0.9, rel=1e-12)
     assert rule_of(bar({**changes, "run.silent_for": 0.07, "run.silent_level": 0.2}))[0].hold == 0.07
-
-
-def test_a_wave_that_never_ends_is_waited_for_until_it_comes(bar) -> None:
-    constant = {"type": "constant", "amplitude": 0.1, "start": 0.2}
-    rule, scene = rule_of(bar({"run.until": "silent", "wave.pulse": constant}))
-
-    there = scene.positions[scene.monitors["middle"], 0]
-    assert rule.earliest == pytest.approx(0.2 + there / 1000.0, rel=1e-12)
 
 
 def test_a_rock_bar_waits_for_its_load(spalling) -> None:

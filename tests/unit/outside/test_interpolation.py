@@ -47,17 +47,6 @@ def test_points_in_the_box_and_beyond_the_mesh_belong_to_the_nearest_element() -
     np.testing.assert_array_equal(mesh.elements[on_edges], [[0, 0], [1, 1], [4, 2], [2, 3]])
 
 
-def test_a_polynomial_is_interpolated_in_unequal_elements() -> None:
-    mesh = uneven()
-    points = np.random.default_rng(3).uniform((0.0, 0.0), (9.0, 11.0), (50, 2))
-    x, y = mesh.positions.T
-    node, weight = interpolation(mesh, points)
-
-    found = (weight * (x**4 - 2.0 * x * y**3)[node]).sum(axis=1)
-    expected = points[:, 0] ** 4 - 2.0 * points[:, 0] * points[:, 1] ** 3
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13 * np.abs(expected).max())
-
-
 def test_slopes_are_those_of_the_field() -> None:
     points = np.array([[2.2, 17.3], [23.9, 25.9], [10.1, 20.05], [13.0, 20.4], [0.9, 16.0]])
     mesh = buried()

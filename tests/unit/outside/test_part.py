@@ -1,28 +1,13 @@
 """The part of a continuum: its memory, energies, fields, and what it refuses."""
 
-from functools import cached_property
-
 import numpy as np
 import pytest
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.kernels.tables import Grid
 from dembound.motion.energy import Ledger
-from dembound.motion.layout import Layout
-from dembound.motion.part import System
 from dembound.motion.simulation import Simulation
 from dembound.outside.alone import GridScene, step_limit
-from dembound.outside.body import GridBody
 from dembound.outside.part import GridPart, stress
-
-
-def test_it_gives_its_law_and_its_nodes(grid) -> None:
-    body = grid()
-    part = GridPart(body, 1e-4, first_node=7)
-
-    assert isinstance(part.law(), Grid)
-    assert part.nodes == slice(7, 7 + body.count)
-    assert len(part.take_cracks(3)) == 0
 
 
 def test_a_run_continued_from_memory_has_the_same_bits(grid, noise) -> None:
@@ -64,48 +49,6 @@ def test_the_ledger_closes_with_supports_at_the_edge_of_a_layer(grid, noise) -> 
     largest = max(abs(getattr(entry, name)) for entry in ledger.entries for name in ("kinetic", "contact", "damping"))
     assert np.abs(change).max() < 500 * np.finfo(float).eps * largest
     assert abs(ledger.entries[-1].outside) > 1e-2 * largest
-
-
-class Two(GridScene):
-    """Two continua in one scene, in the slots that their bodies name."""
-
-    def __init__(self, first: GridBody, second: GridBody) -> None:
-        super().__init__(first)
-        self.bodies = first, second
-
-    count = property(lambda self: sum(body.count for body in self.bodies))  # type: ignore[assignment]
-    mass = property(lambda self: np.concatenate([body.mass for body in self.bodies]))  # type: ignore[assignment]
-    inertia = mass
-    positions = property(lambda self: np.concatenate([body.mesh.positions for body in self.bodies]))  # type: ignore[assignment]
-
-    @cached_property
-    def layout(self) -> Layout:
-        slots = np.concatenate([body.blocks.slot for body in self.bodies])
-        return Layout(slots, max(body.blocks.end for body in self.bodies))
-
-    def system(self, time_step: float) -> System:
-        first, second = self.bodies
-        parts = [GridPart(first, time_step), GridPart(second, time_step, first_node=first.count)]
-        return System(parts, [], np.zeros((3, self.count)))
-
-
-def test_parts_in_one_scene_move_as_alone(grid, noise) -> None:
-    """The second one begins in a slot that is no multiple of eight, after some that nobody uses."""
-    first, alone = grid(3), grid(4)
-    second = grid(4, first_slot=first.blocks.end + 5)
-    step, v = 0.9 * min(step_limit(first), step_limit(alone)), noise(alone)
-    both = Simulation(Two(first, second), step)
-    one = Simulation(GridScene(alone), step)
-    both.state.velocity = np.concatenate([noise(first, 1), v], axis=1)
-    one.state.velocity = v
-    both.run(50)
-    one.run(50)
-
-    np.testing.assert_array_equal(both.state.displacement[:, first.count :], one.state.displacement)
-    here, there = both.system.parts[1], one.system.parts[0]
-    assert here.stored(both.state.u) == there.stored(one.state.u)
-    for name, values in there.memory().items():
-        np.testing.assert_array_equal(here.memory()[name], values)
 
 
 @pytest.mark.parametrize("even", [True, False])

@@ -19,13 +19,6 @@ def test_pairs_through_faces_and_corners():
     assert images.tolist() == [[-1, -1], [0, -1], [1, 0]]
 
 
-def test_reach_is_measured_from_the_rims():
-    positions = np.array([[1.0, 1.0], [2.5, 1.0], [1.0, 3.0]])
-    radii = np.array([0.5, 0.75, 0.25])  # gaps 0.25 and 1.25
-    assert len(near_pairs(positions, radii, BOX, 0.2)[0]) == 0
-    assert near_pairs(positions, radii, BOX, 0.3)[0].tolist() == [[0, 1]]
-
-
 def test_strips_run_upwards_one_after_the_other():
     positions = np.array([[2.5, 0.0], [0.5, 4.0], [0.9, 1.0], [2.1, 5.0]])
     assert strip_order(positions, 1.0).tolist() == [2, 1, 0, 3]

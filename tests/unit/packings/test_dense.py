@@ -17,26 +17,27 @@ def pair_forces(brick):
     return np.where(overlaps > 0, overlaps / lengths, 0.0)[:, None] * brick.vectors
 
 
-def test_same_seed_same_bits(random_brick, recipe):
+def test_same_seed_same_bits_another_seed_another_brick(random_brick, recipe):
     again = pack_dense(recipe)
     for field in fields(again):
         assert np.array_equal(getattr(again, field.name), getattr(random_brick, field.name)), field.name
-
-
-def test_another_seed_another_brick(random_brick, recipe):
     other = pack_dense(replace(recipe, seed=recipe.seed + 1))
     assert not np.array_equal(other.positions[:50], random_brick.positions[:50])
 
 
-def test_stress_is_the_one_asked_for(dense_brick, recipe):
+def test_the_brick_has_the_stress_asked_for_and_a_state_that_is_told(dense_brick, recipe):
     forces = pair_forces(dense_brick)
-    stress = -np.einsum("ba,bc->ac", forces, dense_brick.vectors) / np.prod(dense_brick.size)
+    area = np.prod(dense_brick.size)
+    stress = -np.einsum("ba,bc->ac", forces, dense_brick.vectors) / area
     # 5e-4 is the tolerance of the pressure search
     assert -0.5 * np.trace(stress) == pytest.approx(recipe.pressure, rel=5e-4)
     assert dense_brick.stress == pytest.approx([stress[0, 0], stress[1, 1], stress[0, 1]], rel=1e-9)
+    assert dense_brick.solid_fraction == pytest.approx((np.pi * dense_brick.radii**2).sum() / area)
+    assert dense_brick.coordination == 2 * len(dense_brick.pairs) / len(dense_brick.radii)
+    assert dense_brick.mean_diameter == pytest.approx(2 * dense_brick.radii.mean())
 
 
-def test_forces_balance(dense_brick):
+def test_forces_balance_in_the_box_without_loose_disks(dense_brick):
     forces = pair_forces(dense_brick)
     sums = np.zeros_like(dense_brick.positions)
     np.subtract.at(sums, dense_brick.pairs[:, 0], forces)
@@ -47,11 +48,8 @@ def test_forces_balance(dense_brick):
     # round-off: one coordinate of 10 m is known to 1e-15 m, the mean overlap is 3e-3 m, so 1e-12 at most
     assert ratio == pytest.approx(dense_brick.residual_ratio, abs=1e-11)
     assert ratio <= 1e-9
-
-
-def test_no_loose_disks(dense_brick):
-    contacts = np.bincount(dense_brick.pairs.ravel(), minlength=len(dense_brick.radii))
-    assert contacts[~dense_brick.edge_rows.any(axis=1)].min() >= 3
+    assert np.bincount(dense_brick.pairs.ravel(), minlength=len(free))[free].min() >= 3
+    assert np.all((dense_brick.positions >= 0) & (dense_brick.positions < dense_brick.size))
 
 
 def test_contacts_are_those_of_brute_force_over_all_images(dense_brick, recipe):
@@ -76,7 +74,7 @@ def test_bond_gap_lists_near_contacts_too(random_brick, recipe):
     assert len(wide.pairs) > len(random_brick.pairs)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 1.5, 3.0])
+@pytest.mark.parametrize("ratio", [1.0, 3.0])
 def test_radii_are_uniform_with_the_mean_asked_for(recipe, ratio):
     brick = pack_dense(replace(recipe, radius_ratio=ratio, size=(10.0, 10.0)))
     assert brick.radii.mean() == pytest.approx(recipe.radius, rel=2e-3)
@@ -86,11 +84,7 @@ def test_radii_are_uniform_with_the_mean_asked_for(recipe, ratio):
     assert np.abs(np.sort(brick.radii) - spread).max() <= 0.05 * np.ptp(brick.radii) + 1e-12
 
 
-def test_disks_lie_in_the_box(dense_brick):
-    assert np.all((dense_brick.positions >= 0) & (dense_brick.positions < dense_brick.size))
-
-
-def test_rows_are_straight_equal_and_touching(edged_brick):
+def test_rows_are_straight_equal_and_touching(edged_brick, recipe):
     for row, (across, along) in enumerate([(0, 1), (1, 0)]):
         member = edged_brick.edge_rows[:, row]
         assert np.all(edged_brick.positions[member, across] == 0.0)
@@ -101,10 +95,7 @@ def test_rows_are_straight_equal_and_touching(edged_brick):
         assert np.count_nonzero(within) == np.count_nonzero(member)  # a ring through the periodic face
         assert np.abs(edged_brick.gaps[within]).max() < 1e-13  # round-off of 10 m
     assert np.count_nonzero(edged_brick.edge_rows.all(axis=1)) == 1
-
-
-def test_row_disks_keep_their_size_while_the_core_is_scaled(edged_brick, recipe):
-    core = edged_brick.radii[~edged_brick.edge_rows.any(axis=1)]
+    core = edged_brick.radii[~edged_brick.edge_rows.any(axis=1)]  # which is scaled alone
     assert core.mean() == pytest.approx(recipe.radius, rel=2e-3)
 
 
@@ -113,10 +104,3 @@ def test_failure_says_how_far_it_got(recipe, monkeypatch):
     monkeypatch.setattr(dense, "SIZE_TOLERANCE", 0.0)
     with pytest.raises(PackingError, match=r"at least 0\.\d\d % in 1 starts"):
         pack_dense(recipe)
-
-
-def test_summary_numbers(random_brick):
-    area = random_brick.size.prod()
-    assert random_brick.solid_fraction == pytest.approx((np.pi * random_brick.radii**2).sum() / area)
-    assert random_brick.coordination == 2 * len(random_brick.pairs) / len(random_brick.radii)
-    assert random_brick.mean_diameter == pytest.approx(2 * random_brick.radii.mean())

@@ -6,7 +6,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from dembound.casefile.types import PackingTable
 from dembound.errors import CaseError
-from dembound.packings import EdgedBrick, RandomBrick, Square
+from dembound.packings import Square
 from dembound.packings import random_brick as random_module
 
 B = {"pattern": "B", "size": [20.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
@@ -17,22 +17,11 @@ def read(table):
     return TypeAdapter(PackingTable).validate_python(table)
 
 
-def test_the_pattern_chooses_the_table():
-    assert isinstance(read({"pattern": "A", "size": [4.0, 1.0], "radius": 0.25}), Square)
-    assert isinstance(read(B), RandomBrick)
-    assert isinstance(read(C), EdgedBrick)
-
-
-def test_copies():
+def test_the_extent_is_given_in_metres_or_in_bricks():
     assert read(B).copies == (2, 1)
-    assert Square(size=(1000.0, 50.0), radius=0.25).copies == (2000, 100)
     assert Square(size=(0.3, 0.6), radius=0.05).copies == (3, 6)  # 0.3/0.1 is not 3 in floating point
     assert Square(size=(2.66667, 2.0), radius=1.0 / 3.0).copies == (4, 3)  # six digits
-
-
-def test_the_extent_is_given_in_metres_or_in_bricks():
     assert Square(bricks=(4, 3), radius=0.25).extent == (2.0, 1.5)
-    assert Square(size=(2.0, 1.5), radius=0.25).extent == (2.0, 1.5)
     assert Square(size=(2.0, 1.5), radius=0.25).with_copies(5, 1).extent == (2.5, 0.5)
     for both in ({}, {"size": (2.0, 1.5), "bricks": (4, 3)}):
         with pytest.raises(ValidationError, match="must have exactly one of size"):
@@ -48,15 +37,11 @@ def test_the_extent_is_given_in_metres_or_in_bricks():
         ({"brick": [1.0, 10.0]}, "brick: 1 m is too small, 2.4 m is the least"),
         ({"size": [1e19, 1e19]}, r"size: holds 4e\+38 disks of this radius, must hold at most 500,000,000"),
         ({"size": None, "bricks": [10**8, 10**8]}, r"bricks: holds 4e\+18 disks of this radius, must hold at most "),
-        ({"radius": 1e-9}, r"size: holds 5e\+19 disks of this radius, must hold at most 500,000,000"),
         ({"radius": 0.001, "size": [10.0, 10.0]}, r"brick: holds 2.5e\+07 disks of this radius, must hold at most 1"),
         ({"brick": [5e-324, 5e-324]}, "is 4.94066e-324, must be 0 or of a size between 1e-30 and 1e"),
         ({"size": None, "bricks": [10**9, 1]}, "less than or equal to 500000000"),
-        ({"seed": 2**63}, "less than or equal to 9223372036854775807"),
         ({"bond_gap": 0.3}, "bond_gap: 0.3 m is larger than the mean radius"),
         ({"radius_ratio": 0.9}, "greater than or equal to 1"),
-        ({"confining_stress": 0.0}, "greater than 0"),
-        ({"radios": 1.0}, "Extra inputs are not permitted"),
     ],
 )  # fmt: skip
 def test_mistakes_are_named(change, message):
@@ -87,20 +72,12 @@ def test_confining_stress_out_of_range_names_the_range(modulus):
         read({**B, "confining_stress": 1e7}).pack(modulus)
 
 
-def test_without_a_confining_stress_the_brick_does_not_depend_on_the_modulus():
-    soft, stiff = read(B).pack(1e6), read(B).pack(1e12)
-    assert np.array_equal(soft.positions, stiff.positions)
-    assert soft.stress[:2].mean() == pytest.approx(-8e-3, rel=1e-3)  # 0.8 %, reached within 0.1 %
-
-
-def test_bricks_are_packed_once(monkeypatch):
+def test_bricks_are_packed_once_for_a_stress_over_the_modulus(monkeypatch):
     first = read(B).pack(1.25e9)
+    assert first.stress[:2].mean() == pytest.approx(-8e-3, rel=1e-3)  # 0.8 %, reached within 0.1 %
     monkeypatch.setattr(random_module, "pack_dense", None)  # packing again would fail
-    assert np.array_equal(read(B).pack(1.25e9).positions, first.positions)
-    assert np.array_equal(read({**B, "confining_stress": 2e7}).pack(2.5e9).positions, first.positions)
-
-
-def test_edged_table_packs_its_rows():
-    brick = read({**C, "size": [5.2, 5.2], "brick": [5.2, 5.2]}).pack(1.25e9)
-    assert np.count_nonzero(brick.edge_rows, axis=0).tolist() == [10, 10]
-    assert brick.radii[brick.edge_rows.any(axis=1)] == pytest.approx(np.full(19, 0.26))
+    for modulus, change in ((1.25e9, {}), (1e12, {}), (2.5e9, {"confining_stress": 2e7})):
+        assert np.array_equal(read({**B, **change}).pack(modulus).positions, first.positions)
+    monkeypatch.undo()
+    edged = read({**C, "size": [5.2, 5.2], "brick": [5.2, 5.2]}).pack(1.25e9)
+    assert edged.radii[edged.edge_rows.any(axis=1)] == pytest.approx(np.full(19, 0.26))  # ten on each side

@@ -1,7 +1,9 @@
 """Every figure that a test of this folder makes is read."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
+import h5py
 import pytest
 from matplotlib.figure import Figure
 from readable import problems_of
@@ -24,3 +26,20 @@ def read_figures(monkeypatch, request) -> Iterator[None]:
     yield
     problems = [line for figure in made if figure.get_suptitle() for line in problems_of(figure)]
     assert not problems, "\n".join(problems)
+
+
+@pytest.fixture
+def run(tmp_path) -> Path:
+    """Where copies of records are."""
+    return tmp_path / "run.h5"
+
+
+@pytest.fixture
+def copied(run) -> Callable[[Path], h5py.File]:
+    """Opens a copy of a record, which is `run`, to change it."""
+
+    def copy(record: Path) -> h5py.File:
+        run.write_bytes(record.read_bytes())
+        return h5py.File(run, "r+")
+
+    return copy

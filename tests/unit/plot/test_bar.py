@@ -21,12 +21,10 @@ def recorded(spalled_run) -> dict[str, np.ndarray]:
 
 
 @pytest.fixture
-def changed(spalled_run, tmp_path):
-    """A copy of the record, and the file to change it by."""
-    path = tmp_path / "run.h5"
-    path.write_bytes(spalled_run.read_bytes())
-    with h5py.File(path, "r+") as file:
-        yield path, file
+def changed(spalled_run, copied):
+    """A copy of the record, to change it."""
+    with copied(spalled_run) as file:
+        yield file
 
 
 def keep(file: h5py.File, count: int) -> None:
@@ -54,7 +52,7 @@ def drawn(panel, place: float, time: float) -> np.ndarray:
     return image[int(row), int(column), :3].astype(float)
 
 
-def test_stress_and_damage_stand_over_place_and_time_and_below_along_the_bar(spalled_run, recorded):
+def test_stress_damage_and_cracks_stand_over_place_and_time_and_below_along_the_bar(spalled_run, recorded):
     figure = plot_bar(spalled_run)
     stress, damage, *last = figure.axes[:4]
     np.testing.assert_array_equal(picture_of(stress).get_array(), from_rest(recorded["stress"] / 1e6))
@@ -62,33 +60,31 @@ def test_stress_and_damage_stand_over_place_and_time_and_below_along_the_bar(spa
     largest = np.abs(recorded["stress"]).max() / 1e6
     assert picture_of(stress).get_clim() == (-largest, largest)
     assert picture_of(damage).get_clim() == (0.0, 1.0)
+    broken = np.column_stack([recorded["crack_position"][:, 0], 1e3 * recorded["crack_time"]])
+    assert len(broken) > 0
+    for panel in (stress, damage):
+        assert (panel.get_xlim(), panel.get_ylim()) == ((0.0, 1.0), (0.0, 1.5))
+        assert picture_of(panel).get_extent() == (0.0, 1.0, 0.0, 1.5)
+        (marks,) = [each for each in panel.collections if isinstance(each, PathCollection)]
+        np.testing.assert_allclose(marks.get_offsets(), broken, rtol=1e-15)
     for panel, name, scale in zip(last, ("stress", "damage"), (1e6, 1.0), strict=True):
         line = panel.lines[0]
         np.testing.assert_allclose(line.get_xdata(), np.linspace(0.0, 1.0, 41), rtol=1e-15)
         np.testing.assert_array_equal(line.get_ydata(), recorded[name][-1] / scale)
-        assert panel.get_xlabel() == "x (m)"
-        assert panel.get_title("left") == "at the end, t = 1.5 ms"
+        assert (panel.get_xlabel(), panel.get_title("left")) == ("x (m)", "at the end, t = 1.5 ms")
     assert [panel.get_xlabel() for panel in figure.axes[4:]] == ["stress, tension positive (MPa)", "local damage (–)"]
     assert stress.get_ylabel() == damage.get_ylabel() == "time (ms)"
     assert figure.get_suptitle() == "spalled: stress and local damage along the bar"
 
 
-def test_pictures_fill_the_whole_bar_from_the_start_to_the_end(spalled_run):
-    for panel in plot_bar(spalled_run).axes[:2]:
-        assert panel.get_xlim() == (0.0, 1.0)
-        assert panel.get_ylim() == (0.0, 1.5)
-        assert picture_of(panel).get_extent() == (0.0, 1.0, 0.0, 1.5)
-
-
-def test_stress_changes_evenly_between_snapshots_and_damage_at_once(changed):
-    run, file = changed
-    shots = list(file["snapshots"].values())
+def test_stress_changes_evenly_between_snapshots_and_damage_at_once(changed, run):
+    shots = list(changed["snapshots"].values())
     for number, shot in enumerate(shots):
         shot["stress"][:] = 1e6 * (number >= 6)
         shot["damage"][:] = float(number >= 6)
     for number, time in ((5, 0.7e-3), (6, 1.1e-3)):  # not where evenly spaced ones are, 0.75 and 0.875 ms
         shots[number].attrs["time"] = time
-    file.flush()
+    changed.flush()
     stress, damage = plot_bar(run).axes[:2]
     below, above = drawn(stress, 0.5, 0.6), drawn(stress, 0.5, 1.1)
     # one pixel of some 500 in 1.5 ms is less than 1 % of the way between the snapshots, and colours are whole numbers
@@ -100,53 +96,30 @@ def test_stress_changes_evenly_between_snapshots_and_damage_at_once(changed):
     assert np.any(drawn(damage, 0.5, 0.89) != drawn(damage, 0.5, 0.91))
 
 
-def test_a_bar_begins_at_rest(changed):
-    run, file = changed
-    file["snapshots/0000/stress"][:] = 1e6
-    file.flush()
+def test_a_bar_begins_at_rest_and_a_long_run_tells_seconds(changed, run):
+    changed["snapshots/0000/stress"][:] = 1e6
+    changed.flush()
     stress = plot_bar(run).axes[0]
     assert picture_of(stress).get_array()[0].max() == 0.0
     assert np.ptp(drawn(stress, 0.5, 0.002)) < np.ptp(drawn(stress, 0.5, 0.06))  # white is grey: red, green, blue alike
-
-
-def test_a_long_run_tells_seconds(changed):
-    run, file = changed
-    for shot in file["snapshots"].values():
+    for shot in changed["snapshots"].values():
         shot.attrs["time"] *= 100.0
-    file.flush()
+    del changed["laws"]
+    changed["laws/name"] = ["finite differences", "peridynamics, m = 3"]
+    changed["laws/time"] = [0.0, 0.125]
+    changed.flush()
     figure = plot_bar(run)
+    assert "peridynamics, m = 3 from 0.125 s" in [text.get_text() for text in figure.legends[0].get_texts()]
     assert figure.axes[0].get_ylabel() == "time (s)"
     assert figure.axes[0].get_ylim() == pytest.approx((0.0, 0.15))
     assert figure.axes[2].get_title("left") == "at the end, t = 0.15 s"
 
 
-def test_broken_bonds_are_marked_where_and_when_they_broke(spalled_run, recorded):
-    assert len(recorded["crack_time"]) > 0
-    for panel in plot_bar(spalled_run).axes[:2]:
-        (marks,) = [each for each in panel.collections if isinstance(each, PathCollection)]
-        expected = np.column_stack([recorded["crack_position"][:, 0], 1e3 * recorded["crack_time"]])
-        np.testing.assert_allclose(marks.get_offsets(), expected, rtol=1e-15)
-
-
-def test_a_method_that_takes_over_is_a_line_with_its_name(changed):
-    run, file = changed
-    del file["laws"]
-    file["laws/name"] = ["finite differences", "peridynamics, m = 3"]
-    file["laws/time"] = [0.0, 1.25e-3]
-    file.flush()
-    figure = plot_bar_field(run, "velocity")
-    (line,) = figure.axes[0].lines
-    assert list(line.get_ydata()) == [1.25, 1.25]
-    assert "peridynamics, m = 3 from 1.25 ms" in [text.get_text() for text in figure.legends[0].get_texts()]
-
-
-def test_of_few_snapshots_there_is_a_line_for_each(changed, recorded):
-    run, file = changed
-    keep(file, FEWEST)
+def test_of_few_snapshots_there_is_a_line_for_each_and_the_last_alone_is_enough(changed, run, recorded):
+    keep(changed, FEWEST)
     assert plot_bar(run).axes[0].images
-    keep(file, FEWEST - 1)
-    figure = plot_bar(run)
-    stress, damage = figure.axes
+    keep(changed, FEWEST - 1)
+    stress, damage = plot_bar(run).axes
     for panel, name, scale in ((stress, "stress", 1e6), (damage, "damage", 1.0)):
         lines = [line for line in panel.lines if line.get_label().startswith("t = ")]
         np.testing.assert_array_equal([line.get_ydata() for line in lines], recorded[name][3:] / scale)
@@ -154,11 +127,7 @@ def test_of_few_snapshots_there_is_a_line_for_each(changed, recorded):
     assert (stress.get_ylabel(), damage.get_xlabel()) == ("stress, tension positive (MPa)", "x (m)")
     looks = {(line.get_color(), line.get_linestyle()) for line in stress.lines}
     assert len(looks) == FEWEST - 1
-
-
-def test_the_last_state_alone_is_enough(changed, recorded):
-    run, file = changed
-    keep(file, 1)
+    keep(changed, 1)
     stress, damage = plot_bar(run).axes
     np.testing.assert_array_equal(stress.lines[0].get_ydata(), recorded["stress"][-1] / 1e6)
     assert [line.get_label() for line in damage.lines] == ["t = 1.5 ms", "cracked from a damage of 0.3"]
@@ -166,41 +135,34 @@ def test_the_last_state_alone_is_enough(changed, recorded):
 
 
 @pytest.mark.parametrize(
-    ("field", "scale", "label"),
+    ("field", "scale", "label", "snapshot"),
     [
-        ("stress", 1e6, "stress, tension positive (MPa)"),
-        ("damage", 1.0, "local damage (–)"),
-        ("velocity", 1.0, "velocity, positive to the right (m/s)"),
-        ("displacement", 1e-3, "displacement, positive to the right (mm)"),
+        ("stress", 1e6, "stress, tension positive (MPa)", 5),
+        ("damage", 1.0, "local damage (–)", -1),
+        ("velocity", 1.0, "velocity, positive to the right (m/s)", 5),
+        ("displacement", 1e-3, "displacement, positive to the right (mm)", 5),
     ],
 )
-def test_one_field_is_shown_at_all_snapshots_or_one(spalled_run, recorded, field, scale, label):
+def test_one_field_is_shown_at_all_snapshots_or_one(spalled_run, recorded, field, scale, label, snapshot):
     whole, _, colours = plot_bar_field(spalled_run, field).axes
     np.testing.assert_array_equal(picture_of(whole).get_array(), from_rest(recorded[field] / scale))
     assert colours.get_xlabel() == label
-    for snapshot in (5, -1):
-        figure = plot_bar_field(spalled_run, field, snapshot)
-        (panel,) = figure.axes
-        np.testing.assert_array_equal(panel.lines[0].get_ydata(), recorded[field][snapshot] / scale)
-        assert panel.lines[0].get_label() == f"t = {1e3 * recorded['time'][snapshot]:.4g} ms"
-        assert panel.get_ylabel() == label
+    (panel,) = plot_bar_field(spalled_run, field, snapshot).axes
+    np.testing.assert_array_equal(panel.lines[0].get_ydata(), recorded[field][snapshot] / scale)
+    assert panel.lines[0].get_label() == f"t = {1e3 * recorded['time'][snapshot]:.4g} ms"
+    assert panel.get_ylabel() == label
 
 
-def test_a_bar_at_rest_is_drawn(changed):
-    run, file = changed
-    for snapshot in file["snapshots"].values():
+def test_a_bar_at_rest_is_drawn_and_what_a_bar_does_not_have_is_refused(changed, run):
+    for snapshot in changed["snapshots"].values():
         snapshot["stress"][:] = 0.0
-    file.flush()
+    changed.flush()
     assert picture_of(plot_bar_field(run, "stress").axes[0]).get_clim() == (-1.0, 1.0)
-
-
-def test_what_a_bar_does_not_have_is_refused(spalled_run, changed):
     with pytest.raises(CaseError, match="field: is stress_xx, must be one of stress, damage, velocity, displacement"):
-        plot_bar_field(spalled_run, "stress_xx")
+        plot_bar_field(run, "stress_xx")
     with pytest.raises(CaseError, match="no snapshot 12, they are 0 to 11"):
-        plot_bar_field(spalled_run, "stress", 12)
-    run, file = changed
-    del file["snapshots"]
-    file.flush()
+        plot_bar_field(run, "stress", 12)
+    del changed["snapshots"]
+    changed.flush()
     with pytest.raises(CaseError, match=r"has no snapshots, run with output\.snapshots above 0"):
         plot_bar(run)

@@ -24,10 +24,8 @@ def test_diameters_and_peaks_stand_along_the_side(small_run, side, axis, along):
     assert lower.get_xlabel() == f"{along}, along the side (m)"
 
 
-def test_particles_stand_in_their_order_and_those_of_a_column_apart(small_run, tmp_path):
-    run = tmp_path / "run.h5"
-    run.write_bytes(small_run.read_bytes())
-    with h5py.File(run, "r+") as file:
+def test_particles_stand_in_their_order_and_those_of_a_column_apart(small_run, run, copied):
+    with copied(small_run) as file:
         file.attrs["column"] = 10
         group = file["boundaries/bottom"]
         for name in ("particle", "position", "diameter", "peak_velocity"):
@@ -52,18 +50,11 @@ def test_the_legend_counts_and_averages_each_run(small_run, other_run):
     # the driven side has moved as the wave did, up to its crest at half a period
     assert small == "small: 5 particles, mean 0.5 m/s, standard deviation 0.00 %"
     assert other.startswith("other: 5 particles")
+    assert figure.axes[0].get_ylim() == pytest.approx((0.45, 0.55))  # a uniform side looks uniform
 
 
-def test_a_uniform_side_looks_uniform(small_run):
-    upper = plot_boundary([small_run], "right").axes[0]
-    assert upper.get_ylim() == pytest.approx((0.45, 0.55))
-
-
-def test_a_missing_side_is_refused_with_those_there(small_run):
+def test_what_is_no_side_is_refused(small_run, spalled_run):
     with pytest.raises(CaseError, match="no particles of side outer, sides there: bottom, left, right, top"):
         plot_boundary([small_run], "outer")
-
-
-def test_the_ends_of_a_bar_are_refused(spalled_run):
     with pytest.raises(CaseError, match="is a bar, each end of which is one node"):
         plot_boundary([spalled_run], "left")

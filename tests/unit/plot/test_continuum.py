@@ -24,20 +24,9 @@ def labelled(panel) -> dict:
     return {each.get_label(): each for each in [*panel.collections, *panel.patches]}
 
 
-def test_axes_cover_the_grid_with_equal_scales(surrounded_run) -> None:
-    panel = plot_scene(surrounded_run).axes[0]
-    np.testing.assert_allclose([*panel.get_xlim(), *panel.get_ylim()], [LEFT, RIGHT, BOTTOM, TOP])
-    assert (panel.get_xlabel(), panel.get_ylabel(), panel.get_aspect()) == ("x (m)", "y (m)", 1.0)
-
-
 @pytest.mark.parametrize(
     ("field", "name", "column"),
-    [
-        ("velocity", "velocity", 0),
-        ("displacement", "displacement", 0),
-        ("stress_yy", "stress", 1),
-        ("peak", "peak_velocity", None),
-    ],
+    [("velocity", "velocity", 0), ("stress_yy", "stress", 1), ("peak", "peak_velocity", None)],
 )
 def test_nodes_have_the_colours_of_disks_with_the_same_value(surrounded_run, field, name, column) -> None:
     """In one scale up to the largest of both outside the layers that absorb, in which motion is that of no ground."""
@@ -68,26 +57,24 @@ def test_nodes_have_the_colours_of_disks_with_the_same_value(surrounded_run, fie
     assert len(bar.get_ylabel()) > 0
 
 
-def test_triangles_cover_the_cells_once(surrounded_run) -> None:
-    triangles = only(TriMesh, plot_scene(surrounded_run).axes[0])._triangulation
+def test_elements_layers_surface_and_ties_are_in_the_legend(surrounded_run) -> None:
+    figure = plot_scene(surrounded_run)
+    panel = figure.axes[0]
+    np.testing.assert_allclose([*panel.get_xlim(), *panel.get_ylim()], [LEFT, RIGHT, BOTTOM, TOP])
+    assert panel.get_aspect() == 1.0
+    triangles = only(TriMesh, panel)._triangulation  # which cover the cells once
     x, y = (of[triangles.triangles] for of in (triangles.x, triangles.y))
     twice = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
     assert twice.min() > 0.0
     assert 0.5 * twice.sum() == pytest.approx(30.0 * 15.0 - 12.0 * 6.0)
-
-
-def test_elements_layers_surface_and_ties_are_in_the_legend(surrounded_run) -> None:
-    figure = plot_scene(surrounded_run)
-    shown = labelled(figure.axes[0])
+    shown = labelled(panel)
     layers, surface = shown["layers that absorb"], shown["free surface of the continuum"]
     ties = shown["ties of cut bonds (24)"]
     in_legend = {text.get_text() for text in figure.legends[0].get_texts()}
     assert in_legend == {
         "elements of the continuum",
-        "layers that absorb",
-        "free surface of the continuum",
-        "ties of cut bonds (24)",
         "monitor",
+        *(each.get_label() for each in (layers, surface, ties)),
     }
     assert isinstance(layers, PathPatch)
     assert layers.get_hatch()
@@ -116,11 +103,9 @@ def test_small_cells_have_the_mean_of_their_element_and_small_elements_no_outlin
     np.testing.assert_array_equal(corners, elements)
 
 
-def test_cells_of_a_periodic_continuum_end_beside_its_last_column(surrounded_run, tmp_path) -> None:
+def test_cells_of_a_periodic_continuum_end_beside_its_last_column(surrounded_run, copied) -> None:
     """There the last nodes are those of the first column."""
-    path = tmp_path / "run.h5"
-    path.write_bytes(surrounded_run.read_bytes())
-    with h5py.File(path, "r+") as file:
+    with copied(surrounded_run) as file:
         group = file["continuum"]
         position, node = group["position"][:], group["node"][:]
         last = {tuple(place): node for node, place in enumerate(position.tolist()) if place[0] == LEFT}
@@ -129,14 +114,3 @@ def test_cells_of_a_periodic_continuum_end_beside_its_last_column(surrounded_run
         group["node"][:] = moved[node]
         assert (moved[node] != node).any()
         np.testing.assert_allclose(read_continuum(file).corners, before, atol=1e-12)
-
-
-def test_without_a_field_in_the_continuum_it_is_drawn_without_colours(surrounded_run, tmp_path) -> None:
-    path = tmp_path / "run.h5"
-    path.write_bytes(surrounded_run.read_bytes())
-    with h5py.File(path, "r+") as file:
-        for snapshot in file["snapshots"].values():
-            snapshot["unbalanced"] = np.ones((len(file["particles/radius"]), 2))
-    panel = plot_scene(path, field="unbalanced").axes[0]
-    assert not any(isinstance(each, TriMesh) for each in panel.collections)
-    assert "layers that absorb" in labelled(panel)

@@ -13,18 +13,9 @@ OUTGOING = [0.618, 0.567, 0.536]
 
 
 def calibration(path, name, beta, outgoing):
+    facts = {"boundary": "right", "wave": "p", "kind": "absorbing", "method": "ratio", "incident": 0.5}
     with h5py.File(path, "w") as file:
-        describe(
-            file,
-            {
-                "name": name,
-                "boundary": "right",
-                "wave": "p",
-                "kind": "absorbing",
-                "method": "ratio",
-                "incident": 0.5,
-            },
-        )
+        describe(file, {"name": name, **facts})
         file["beta"], file["outgoing"] = np.array(beta), np.array(outgoing)
         file["ratio"] = np.array(outgoing) / 0.5
     return path
@@ -47,13 +38,6 @@ def test_peaks_and_factors_stand_against_the_pass(tmp_path):
     assert lower.get_ylabel() == "boundary factor β (–)"
     assert lower.get_xlabel() == "pass"
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert texts == [
-        "first, right absorbing P, ratio",
-        "second, right absorbing P, ratio",
-        "incident peak, 0.5 m/s",
-    ]
-
-
-def test_without_a_pass_there_is_nothing_to_show(tmp_path):
+    assert texts == [*(f"{name}, right absorbing P, ratio" for name in ("first", "second")), "incident peak, 0.5 m/s"]
     with pytest.raises(CaseError, match="no passes"):
         plot_convergence([calibration(tmp_path / "calibration.h5", "empty", [], [])])

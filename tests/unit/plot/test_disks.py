@@ -5,12 +5,9 @@ import numpy as np
 from dembound.plot.disks import Window, mean_on_grid
 
 
-def test_a_window_around_disks_just_holds_them():
+def test_a_window_just_holds_disks_and_is_touched_by_what_reaches_into_it():
     window = Window.around(np.array([[1.0, 2.0], [4.0, 3.0]]), np.array([0.5, 1.0]))
     assert window.extent == (0.5, 5.0, 1.5, 4.0)
-
-
-def test_a_window_is_touched_by_what_reaches_into_it():
     window = Window(np.zeros(2), np.array([2.0, 1.0]))
     positions = np.array([[1.0, 0.5], [2.4, 0.5], [2.5, 0.5], [2.4, 1.4]])
     # inside; across a face; only up to it; near the corner, 0.57 m away

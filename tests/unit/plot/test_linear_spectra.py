@@ -55,17 +55,12 @@ def test_axes_end_where_all_spectra_are_below_a_hundredth_of_the_largest(tmp_pat
     assert [[line.get_label() for line in panel.lines] for panel in figure.axes] == [["weak", "strong"], ["weak"]]
 
 
-def test_the_component_can_be_chosen(tmp_path):
-    run = record(tmp_path / "run.h5", "pulse", {"P": HEIGHT})
-    along = [plot_spectra([run], component).axes[0].lines[0].get_ydata()[0] for component in (None, "x", "y")]
-    np.testing.assert_allclose(along, 0.5 * LENGTH * HEIGHT * np.array([1.0, 1.0, 0.1]), rtol=1e-4)
-
-
-def test_a_monitor_at_rest_has_an_empty_panel(tmp_path):
-    figure = plot_spectra([record(tmp_path / "run.h5", "rest", {"P": HEIGHT, "Q": 0.0})])
-    assert [len(panel.lines) for panel in figure.axes] == [1, 0]
-
-
-def test_a_run_without_monitors_has_no_spectra(tmp_path):
+def test_the_component_can_be_chosen_and_a_monitor_at_rest_has_an_empty_panel(tmp_path):
+    run = record(tmp_path / "run.h5", "pulse", {"P": HEIGHT, "Q": 0.0})
+    panels = [plot_spectra([run], component).axes for component in (None, "x", "y")]
+    np.testing.assert_allclose(
+        [of.lines[0].get_ydata()[0] for of, _ in panels], 0.5 * LENGTH * HEIGHT * np.array([1.0, 1.0, 0.1]), rtol=1e-4
+    )
+    assert [len(rest.lines) for _, rest in panels] == [0, 0, 0]
     with pytest.raises(CaseError, match="has no monitors to show"):
         plot_spectra([record(tmp_path / "none.h5", "none", {})])

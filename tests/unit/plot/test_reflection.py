@@ -31,18 +31,3 @@ def test_means_and_their_range_are_drawn_against_angle_and_single_angles_against
     np.testing.assert_allclose(below["in all at 60°"], [0.3, 0.6])
     np.testing.assert_allclose(below["in all at 0°"], [LEAST, 0.3])
     assert of_p.get_yscale() == "log"
-
-
-def test_no_two_lines_of_the_legend_have_one_colour() -> None:
-    one = curves("P")
-    one = one._replace(beside={**one.beside, "in all, an outside": 0.01 * one.same})
-    upper, lower = plot_reflection(ANGLES, FREQUENCIES, [one], "title").axes
-    colours = [line.get_color() for panel in (upper, lower) for line in panel.get_lines()]
-    assert len(set(colours)) == len(colours) == 8
-
-
-def test_one_angle_and_one_type_are_enough() -> None:
-    one = Curves("P", np.array([[0.1]]), np.array([[0.0]]), {})
-    figure = plot_reflection(np.zeros(1), np.ones(1), [one], "title")
-    assert len(figure.axes) == 2
-    assert [line.get_label() for line in figure.axes[1].get_lines()] == ["in all at 0°"]

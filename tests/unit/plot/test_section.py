@@ -29,15 +29,9 @@ def test_a_section_has_each_history_at_its_distance(small_run):
     assert panel.get_title("left") == f"{distance:.3g} m upwards is {largest / 0.9:.3g} m/s"
 
 
-def test_a_section_needs_two_monitors_and_one_component(small_run):
-    with pytest.raises(CaseError, match="needs two monitors that all runs have, here are 1"):
-        plot_section([small_run], monitors=["back"])
-    with pytest.raises(CaseError, match="a section shows one"):
-        plot_section([small_run], component="both")
-
-
 def test_a_hodograph_has_the_motion_along_y_against_that_along_x(small_run, other_run):
-    panels = plot_hodograph([small_run, other_run], "displacement", ["front"]).axes
+    runs = [small_run, other_run]
+    panels = plot_hodograph(runs, "displacement", ["front"]).axes
     panel, rest = panels[0], panels[1:]
     assert not any(each.get_visible() for each in rest)
     with h5py.File(small_run) as file:
@@ -48,15 +42,16 @@ def test_a_hodograph_has_the_motion_along_y_against_that_along_x(small_run, othe
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("displacement along x (m)", "displacement along y (m)")
     assert panel.get_aspect() == 1.0
     assert panel.figure.get_suptitle() == "Paths of the displacement at the monitors, dots at their ends"
-
-
-def test_the_table_of_a_hodograph_names_each_path(small_run, other_run):
-    heads = [head for head, _ in columns_of(plot_hodograph([small_run, other_run], "displacement"))]
-    paths = [f"{name}, {run}" for name in ("front", "back") for run in record_names([small_run, other_run])]
+    heads = [head for head, _ in columns_of(plot_hodograph(runs, "displacement"))]
+    paths = [f"{name}, {run}" for name in ("front", "back") for run in record_names(runs)]
     assert heads[::2] == [f"displacement along x (m) of {path}" for path in paths]
     assert heads[1::2] == [f"{path}: displacement along y (m)" for path in paths]
 
 
-def test_a_stress_has_no_hodograph(spalled_run):
+def test_what_cannot_be_shown_is_said(small_run, spalled_run):
+    with pytest.raises(CaseError, match="needs two monitors that all runs have, here are 1"):
+        plot_section([small_run], monitors=["back"])
+    with pytest.raises(CaseError, match="a section shows one"):
+        plot_section([small_run], component="both")
     with pytest.raises(CaseError, match="a hodograph is of a motion"):
         plot_hodograph([spalled_run], "stress")

@@ -50,6 +50,11 @@ def test_fourier_spectra_are_those_of_the_histories(known_run):
     assert front.figure.get_supylabel() == "Fourier amplitude of the velocity along x (m/s·s)"
     assert back.get_xlabel() == "frequency (Hz)"
     assert (front.get_xscale(), front.get_yscale()) == ("log", "log")
+    (legend,) = front.figure.legends
+    assert legend.get_texts()[-1].get_text() == "thin: not smoothed"
+    both = plot_fourier([known_run], "both", monitors=["front"]).axes
+    labels = [f"Fourier amplitude of the velocity along {axis} (m/s·s)" for axis in "xy"]
+    assert [panel.get_title("right") for panel in both] == labels
 
 
 def test_transfer_functions_are_ratios_to_a_monitor_or_a_twin(known_run):
@@ -73,32 +78,6 @@ def test_response_spectra_are_those_of_accelerations(known_run):
     np.testing.assert_allclose(line.get_ydata()[40:42], expected)
 
 
-def legend_of(figure) -> list[str]:
-    (legend,) = figure.legends
-    return [text.get_text() for text in legend.get_texts()]
-
-
-def test_titles_say_what_is_shown_and_legends_which_lines_are_not_smoothed(known_run):
-    fourier = plot_fourier([known_run], monitors=["front"])
-    transfer = plot_transfer([known_run], reference="front", quantity="acceleration")
-    response = plot_response([known_run])
-    assert fourier.get_suptitle() == "Fourier spectra of the velocity at the monitors"
-    assert transfer.get_suptitle() == "Transfer functions of the acceleration to the monitors"
-    assert response.get_suptitle() == "Response spectra of the monitors"
-    assert legend_of(fourier)[-1] == legend_of(transfer)[-1] == "thin: not smoothed"
-    assert "thin: not smoothed" not in legend_of(response)
-    (panel,) = fourier.axes
-    thin = [line.get_linewidth() for line in panel.lines if line.get_gid() is None]
-    assert thin == [0.5, 0.5]  # that with data, and that of the legend
-
-
-def test_both_components_are_side_by_side(known_run):
-    panels = plot_fourier([known_run], "both", monitors=["front"]).axes
-    assert [panel.get_title("right") for panel in panels] == [
-        f"Fourier amplitude of the velocity along {axis} (m/s·s)" for axis in "xy"
-    ]
-
-
 @pytest.mark.parametrize(
     ("draw", "keys", "problem"),
     [
@@ -114,16 +93,11 @@ def test_what_cannot_be_shown_is_said(known_run, draw, keys, problem):
         draw([known_run], **keys)
 
 
-def test_twins_are_needed_where_no_input_is_named(small_run):
+def test_twins_and_enough_samples_are_needed(known_run, small_run, run, copied):
     with pytest.raises(CaseError, match="these runs have no free-field twins"):
         plot_transfer([small_run])
-
-
-def test_a_few_samples_have_no_spectrum(known_run, tmp_path):
-    path = tmp_path / "run.h5"
-    path.write_bytes(known_run.read_bytes())
-    with h5py.File(path, "r+") as file:
+    with copied(known_run) as file:
         for column in file["histories/front"].values():
             column.resize(15, axis=0)
     with pytest.raises(CaseError, match="monitor front: has 15 samples, a spectrum needs at least 16"):
-        plot_fourier([path])
+        plot_fourier([run])

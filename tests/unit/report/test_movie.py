@@ -40,22 +40,23 @@ def test_histories_alone_have_no_movie(pushed_runs, tmp_path):
             draw(path)
 
 
-@pytest.mark.parametrize(("fps", "shown"), [(8.0, 130), (80.0, 20)])
-def test_frames_are_those_of_the_snapshots(pushed_runs, tmp_path, fps, shown):
+def test_frames_are_those_of_the_snapshots(pushed_runs, spalled_results, tmp_path):
     movie, drawn = movie_of(pushed_runs[0], pixels=201), []
-    write_movie(movie, tmp_path / "movie.gif", fps, drawn.append)
+    write_movie(movie, tmp_path / "movie.gif", 8.0, drawn.append)
     assert drawn == [1, 2, 3]
     frames, times = frames_in(tmp_path / "movie.gif")
-    assert times == [shown] * 3
-    for number, frame in enumerate(frames):
-        whole = movie.frame(number)
+    assert times == [130] * 3
+    wholes = [movie.frame(number) for number in range(3)]
+    for number, (frame, whole) in enumerate(zip(frames, wholes, strict=True)):
         assert whole.shape == frame.shape
         assert whole.shape[0] % 2 == whole.shape[1] % 2 == 0
         # colours of a palette differ, but less than a frame from the next one
-        errors = [np.abs(frame.astype(int) - movie.frame(other)).mean() for other in range(3)]
+        errors = [np.abs(frame.astype(int) - other).mean() for other in wholes]
         assert np.argmin(errors) == number
         assert errors[number] < 8.0
-    assert (frames[0][(movie.frame(0) == 255).all(axis=2)] == 255).all()
+    assert (frames[0][(wholes[0] == 255).all(axis=2)] == 255).all()
+    write_movie(movie_of(spalled_results, every=50, monitors=[], pixels=201), tmp_path / "fast.gif", 80.0)
+    assert frames_in(tmp_path / "fast.gif")[1] == [20, 20]
 
 
 def test_a_folder_has_the_frames_without_loss(pushed_runs, tmp_path):
@@ -69,19 +70,20 @@ def test_a_folder_has_the_frames_without_loss(pushed_runs, tmp_path):
         write_movie(movie, tmp_path / "frames")
 
 
-@pytest.mark.parametrize("name", ["movie.gif", "frames"])
-def test_what_fails_in_between_leaves_nothing(pushed_runs, tmp_path, name):
+def test_what_fails_in_between_leaves_nothing(pushed_runs, tmp_path):
     def full(drawn: int) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    with pytest.raises(OSError, match="No space left"):
-        write_movie(movie_of(pushed_runs[0], pixels=201), tmp_path / name, progress=full)
-    assert not list(tmp_path.iterdir())
+    movie = movie_of(pushed_runs[0], pixels=201, monitors=[])
+    for name in ("movie.gif", "frames"):
+        with pytest.raises(OSError, match="No space left"):
+            write_movie(movie, tmp_path / name, progress=full)
+        assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(("every", "chosen"), [(1, list(range(12))), (5, [0, 5, 10, 11]), (11, [0, 11]), (50, [0, 11])])
-def test_every_so_many_snapshots_and_the_last(spalled_results, every, chosen):
-    assert movie_of(spalled_results, every=every).chosen == chosen
+def test_every_so_many_snapshots_and_the_last(spalled_results):
+    for every, chosen in ((1, list(range(12))), (5, [0, 5, 10, 11]), (11, [0, 11])):
+        assert movie_of(spalled_results, every=every, monitors=[]).chosen == chosen
 
 
 def test_histories_are_below_and_the_line_moves(pushed_runs, spalled_results):

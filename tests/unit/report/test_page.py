@@ -35,14 +35,23 @@ def copied(record, folder):
     return folder / record.name
 
 
-def test_nothing_is_loaded(two):
+def test_nothing_is_loaded_and_the_policy_allows_the_own_script_and_style_alone(two):
+    """By their hashes, for which neither events in attributes nor styles in attributes are allowed."""
     sources = [value for _, attributes in two.tags for key, value in attributes.items() if key in ("src", "href")]
     assert sources
     assert all(value.startswith(("data:image/webp;base64,", "#")) for value in sources)
     assert "url(http" not in two.source
     assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", two.source)
-    (policy,) = (each["content"] for each in two.all("meta") if "content" in each and "default-src" in each["content"])
+    (policy,) = (each["content"] for each in two.all("meta") if "default-src" in each.get("content", ""))
     assert policy.startswith("default-src 'none'")
+    for tag, name in (("script", "script-src"), ("style", "style-src")):
+        (text,) = re.findall(f"<{tag}>(.*?)</{tag}>", two.source, flags=re.DOTALL)
+        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+        assert f"{name} 'sha256-{digest}'" in policy
+    assert "unsafe" not in policy
+    assert not [key for _, attributes in two.tags for key in attributes if key == "style" or key.startswith("on")]
+    (script,) = re.findall("<script>(.*?)</script>", two.source, flags=re.DOTALL)
+    assert not re.search(r"style:|\.cssText|setAttribute\(.style|innerHTML|\bon[a-z]+\s*=|\beval\b|Function\(", script)
 
 
 def test_every_picture_says_what_it_shows(two, pushed_runs):
@@ -56,21 +65,19 @@ def test_every_picture_says_what_it_shows(two, pushed_runs):
     assert f"whole, front at (2.25, 1.25) m, wanted (2.40, 1.20) m: peak {largest:.4g} where x is" in velocity
 
 
-def test_headings_are_in_order(two):
+def test_headings_are_in_order_and_texts_of_users_no_markup(two, pushed_runs):
     levels = [int(tag[1]) for tag, _ in two.tags if re.fullmatch("h[1-6]", tag)]
     assert levels[0] == 1
     assert levels.count(1) == 1
     assert all(later <= level + 1 for level, later in pairwise(levels))
     sections = {attributes.get("id") for attributes in two.all("section")}
     assert {each["href"][1:] for each in two.all("a")} <= sections | {"main"}
-
-
-def test_names_and_texts_of_users_are_no_markup(two, pushed_runs):
     assert len(two.all("script")) == 2  # the values and their script
-    title = Results(pushed_runs[0].parent).attributes["title"]
+    results = Results(pushed_runs[0].parent)
+    title = results.attributes["title"]
     assert "<script>" in title
     assert title in two.said("p")
-    assert Results(pushed_runs[0].parent).case.strip() in two.said("pre")
+    assert results.case.strip() in two.said("pre")
 
 
 def joules(energy, unit="J/m"):
@@ -102,17 +109,8 @@ def test_runs_stand_side_by_side(two, pushed_runs):
 def test_charts_have_the_lines_of_the_pictures(two, pushed_runs):
     live = two.live()
     figures = {attributes.get("id") for attributes in two.all("figure")}
-    assert (
-        set(live)
-        == figures
-        == {
-            "chart-0",
-            "chart-1",
-            "chart-2",
-            "chart-3",
-            *(f"{what}-{number}" for what in ("frames", "energy") for number in (0, 1)),
-        }
-    )
+    of_runs = {f"{what}-{number}" for what in ("frames", "energy") for number in (0, 1)}
+    assert set(live) == figures == of_runs | {f"chart-{number}" for number in range(4)}
     front = live["chart-0"]["panels"][0]
     assert front["title"].startswith("front at ")
     assert [line["name"] for line in front["lines"]] == ["whole", "half"]
@@ -128,30 +126,6 @@ def test_charts_have_the_lines_of_the_pictures(two, pushed_runs):
         times = [group.attrs["time"] for group in file["snapshots"].values()]
     assert frames["captions"] == [f"t = {time:.4g} s" for time in times]
     assert len(set(frames["uris"])) == 3
-
-
-def test_of_many_snapshots_some_are_frames(pushed_runs, tmp_path, monkeypatch):
-    monkeypatch.setattr(page_module, "MOST_FRAMES", 2)
-    write_report(pushed_runs[:1], tmp_path / "page.html")
-    frames = Page(tmp_path / "page.html").live()["frames-0"]
-    with h5py.File(pushed_runs[0]) as file:
-        times = [group.attrs["time"] for group in file["snapshots"].values()]
-    assert frames["captions"] == [f"t = {times[index]:.4g} s" for index in (0, 2)]
-
-
-def test_a_single_snapshot_needs_no_slider(small_run, tmp_path):
-    record = copied(small_run, tmp_path / "single")
-    with h5py.File(record, "r+") as file:
-        del file["snapshots/0001"]
-    write_report([record], tmp_path / "page.html")
-    page = Page(tmp_path / "page.html")
-    assert not [name for name in page.live() if name.startswith("frames")]
-    assert "small: velocity along x of 100 disks" in [each["alt"] for each in page.all("img")]
-
-
-def test_pages_of_the_same_runs_are_the_same(two, pushed_runs, tmp_path):
-    write_report(pushed_runs, tmp_path / "again.html")
-    assert (tmp_path / "again.html").read_text(encoding="utf-8") == two.source
 
 
 def test_a_bar_has_its_stresses_and_its_picture_over_place_and_time(spalled_results, tmp_path):
@@ -172,80 +146,87 @@ def test_a_bar_has_its_stresses_and_its_picture_over_place_and_time(spalled_resu
 
 def test_what_results_lack_is_said_in_one_line_each_and_the_rest_is_there(blind_run, tmp_path):
     said = []
-    write_report([blind_run], tmp_path / "page.html", said.append)
+    for name in ("page.html", "again.html"):
+        said.clear()
+        write_report([blind_run], tmp_path / name, said.append)
     assert said == [
         f"{blind_run}: has no snapshots, run with output.snapshots above 0",
         f"{blind_run}: has no monitors to show",
     ]
     page = Page(tmp_path / "page.html")
+    assert page.source == Page(tmp_path / "again.html").source  # the same of the same
     assert [line for line in page.said("li") if line in said] == said
     assert len(page.all("img")) == 1  # the energy
     assert page.row("supplied in all")
 
 
 def test_a_run_that_is_not_complete_has_what_it_recorded(small_run, tmp_path):
-    said = []
-    write_report([small_run], tmp_path / "page.html", said.append)
+    """Text that reorders itself is shown as escapes; a single snapshot needs no slider."""
+    record, said = copied(small_run, tmp_path / "hidden"), []
+    with h5py.File(record, "a") as file:
+        file.attrs["title"] = "harm\u202eless"
+        file.attrs["case"] = f"# one\u2066 line\n{file.attrs['case']}"
+    write_report([record], tmp_path / "page.html", said.append)
     assert said == [
-        f"{small_run}: has no entries in its energy ledger",
-        f"{small_run.parent}: has no summary, the run is not complete; tables lack it",
+        f"{record}: has no entries in its energy ledger",
+        f"{record.parent}: has no summary, the run is not complete; tables lack it",
     ]
     page = Page(tmp_path / "page.html")
     assert page.row("end") == ["the run is not complete"]
     assert "frames-0" in page.live()
-
-
-def test_an_exact_motion_is_a_line_beside_those_of_runs(pushed_runs, tmp_path):
-    exact, said = tmp_path / "exact.h5", []
-    with h5py.File(pushed_runs[0]) as run, h5py.File(exact, "w") as file:
-        file.attrs["name"], file.attrs["size"] = "front_exact", run.attrs["size"]
-        run.copy("histories", file)
-    write_report([pushed_runs[0], exact], tmp_path / "page.html", said.append)
+    assert not HIDDEN.search(page.source)
+    assert "harm\\u202eless" in page.source
+    assert "# one\\u2066 line\n" in page.source
+    with h5py.File(record, "r+") as file:
+        del file["snapshots/0001"]
+    write_report([record], tmp_path / "page.html")
     page = Page(tmp_path / "page.html")
-    assert said == []
-    assert page.row("body") == ["10 m × 2.5 m, 100 disks", "exact motion at monitors"]
-    with h5py.File(exact, "r+") as file:
-        file.attrs["superposed"] = "shakes"
-    write_report([exact], tmp_path / "superposed.html", said.append)
-    assert Page(tmp_path / "superposed.html").row("body") == ["motion at monitors, from the library shakes"]
-    names = [[line["name"] for line in panel["lines"]] for panel in page.live()["chart-0"]["panels"]]
-    assert names == [["whole", "front_exact"]] * 2
+    assert not [name for name in page.live() if name.startswith("frames")]
+    assert "small: velocity along x of 100 disks" in [each["alt"] for each in page.all("img")]
 
 
-def test_an_error_estimate_is_shown_if_there_is_one(two, pushed_runs, tmp_path):
+def test_an_estimate_some_snapshots_and_an_exact_motion_beside_the_run(two, pushed_runs, tmp_path, monkeypatch):
+    monkeypatch.setattr(page_module, "MOST_FRAMES", 2)
     record = copied(pushed_runs[0], tmp_path / "estimated")
     summary = json.loads((record.parent / "summary.json").read_text())
     shares = {"total": 0.0123, "sides": 0.0123}
     estimate = {"monitors": {"front": {"velocity": shares}}, "found": {}, "notes": [], "not_estimated": []}
     (record.parent / "summary.json").write_text(json.dumps(summary | {"error_estimate": estimate}))
-    write_report([record], tmp_path / "page.html")
+    exact, said = tmp_path / "exact.h5", []
+    with h5py.File(record) as run, h5py.File(exact, "w") as file:
+        file.attrs["name"], file.attrs["size"] = "front_exact", run.attrs["size"]
+        run.copy("histories", file)
+        times = [group.attrs["time"] for group in run["snapshots"].values()]
+    write_report([record, exact], tmp_path / "page.html", said.append)
     page = Page(tmp_path / "page.html")
-    assert page.row("front, velocity") == ["1.2 % (sides 1.2 %)"]
+    assert said == []
+    assert page.row("front, velocity")[0] == "1.2 % (sides 1.2 %)"
     assert "Estimated errors" in page.said("h3")
     assert "Estimated errors" not in two.said("h3")
+    assert page.live()["frames-0"]["captions"] == [f"t = {times[index]:.4g} s" for index in (0, 2)]
+    assert page.row("body") == ["10 m × 2.5 m, 100 disks", "exact motion at monitors"]
+    names = [[line["name"] for line in panel["lines"]] for panel in page.live()["chart-0"]["panels"]]
+    assert names == [["whole", "front_exact"]] * 2
+    with h5py.File(exact, "r+") as file:
+        file.attrs["superposed"] = "shakes"
+    write_report([exact], tmp_path / "superposed.html", said.append)
+    assert Page(tmp_path / "superposed.html").row("body") == ["motion at monitors, from the library shakes"]
 
 
-@pytest.mark.parametrize("text", ["[]", "{}", '{"energy": 3}', '{"sides": [], "monitors": {"a": 1}}', '"text"', "null"])
-def test_a_foreign_summary_is_one_line_and_writes_nothing(pushed_runs, tmp_path, text):
-    record = copied(pushed_runs[0], tmp_path / "foreign")
-    (record.parent / "summary.json").write_text(text)
-    with pytest.raises(RecordError) as raised:
-        write_report([record], tmp_path / "page.html")
-    (line,) = str(raised.value).splitlines()
-    assert line.startswith(f"{record.parent / 'summary.json'}: is damaged")
-    assert not (tmp_path / "page.html").exists()
-
-
-@pytest.mark.parametrize("changes", [{"energy": 3}, {"sides": []}, {"sides": {"right": "text"}}, {"seconds": None}])
-def test_entries_of_another_kind_are_one_line_and_nothing_is_written(pushed_runs, tmp_path, changes):
+def test_a_foreign_summary_is_one_line_and_nothing_is_written(pushed_runs, tmp_path):
     record = copied(pushed_runs[0], tmp_path / "foreign")
     summary = record.parent / "summary.json"
-    summary.write_text(json.dumps(json.loads(summary.read_text()) | changes))
-    with pytest.raises(RecordError) as raised:
-        write_report([record], tmp_path / "page.html")
-    (line,) = str(raised.value).splitlines()
-    assert line.startswith(f"{record}: it or its summary.json is not of this version of dembound (")
-    assert not (tmp_path / "page.html").exists()
+    own = json.loads(summary.read_text())
+    damaged, other = f"{summary}: is damaged", f"{record}: it or its summary.json is not of this version of dembound ("
+    texts = ["[]", "{}", '{"energy": 3}', '{"sides": [], "monitors": {"a": 1}}', '"text"', "null"]
+    changes = [{"energy": 3}, {"sides": []}, {"sides": {"right": "text"}}, {"seconds": None}]
+    for text, begins in [(each, damaged) for each in texts] + [(json.dumps(own | each), other) for each in changes]:
+        summary.write_text(text)
+        with pytest.raises(RecordError) as raised:
+            write_report([record], tmp_path / "page.html")
+        (line,) = str(raised.value).splitlines()
+        assert line.startswith(begins)
+        assert not (tmp_path / "page.html").exists()
 
 
 def test_every_damaged_file_is_one_line(pushed_runs, spalled_results, tmp_path):
@@ -264,31 +245,6 @@ def test_every_damaged_file_is_one_line(pushed_runs, spalled_results, tmp_path):
     with pytest.raises(CaseError, match="RESULTS: holds runs of bars and of disks"):
         write_report([pushed_runs[0], spalled_results], tmp_path / "page.html")
     assert not (tmp_path / "page.html").exists()
-
-
-def test_the_policy_allows_the_own_script_and_style_alone(two):
-    """By their hashes, for which neither events in attributes nor styles in attributes are allowed."""
-    (policy,) = (each["content"] for each in two.all("meta") if "default-src" in each.get("content", ""))
-    for tag, name in (("script", "script-src"), ("style", "style-src")):
-        (text,) = re.findall(f"<{tag}>(.*?)</{tag}>", two.source, flags=re.DOTALL)
-        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
-        assert f"{name} 'sha256-{digest}'" in policy
-    assert "unsafe" not in policy
-    assert not [key for _, attributes in two.tags for key in attributes if key == "style" or key.startswith("on")]
-    (script,) = re.findall("<script>(.*?)</script>", two.source, flags=re.DOTALL)
-    assert not re.search(r"style:|\.cssText|setAttribute\(.style|innerHTML|\bon[a-z]+\s*=|\beval\b|Function\(", script)
-
-
-def test_text_that_reorders_itself_is_shown_as_escapes(small_run, tmp_path):
-    record = copied(small_run, tmp_path / "hidden")
-    with h5py.File(record, "a") as file:
-        file.attrs["title"] = "harm\u202eless"
-        file.attrs["case"] = f"# one\u2066 line\n{file.attrs['case']}"
-    write_report([record], tmp_path / "page.html")
-    page = Page(tmp_path / "page.html")
-    assert not HIDDEN.search(page.source)
-    assert "harm\\u202eless" in page.source
-    assert "# one\\u2066 line\n" in page.source
 
 
 def test_a_page_opens_with_the_wave_in_view_and_has_all_monitors(many_monitors, tmp_path):

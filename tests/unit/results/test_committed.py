@@ -84,23 +84,18 @@ def total_of(path) -> int:
     return total
 
 
-def test_a_file_has_what_was_written(tmp_path) -> None:
-    done = grow(tmp_path / "a.h5")
-
-    assert len(done) == ROUNDS
-    assert total_of(tmp_path / "a.h5") == done[-1]
-    assert [path.name for path in tmp_path.iterdir()] == ["a.h5"]
-    with h5py.File(tmp_path / "a.h5") as file:  # a plain HDF5 file
-        assert file.attrs["total"] == done[-1]
-
-
 def test_a_full_disk_leaves_the_last_commit(tmp_path, disk) -> None:
     path = tmp_path / "a.h5"
-    grow(path)
+    done = grow(path)
+    assert len(done) == ROUNDS
+    assert total_of(path) == done[-1]
+    assert [path.name for path in tmp_path.iterdir()] == ["a.h5"]
+    with h5py.File(path) as file:  # a plain HDF5 file
+        assert file.attrs["total"] == done[-1]
     needed = 10**9 - disk.left
     # some rounds are reached, others not, and the disk is full in data, in logs, and while logs are applied
     ends = set()
-    for left in range(0, needed, needed // 60):
+    for left in range(0, needed, needed // 24):
         disk.left = left
         done = grow(path)
         ends.add((len(done), log_of(path).is_file()))
@@ -181,8 +176,7 @@ def test_an_interrupted_commit_is_completed_by_the_next_writer(tmp_path, disk) -
     assert total_of(path) == total
 
 
-@pytest.mark.parametrize("damage", ["cut", "flipped", "empty"])
-def test_a_damaged_log_is_not_used(tmp_path, disk, damage) -> None:
+def test_a_damaged_log_is_not_used(tmp_path, disk) -> None:
     path = tmp_path / "a.h5"
     grow(path)
     total = total_of(path)
@@ -191,22 +185,11 @@ def test_a_damaged_log_is_not_used(tmp_path, disk, damage) -> None:
         file.attrs["total"] = 0
     store._write_log(lambda descriptor: None)
     store._file.close()
-    log = bytearray(log_of(path).read_bytes())
-    log[len(log) // 2] ^= 1 if damage == "flipped" else 0
-    log_of(path).write_bytes({"cut": log[:-1], "flipped": log, "empty": b""}[damage])
-
-    assert total_of(path) == total
-
-
-def test_a_folder_that_is_gone_is_an_error_and_no_crash(tmp_path) -> None:
-    folder = tmp_path / "gone"
-    folder.mkdir()
-    with CommittedFile(folder / "a.h5", "w") as store:
-        with h5py.File(store, "w") as file:
-            file.attrs["total"] = 1
-            shutil.rmtree(folder)
-        with pytest.raises(FileNotFoundError, match="gone"):
-            store.commit()
+    log = log_of(path).read_bytes()
+    middle = len(log) // 2
+    for damaged in (log[:-1], log[:middle] + bytes([log[middle] ^ 1]) + log[middle + 1 :], b""):
+        log_of(path).write_bytes(damaged)
+        assert total_of(path) == total
 
 
 def change_and_fail(file) -> None:
@@ -225,3 +208,12 @@ def test_an_error_leaves_neither_a_new_file_nor_a_change(tmp_path) -> None:
     with pytest.raises(ZeroDivisionError), changed_file(path) as file:
         change_and_fail(file)
     assert path.read_bytes() == before
+
+    folder = tmp_path / "gone"
+    folder.mkdir()
+    with CommittedFile(folder / "a.h5", "w") as store:
+        with h5py.File(store, "w") as file:
+            file.attrs["total"] = 1
+            shutil.rmtree(folder)
+        with pytest.raises(FileNotFoundError, match="gone"):  # and no crash
+            store.commit()

@@ -27,11 +27,6 @@ def with_byte_changed(content: bytes, place: int) -> bytes:
     return content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :]
 
 
-def test_a_truncated_record_is_called_so_with_its_bytes(small_run, tmp_path):
-    content = small_run.read_bytes()
-    assert refused(tmp_path, content[:-1]) == f"is truncated, it has {len(content) - 1:,} of {len(content):,} bytes"
-
-
 def test_the_dataset_is_named_whose_checksum_does_not_fit(small_run, tmp_path):
     with h5py.File(small_run) as file:
         place = file[VELOCITY].id.get_chunk_info(0).byte_offset
@@ -46,14 +41,14 @@ def test_damaged_groups_are_told_from_damaged_numbers(small_run, tmp_path):
     assert refused(tmp_path, content) == "is damaged (a checksum of its groups or attributes does not fit)"
 
 
-@pytest.mark.parametrize(("content", "what"), [(b"", "empty"), (b"not a record", "no HDF5 file")])
-def test_other_files_are_called_what_they_are(tmp_path, content, what):
-    assert refused(tmp_path, content) == f"cannot be read as a record of results: it is {what}"
-
-
-@pytest.mark.parametrize(
-    ("number", "what"), [(errno.EAGAIN, "another process is writing it"), (errno.EACCES, "permission denied")]
-)
-def test_a_file_that_cannot_be_opened_now_says_why(number, what):
-    error = OSError(number, "Unable to synchronously open file (unable to lock file, errno = 11)")
-    assert damage_in_words(error, 1000) == f"cannot be read as a record of results: {what}"
+def test_a_file_that_cannot_be_read_says_why(small_run, tmp_path):
+    content = small_run.read_bytes()
+    for damaged, what in (
+        (content[:-1], f"is truncated, it has {len(content) - 1:,} of {len(content):,} bytes"),
+        (b"", "cannot be read as a record of results: it is empty"),
+        (b"not a record", "cannot be read as a record of results: it is no HDF5 file"),
+    ):
+        assert refused(tmp_path, damaged) == what
+    for number, what in ((errno.EAGAIN, "another process is writing it"), (errno.EACCES, "permission denied")):
+        error = OSError(number, "Unable to synchronously open file (unable to lock file, errno = 11)")
+        assert damage_in_words(error, 1000) == f"cannot be read as a record of results: {what}"

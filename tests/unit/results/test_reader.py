@@ -27,14 +27,6 @@ from dembound.results.results import Results
 from dembound.results.sides import read_side_history
 
 
-def test_what_is_no_record_is_refused_by_name(tmp_path):
-    text = tmp_path / "run.h5"
-    text.write_text("not a record")
-    for path in (text, tmp_path / "missing.h5"):
-        with pytest.raises(RecordError, match=path.name), open_record(path):
-            pytest.fail("nothing can be read")
-
-
 def test_what_damage_raises_is_one_line_about_the_record(small_run, tmp_path):
     path = tmp_path / "run.h5"
     for damage in (
@@ -93,38 +85,38 @@ def test_the_history_of_an_interrupted_run_ends_where_both_columns_do(small_run,
         ("boundaries/left/time", lambda path, file: read_side_history(path, "left")),
     ],
 )
-@pytest.mark.parametrize("value", [np.nan, -np.inf])
-def test_numbers_that_are_not_finite_are_refused(small_run, tmp_path, column: str, read, value: float) -> None:
+def test_numbers_that_are_not_finite_are_refused(small_run, tmp_path, column: str, read) -> None:
     path = tmp_path / "run.h5"
-    path.write_bytes(small_run.read_bytes())
-    with h5py.File(path, "r+") as file:
-        side = file["boundaries/left"]
-        side.attrs["body_length"] = 2.5
-        for name, width in (("force", 2), ("displacement", 3)):
-            side[name] = np.zeros((5, width))
-        side["time"] = np.arange(5.0)
-        if column not in file:
-            file[column] = np.zeros(5)
-        file[column][3] = value
-    reason = f"{column} has a number that is not finite in row 3"
-    with pytest.raises(RecordError, match=reason), open_record(path) as file:
-        read(path, file)
+    for value in (np.nan, -np.inf):
+        path.write_bytes(small_run.read_bytes())
+        with h5py.File(path, "r+") as file:
+            side = file["boundaries/left"]
+            side.attrs["body_length"] = 2.5
+            for name, width in (("force", 2), ("displacement", 3)):
+                side[name] = np.zeros((5, width))
+            side["time"] = np.arange(5.0)
+            if column not in file:
+                file[column] = np.zeros(5)
+            file[column][3] = value
+        reason = f"{column} has a number that is not finite in row 3"
+        with pytest.raises(RecordError, match=reason), open_record(path) as file:
+            read(path, file)
 
 
-def test_records_tell_bars_from_disks(small_run, spalled_run):
+def test_a_place_on_a_bar_is_one_number(small_run, spalled_run):
     with open_record(small_run) as disks, open_record(spalled_run) as bar:
         assert (is_line(disks.attrs["size"]), is_line(bar.attrs["size"])) == (False, True)
-
-
-def test_a_place_on_a_bar_is_one_number():
     assert place_in_words((2.4, 1.2), (10.0, 2.5)) == "(2.40, 1.20) m"
     assert place_in_words((0.8755, 0.0), (1.0, 0.0)) == "0.8755 m"
 
 
-@pytest.mark.parametrize(("number", "name"), [(0, "0000"), (1, "0001"), (-1, "0001"), (-2, "0000")])
-def test_snapshots_go_by_number_from_either_end(small_run, number, name):
+def test_snapshots_go_by_number_from_either_end(small_run):
     with open_record(small_run) as file:
-        assert snapshot_of(file, number) == file[f"snapshots/{name}"]
+        for number, name in ((0, "0000"), (1, "0001"), (-1, "0001"), (-2, "0000")):
+            assert snapshot_of(file, number) == file[f"snapshots/{name}"]
+        for number in (2, -3):
+            with pytest.raises(CaseError, match=rf"run.h5: has no snapshot {number}, they are 0 to 1"):
+                snapshot_of(file, number)
 
 
 def test_more_than_ten_thousand_snapshots_are_in_the_order_of_time(long_run):
@@ -135,15 +127,6 @@ def test_more_than_ten_thousand_snapshots_are_in_the_order_of_time(long_run):
         assert snapshot_of(file, -1) == last
     times = [each.attributes["time"] for each in Results(long_run).snapshots]
     assert times == sorted(times)
-
-
-@pytest.mark.parametrize("number", [2, -3])
-def test_a_missing_snapshot_is_refused_with_the_file_and_their_number(small_run, number):
-    with (
-        open_record(small_run) as file,
-        pytest.raises(CaseError, match=rf"run.h5: has no snapshot {number}, they are 0 to 1"),
-    ):
-        snapshot_of(file, number)
 
 
 def test_cracks_are_those_up_to_a_time_that_time_included(cracked_run):
@@ -158,18 +141,6 @@ def test_cracks_are_those_up_to_a_time_that_time_included(cracked_run):
         assert len(cracks_until(file, -1.0)["position"]) == 0
 
 
-@pytest.mark.parametrize(
-    ("laws", "words"),
-    [
-        ([("elastic", 0.0)], "elastic law all through"),
-        ([("linearpbond", 0.0)], "linearpbond law all through"),
-        ([("elastic", 0.0), ("linearpbond", 0.01234)], "elastic law to 0.0123 s, then linearpbond"),
-    ],
-)
-def test_laws_are_told_in_words(laws, words):
-    assert laws_in_words(laws) == words
-
-
 def test_laws_come_with_the_times_they_began_at(small_run, cracked_run, tmp_path):
     with open_record(small_run) as file:
         assert laws_of(file) == [("elastic", 0.0)]
@@ -181,6 +152,9 @@ def test_laws_come_with_the_times_they_began_at(small_run, cracked_run, tmp_path
     h5py.File(cut_off, "w").close()
     with open_record(cut_off) as file:
         assert laws_of(file) == []
+    assert laws_in_words([("linearpbond", 0.0)]) == "linearpbond law all through"
+    both = [("elastic", 0.0), ("linearpbond", 0.01234)]
+    assert laws_in_words(both) == "elastic law to 0.0123 s, then linearpbond"
 
 
 def ledger(path, **columns):
@@ -190,26 +164,18 @@ def ledger(path, **columns):
     return path
 
 
-@pytest.mark.parametrize(
-    ("supplied", "relative"), [([0.0, 4.0, 4.0], [0.0, 0.25, 0.5]), ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0])]
-)
-def test_the_error_of_the_ledger_is_relative_to_all_that_was_supplied(tmp_path, supplied, relative):
-    columns = {"time": [0.0, 1.0, 2.0], "error": [0.0, 1.0, 2.0], "supplied": supplied}
-    with open_record(ledger(tmp_path / "run.h5", **columns)) as file:
-        found = energy_of(file)
-    assert found.pop("relative_error").tolist() == relative
-    assert {name: values.tolist() for name, values in found.items()} == columns
-
-
-@pytest.mark.parametrize("columns", [{}, {"time": [], "outside": [], "load": [], "kinetic": [], "error": []}])
-def test_a_ledger_without_entries_is_refused(tmp_path, columns):
-    path = ledger(tmp_path / "run.h5", **columns)
-    with open_record(path) as file, pytest.raises(CaseError, match=r"run\.h5: has no entries in its energy ledger"):
-        energy_of(file)
-
-
-def test_names_are_the_cases_names(small_run, other_run):
-    assert record_names([small_run, other_run]) == ["small", "other"]
+def test_the_error_of_the_ledger_is_relative_to_all_that_was_supplied(tmp_path):
+    path = tmp_path / "run.h5"
+    for supplied, relative in (([0.0, 4.0, 4.0], [0.0, 0.25, 0.5]), ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0])):
+        columns = {"time": [0.0, 1.0, 2.0], "error": [0.0, 1.0, 2.0], "supplied": supplied}
+        with open_record(ledger(path, **columns)) as file:
+            found = energy_of(file)
+        assert found.pop("relative_error").tolist() == relative
+        assert {name: values.tolist() for name, values in found.items()} == columns
+    for columns in ({}, {"time": [], "outside": [], "load": [], "kinetic": [], "error": []}):
+        ledger(path, **columns)
+        with open_record(path) as file, pytest.raises(CaseError, match=r"run\.h5: has no entries in its energy ledger"):
+            energy_of(file)
 
 
 def test_records_of_one_name_go_by_their_folders_or_their_paths(small_run, other_run, tmp_path):
@@ -218,27 +184,12 @@ def test_records_of_one_name_go_by_their_folders_or_their_paths(small_run, other
     for copy in (twin, sibling):
         copy.write_bytes(small_run.read_bytes())
     folder = small_run.parent.name
+    assert record_names([small_run, other_run]) == ["small", "other"]
     assert record_names([small_run, other_run, twin]) == [folder, "other", "twin"]
     assert record_names([small_run, twin, sibling]) == [folder, str(twin), str(sibling)]
 
 
-def test_a_file_is_replaced_whole(tmp_path):
-    path = tmp_path / "file"
-    path.write_text("old")
-    with replacing(path) as part:
-        part.write_text("new")
-        assert path.read_text() == "old"
-    assert path.read_text() == "new"
-    assert list(tmp_path.iterdir()) == [path]
-
-
-def test_a_folder_that_is_not_there_is_named(tmp_path):
-    with pytest.raises(FileNotFoundError) as refused, replacing(tmp_path / "nowhere" / "file"):
-        pytest.fail("nothing can be written")
-    assert refused.value.filename == str(tmp_path / "nowhere")
-
-
-def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
+def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
     path = tmp_path / "file"
     path.write_text("old")
 
@@ -250,7 +201,14 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
     with pytest.raises(ZeroDivisionError):
         write_half()
     assert path.read_text() == "old"
+    with replacing(path) as part:
+        part.write_text("new")
+        assert path.read_text() == "old"
+    assert path.read_text() == "new"
     assert list(tmp_path.iterdir()) == [path]
+    with pytest.raises(FileNotFoundError) as refused, replacing(tmp_path / "nowhere" / "file"):
+        pytest.fail("nothing can be written")
+    assert refused.value.filename == str(tmp_path / "nowhere")
 
 
 def test_parts_that_results_lack_are_named(tmp_path) -> None:

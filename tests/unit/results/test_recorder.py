@@ -69,23 +69,68 @@ def recorder(path: Path, simulation: Simulation, interval: float = 0.0) -> Recor
     return Recorder(path, simulation, step_limit=4e-4, interval=interval, ledger=ledger)
 
 
-def test_histories_come_back_as_they_were(tmp_path, simulation) -> None:
+def test_a_record_has_the_scene_and_all_that_was_kept(tmp_path, simulation) -> None:
+    records, shots = [], []
     with recorder(tmp_path / "run.h5", simulation) as kept:
-        records = []
-        for count in (7, 12):
+        for count in (7, 12, 41):
             records.append(simulation.advance(count))
             kept.append(records[-1])
+            if count > 7:
+                kept.snapshot()
+                shots.append((simulation.state.displacement.T.copy(), simulation.state.velocity.T.copy()))
+    scene, expected = simulation.scene, np.concatenate(records)
+    units: dict[str, str] = {}
 
-    expected = np.concatenate(records)
+    def note(name: str, item: h5py.Group | h5py.Dataset) -> None:
+        if isinstance(item, h5py.Dataset):
+            units[name] = text_of(item.attrs.get("unit", ""))
+
     with h5py.File(tmp_path / "run.h5") as file:
-        for index, (name, node) in enumerate(simulation.scene.monitors.items()):
+        about = plain(file.attrs)
+        assert (about["name"], about["version"], about["kind"]) == ("bar", __version__, "disks")
+        assert about["case"] == scene.case.text
+        assert (about["time_step"], about["step_limit"], about["steps"]) == (STEP, 4e-4, 60)
+        assert about["size"].tolist() == [10.0, 1.0]
+        assert bool(about["complete"])
+        for index, (name, node) in enumerate(scene.monitors.items()):
             group = file["histories"][name]
-            assert np.array_equal(group["time"], np.arange(19) * STEP)
+            assert set(group) == {"time", "displacement", "velocity"}
+            assert np.array_equal(group["time"], np.arange(60) * STEP)
             assert np.array_equal(group["displacement"], expected[:, index, :3])
             assert np.array_equal(group["velocity"], expected[:, index, 3:])
             assert group.attrs["particle"] == node
-            assert np.array_equal(group.attrs["position"], simulation.scene.assembly.positions[node])
+            assert np.array_equal(group.attrs["position"], scene.assembly.positions[node])
         assert file["histories/back"].attrs["wanted"].tolist() == [9.9, 0.9]
+        assert [group.attrs["time"] for group in file["snapshots"].values()] == [19 * STEP, 60 * STEP]
+        for group, (displacement, velocity) in zip(file["snapshots"].values(), shots, strict=True):
+            assert np.array_equal(group["displacement"], displacement)
+            assert np.array_equal(group["velocity"], velocity)
+        assert np.array_equal(file["energy/time"], np.arange(0, 60, 10) * STEP)
+        for name, column in zip(file["energy"], kept.ledger.columns.T[ORDER], strict=True):
+            assert np.array_equal(file["energy"][name], column)
+        assert file["energy/outside"][-1] > 0.0
+
+        assert np.array_equal(file["particles/position"], scene.assembly.positions)
+        assert np.array_equal(file["particles/radius"], scene.assembly.radii)
+        assert np.array_equal(file["particles/brick_particle"], scene.assembly.brick_particle)
+        # two rows of twenty: a neighbour across, and two along but for the ends
+        ends = np.isin(scene.assembly.positions[:, 0], (0.25, 9.75))
+        assert np.array_equal(file["particles/bonds"], np.where(ends, 2, 3))
+        assert set(file["boundaries"]) == set(scene.edges)
+        side = file["boundaries/right"]
+        assert np.array_equal(side["particle"], scene.edges["right"].nodes)
+        assert np.array_equal(side["position"], scene.assembly.positions[scene.edges["right"].nodes])
+        assert side["diameter"][:].tolist() == [0.5, 0.5]
+        assert (side.attrs["length"], side.attrs["diameter_sum_ratio"]) == (1.0, 1.0)
+        assert np.array_equal(side["peak_velocity"], simulation.edge_peaks("right"))
+        assert side["peak_velocity"][0, 0, 1] > 0.4  # the pulse of 0.5 m/s has arrived
+        file.visititems(note)
+    assert units.pop("laws/name") == ""  # text has none
+    assert len(units) == 5 + 2 * 3 + 4 * 4 + 2 * 2 + len(fields(Entry)) + 4 + 1
+    assert all(units.values())
+    assert units["histories/front/time"] == units["energy/time"] == units["laws/time"] == "s"
+    assert units["energy/kinetic"] == "J/m"
+    assert units["snapshots/0000/velocity"] == units["boundaries/left/peak_velocity"] == "m/s, m/s, rad/s"
 
 
 def test_a_history_in_a_continuum_has_no_particle(tmp_path, bar) -> None:
@@ -112,49 +157,30 @@ def test_a_history_in_a_continuum_has_no_particle(tmp_path, bar) -> None:
         assert np.array_equal(file["histories/in/velocity"], record[:, 0, 3:])
 
 
-@pytest.mark.parametrize("blocks", [(19,), (7, 12), (1, 1, 5, 3, 9)])
-def test_an_interval_keeps_every_nth_step_however_the_run_is_cut(tmp_path, simulation, blocks) -> None:
-    with recorder(tmp_path / "run.h5", simulation, interval=4.2 * STEP) as kept:
+@pytest.mark.parametrize(("interval", "nth", "blocks"), [(4.2, 4, (7, 12)), (4.2, 4, (1, 1, 5, 3, 9)), (0.1, 1, (19,))])
+def test_an_interval_keeps_every_nth_step_however_the_run_is_cut(tmp_path, simulation, interval, nth, blocks) -> None:
+    with recorder(tmp_path / "run.h5", simulation, interval=interval * STEP) as kept:
         records = []
         for count in blocks:
             records.append(simulation.advance(count))
             kept.append(records[-1])
-
     with h5py.File(tmp_path / "run.h5") as file:
-        assert np.array_equal(file["histories/front/time"], np.array([0, 4, 8, 12, 16]) * STEP)
-        assert np.array_equal(file["histories/front/velocity"], np.concatenate(records)[::4, 0, 3:])
+        assert np.array_equal(file["histories/front/time"], np.arange(0, 19, nth) * STEP)
+        assert np.array_equal(file["histories/front/velocity"], np.concatenate(records)[::nth, 0, 3:])
 
 
-def test_an_interval_shorter_than_a_step_keeps_every_step(tmp_path, simulation) -> None:
-    with recorder(tmp_path / "run.h5", simulation, interval=0.1 * STEP) as kept:
-        kept.append(simulation.advance(5))
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert len(file["histories/front/time"]) == 5
-
-
-def test_a_snapshot_is_the_whole_scene_at_its_time(tmp_path, simulation) -> None:
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        kept.append(simulation.advance(10))
+def test_contacts_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) -> None:
+    output = {"output.contacts": True, "output.stress": True, "output.peaks": True}
+    asked = Simulation(build(bar({**output, "monitor": []})), STEP)
+    fastest = np.zeros(asked.scene.count)
+    with recorder(tmp_path / "asked.h5", asked) as kept:
+        for _ in range(40):
+            kept.append(asked.advance(1))
+            fastest = np.maximum(fastest, np.hypot(*asked.state.velocity[:2]))
         kept.snapshot()
-        displacement = simulation.state.displacement.copy()
-        kept.append(simulation.advance(5))
+    with recorder(tmp_path / "not.h5", simulation) as kept:
+        kept.append(simulation.advance(1))
         kept.snapshot()
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert list(file["snapshots"]) == ["0000", "0001"]
-        assert file["snapshots/0000"].attrs["time"] == 10 * STEP
-        assert np.array_equal(file["snapshots/0000/displacement"], displacement.T)
-        assert np.array_equal(file["snapshots/0001/velocity"], simulation.state.velocity.T)
-
-
-def test_contacts_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) -> None:
-    asked = Simulation(build(bar({"output.contacts": True, "monitor": []})), STEP)
-    for name, each in (("asked", asked), ("not", simulation)):
-        with recorder(tmp_path / f"{name}.h5", each) as kept:
-            kept.append(each.advance(40))
-            kept.snapshot()
-
     expected = asked.system.contact_forces(asked.state.displacement)
     with h5py.File(tmp_path / "asked.h5") as file, h5py.File(tmp_path / "not.h5") as without:
         group = file["snapshots/0000/contacts"]
@@ -164,9 +190,17 @@ def test_contacts_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) 
         for name, (values, _) in expected.items():
             np.testing.assert_array_equal(group[name], values)
         assert group["normal_force"][:].min() < -1e4  # the wave of 0.5 m/s: ρcv is 1.25 MPa
-        assert "contacts" not in without["snapshots/0000"]
+        stress, peaks = file["snapshots/0000/stress"], file["particles/peak_velocity"]
+        assert np.array_equal(stress, asked.system.stress(asked.state.displacement))
+        assert stress[:, 0].min() < -1e5
+        # y is held, so no square is rounded; both ends are supported
+        assert np.array_equal(peaks, fastest)
+        assert peaks[:].min() > 0.1
+        assert (text_of(stress.attrs["unit"]), text_of(peaks.attrs["unit"])) == ("Pa", "m/s")
+        assert set(without["snapshots/0000"]) == {"displacement", "velocity"}
+        assert "peak_velocity" not in without["particles"]
     arrays = Results(tmp_path / "asked.h5").snapshots[0]
-    assert set(arrays) == {"displacement", "velocity", *(f"contacts/{name}" for name in expected)}
+    assert set(arrays) == {"displacement", "velocity", "stress", *(f"contacts/{name}" for name in expected)}
     np.testing.assert_array_equal(arrays["contacts/vector"], expected["vector"][0])
     assert arrays.units("contacts/vector") == ("m", "m")
 
@@ -182,107 +216,6 @@ def test_disks_of_a_column_are_marked(tmp_path, bar) -> None:
         assert column.dtype == bool
         np.testing.assert_array_equal(column, file["particles/position"][:, 0] < 0.0)
         assert np.count_nonzero(column) == file.attrs["column"] > 0
-
-
-def test_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) -> None:
-    triggered = Simulation(build(bar({"output.stress": True, "output.peaks": True, "monitor": []})), STEP)
-    fastest = np.zeros(triggered.scene.count)
-    with recorder(tmp_path / "asked.h5", triggered) as kept:
-        for _ in range(40):
-            kept.append(triggered.advance(1))
-            fastest = np.maximum(fastest, np.hypot(*triggered.state.velocity[:2]))
-        kept.snapshot()
-    with recorder(tmp_path / "not.h5", simulation) as kept:
-        kept.append(simulation.advance(1))
-        kept.snapshot()
-
-    with h5py.File(tmp_path / "asked.h5") as file:
-        stress, peaks = file["snapshots/0000/stress"], file["particles/peak_velocity"]
-        assert np.array_equal(stress, triggered.system.stress(triggered.state.displacement))
-        assert stress[:, 0].min() < -1e5
-        # y is held, so no square is rounded; both ends are supported
-        assert np.array_equal(peaks, fastest)
-        assert peaks[:].min() > 0.1
-        assert (text_of(stress.attrs["unit"]), text_of(peaks.attrs["unit"])) == ("Pa", "m/s")
-    with h5py.File(tmp_path / "not.h5") as file:
-        assert "stress" not in file["snapshots/0000"]
-        assert "peak_velocity" not in file["particles"]
-
-
-def test_scene_and_sides_are_kept(tmp_path, simulation) -> None:
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        kept.append(simulation.advance(60))
-
-    scene = simulation.scene
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert np.array_equal(file["particles/position"], scene.assembly.positions)
-        assert np.array_equal(file["particles/radius"], scene.assembly.radii)
-        assert np.array_equal(file["particles/brick_particle"], scene.assembly.brick_particle)
-        # two rows of twenty: a neighbour across, and two along but for the ends
-        ends = np.isin(scene.assembly.positions[:, 0], (0.25, 9.75))
-        assert np.array_equal(file["particles/bonds"], np.where(ends, 2, 3))
-        assert set(file["boundaries"]) == set(scene.edges)
-        side = file["boundaries/right"]
-        assert np.array_equal(side["particle"], scene.edges["right"].nodes)
-        assert np.array_equal(side["position"], scene.assembly.positions[scene.edges["right"].nodes])
-        assert side["diameter"][:].tolist() == [0.5, 0.5]
-        assert (side.attrs["length"], side.attrs["diameter_sum_ratio"]) == (1.0, 1.0)
-        assert np.array_equal(side["peak_velocity"], simulation.edge_peaks("right"))
-        assert side["peak_velocity"][0, 0, 1] > 0.4  # the pulse of 0.5 m/s has arrived
-
-
-def test_a_record_says_what_it_is_of(tmp_path, simulation) -> None:
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        kept.append(simulation.advance(3))
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        about = plain(file.attrs)
-    assert (about["name"], about["version"]) == ("bar", __version__)
-    assert about["case"] == simulation.scene.case.text
-    assert (about["time_step"], about["step_limit"], about["steps"]) == (STEP, 4e-4, 3)
-    assert about["size"].tolist() == [10.0, 1.0]
-    assert bool(about["complete"])
-
-
-def test_every_dataset_has_its_unit(tmp_path, simulation) -> None:
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        kept.append(simulation.advance(3))
-        kept.snapshot()
-
-    units: dict[str, str] = {}
-
-    def note(name: str, item: h5py.Group | h5py.Dataset) -> None:
-        if isinstance(item, h5py.Dataset):
-            units[name] = text_of(item.attrs.get("unit", ""))
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        file.visititems(note)
-    assert units.pop("laws/name") == ""  # text has none
-    assert len(units) == 5 + 2 * 3 + 4 * 4 + 2 + len(fields(Entry)) + 4 + 1
-    assert all(units.values())
-    assert units["histories/front/time"] == units["energy/time"] == units["laws/time"] == "s"
-    assert units["energy/kinetic"] == "J/m"
-    assert units["snapshots/0000/velocity"] == units["boundaries/left/peak_velocity"] == "m/s, m/s, rad/s"
-
-
-def test_energies_are_kept_as_the_ledger_has_them(tmp_path, simulation) -> None:
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        kept.append(simulation.advance(19))
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert np.array_equal(file["energy/time"], np.array([0, 10]) * STEP)
-        for name, column in zip(file["energy"], kept.ledger.columns.T[ORDER], strict=True):
-            assert np.array_equal(file["energy"][name], column)
-        assert file["energy/outside"][1] > 0.0
-        assert len(file["histories/front/time"]) == 19
-
-
-def test_a_run_without_a_ledger_has_no_energies(tmp_path, simulation) -> None:
-    with Recorder(tmp_path / "run.h5", simulation, step_limit=4e-4) as kept:
-        kept.append(simulation.advance(3))
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert "energy" not in file
 
 
 def test_trackers_keep_histories_and_snapshots(tmp_path, simulation) -> None:
@@ -333,6 +266,7 @@ def test_cracks_laws_and_coordination_are_kept(tmp_path, bar) -> None:
 
     began = next(step for name, step in simulation.state.laws if name == "linearpbond")
     with h5py.File(tmp_path / "run.h5") as file:
+        assert "energy" not in file  # without a ledger
         cracks = file["cracks"]
         assert [name.decode() for name in file["laws/name"]] == ["elastic", "linearpbond"]
         assert file["laws/time"][:].tolist() == [0.0, began * simulation.time_step]
@@ -394,18 +328,20 @@ def test_cracks_are_the_same_however_the_run_is_cut(tmp_path, bar) -> None:
         assert np.array_equal(values, cut[column])
 
 
-def test_a_run_that_fails_leaves_its_histories_and_is_not_complete(tmp_path, simulation) -> None:
+@pytest.mark.parametrize("error", [ZeroDivisionError, KeyboardInterrupt])
+def test_a_run_that_ends_early_leaves_its_histories_and_is_not_complete(tmp_path, simulation, error) -> None:
     def fail() -> None:
         with recorder(tmp_path / "run.h5", simulation) as kept:
-            kept.append(simulation.advance(5))
-            raise ZeroDivisionError
+            for _ in range(3):
+                kept.append(simulation.advance(5))
+            raise error
 
-    with pytest.raises(ZeroDivisionError):
+    with pytest.raises(error):
         fail()
     with h5py.File(tmp_path / "run.h5") as file:
         assert not file.attrs["complete"]
-        assert file.attrs["steps"] == 5
-        assert len(file["histories/front/time"]) == 5
+        assert file.attrs["steps"] == 15
+        assert file["histories/front/time"][:].tolist() == [k * STEP for k in range(15)]
         assert np.any(file["boundaries/left/peak_velocity"])
 
 
@@ -428,19 +364,6 @@ def test_what_was_written_can_be_read_if_the_process_dies(
         assert len(file["snapshots"]) == (samples > 0)
 
 
-def test_ctrl_c_loses_nothing(tmp_path, simulation) -> None:
-    def stop() -> None:
-        with recorder(tmp_path / "run.h5", simulation) as kept:
-            for _ in range(3):
-                kept.append(simulation.advance(5))
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        stop()
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert file["histories/front/time"][:].tolist() == [k * simulation.time_step for k in range(15)]
-
-
 def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
     with h5py.File(spalled_run) as file:
         about, particles = plain(file.attrs), file["particles"]
@@ -456,15 +379,6 @@ def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
         assert file["histories/gauge"].attrs["wanted"].tolist() == [0.525, 0.0]
         assert set(file["boundaries"]) == {"left", "right"}
         assert [name.decode() for name in file["laws/name"]] == ["peridynamics, m = 3"]
-
-
-def test_disks_are_kept_as_disks(tmp_path, simulation) -> None:
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        kept.append(simulation.advance(1))
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert text_of(file.attrs["kind"]) == "disks"
-        assert "stress" not in file["histories/front"]
 
 
 def test_stress_and_damage_of_a_bar_are_kept(tmp_path, spalling) -> None:

@@ -43,10 +43,10 @@ def test_a_jump_is_crossed_straight(name: str) -> None:
     assert largest <= max(JUMPS[name](WANTED)) * (1.0 + 1e-3)
 
 
-@pytest.mark.parametrize("width", [1.0, 1.5, 2.0, 3.0, 4.0])
-def test_steep_fronts_are_no_worse_than_by_lines(width: float) -> None:
-    found, straight, _ = error(lambda time: np.clip((time - 3.03) / (width * STEP), 0.0, 1.0), 20)
-    assert found < straight
+def test_steep_fronts_are_no_worse_than_by_lines() -> None:
+    for width in (1.0, 1.5, 2.0, 3.0, 4.0):
+        found, straight, _ = error(lambda time, w=width: np.clip((time - 3.03) / (w * STEP), 0.0, 1.0), 20)
+        assert found < straight
 
 
 def test_samples_are_kept_and_ends_go_on() -> None:
@@ -56,9 +56,8 @@ def test_samples_are_kept_and_ends_go_on() -> None:
     np.testing.assert_allclose(at_times(time, values, np.array([-1.0, 2.0])), values[[0, -1]], atol=1e-13)
 
 
-@pytest.mark.parametrize("count", [1, 2, 3])
-def test_few_samples_are_joined_by_lines(count: int) -> None:
-    time = np.arange(float(count))
-    np.testing.assert_allclose(
-        at_times(time, 2.0 * time, np.array([0.25, 5.0])), [0.5 * (count > 1), 2.0 * (count - 1)]
-    )
+def test_few_samples_are_joined_by_lines() -> None:
+    for count in (1, 2, 3):
+        time, wanted = np.arange(float(count)), np.array([0.25, 5.0])
+        expected = [0.5 * (count > 1), 2.0 * (count - 1)]
+        np.testing.assert_allclose(at_times(time, 2.0 * time, wanted), expected)

@@ -44,17 +44,11 @@ def test_the_length_is_that_of_the_field_in_the_plane(small_run):
             np.testing.assert_array_equal(lengths(snapshot, field), np.hypot(x, y))
 
 
-@pytest.mark.parametrize(
-    ("length", "share", "count"),
-    [(100.0, 1.0, 6), (5.0, 0.05, 2), (20.0, 0.4, 6), (30.0, 0.4, 4), (10.0, 1.0, 6), (17.3, 1.0, 6)],
-)
-def test_axes_have_round_numbers_where_they_can(length, share, count):
+def test_axes_have_round_numbers_where_they_can():
     # 20 m are cut into fives, not into three times 6.67 m
-    assert label_count(length, share) == count
-
-
-def test_pictures_of_long_scenes_are_low():
-    assert picture_size(np.array([100.0, 5.0])) == (1600, 357)
+    for length, share, count in ((100.0, 1.0, 6), (5.0, 0.05, 2), (20.0, 0.4, 6), (30.0, 0.4, 4), (17.3, 1.0, 6)):
+        assert label_count(length, share) == count
+    assert picture_size(np.array([100.0, 5.0])) == (1600, 357)  # low, as the scene is long
     assert picture_size(np.array([50.0, 50.0])) == (1600, 900)
 
 
@@ -81,11 +75,16 @@ def test_without_a_continuum_the_extent_is_that_of_the_disks(small_run):
         np.testing.assert_array_equal(extent_of(file), [[0.0, 0.0], [10.0, 2.5]])
 
 
-def test_without_opengl_there_is_one_line_instead_of_a_crash(small_run, tmp_path, monkeypatch):
+def test_without_opengl_there_is_one_line_instead_of_a_crash(small_run, spalled_run, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "TRIAL", "import os; os.abort()")
     with pytest.raises(DemboundError, match="no working OpenGL"):
         view(small_run, picture=tmp_path / "picture.png")
     assert not list(tmp_path.iterdir())
+    # what cannot be shown is refused before that
+    with pytest.raises(CaseError, match="no snapshot 5, they are 0 to 1"):
+        view(small_run, snapshot=5)
+    with pytest.raises(CaseError, match="is a bar, view shows disks; `dembound plot RESULTS --field stress`"):
+        view(spalled_run)
 
 
 @pytest.mark.parametrize("drawn_in", module.WINDOWLESS)
@@ -94,17 +93,6 @@ def test_without_a_display_only_pictures_are_drawn(monkeypatch, drawn_in):
     require_rendering(in_window=False)
     with pytest.raises(DemboundError, match=r"no display .* DISPLAY .* --output picture\.png, .* ParaView"):
         require_rendering(in_window=True)
-
-
-def test_a_missing_snapshot_is_refused_before_anything_is_drawn(small_run, monkeypatch):
-    monkeypatch.setattr(module, "TRIAL", "raise SystemExit(1)")
-    with pytest.raises(CaseError, match="no snapshot 5, they are 0 to 1"):
-        view(small_run, snapshot=5)
-
-
-def test_bars_are_refused_with_the_command_that_draws_them(spalled_run):
-    with pytest.raises(CaseError, match="is a bar, view shows disks; `dembound plot RESULTS --field stress`"):
-        view(spalled_run)
 
 
 DRAW = """

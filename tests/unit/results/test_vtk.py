@@ -19,13 +19,18 @@ def exported(small_run, tmp_path_factory):
     return folder
 
 
-def test_the_index_lists_files_and_times(small_run, exported):
+def test_the_index_lists_files_and_times(small_run, other_run, exported, tmp_path):
     entries = ElementTree.parse(exported / "particles.pvd").getroot().findall("Collection/DataSet")
     with h5py.File(small_run) as file:
         times = [float(snapshot.attrs["time"]) for snapshot in file["snapshots"].values()]
     assert [entry.get("file") for entry in entries] == ["particles_0000.vtu", "particles_0001.vtu"]
     assert [float(entry.get("timestep")) for entry in entries] == times
     assert pyvista.get_reader(exported / "particles.pvd").time_values == times
+    names = sorted(path.name for path in exported.iterdir())
+    assert names == ["particles.pvd", "particles_0000.vtu", "particles_0001.vtu", "view.py"]
+    ast.parse((exported / "view.py").read_text())
+    write_paraview(other_run, tmp_path / "paraview", Disks())  # has no snapshots
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_more_than_ten_thousand_files_are_in_the_order_of_time_by_name_too(small_run, long_run, tmp_path):
@@ -40,12 +45,6 @@ def test_more_than_ten_thousand_files_are_in_the_order_of_time_by_name_too(small
     assert last == (tmp_path / "few" / "particles_0001.vtu").read_bytes()
 
 
-def test_the_folder_holds_the_view_script_and_no_leftovers(exported):
-    names = sorted(path.name for path in exported.iterdir())
-    assert names == ["particles.pvd", "particles_0000.vtu", "particles_0001.vtu", "view.py"]
-    ast.parse((exported / "view.py").read_text())
-
-
 def test_each_crack_is_a_vertex_where_it_was(cracked_run, tmp_path):
     write_paraview(cracked_run, tmp_path, Disks())
     mesh = pyvista.read(tmp_path / "cracks.vtu")
@@ -58,8 +57,3 @@ def test_each_crack_is_a_vertex_where_it_was(cracked_run, tmp_path):
     np.testing.assert_array_equal(mesh.point_data["mode"], np.where(cracks["shear"], 1, 0))
     np.testing.assert_array_equal(mesh.point_data["particles"], cracks["particles"])
     assert set(mesh.point_data["mode"]) == {0, 1}
-
-
-def test_a_run_without_snapshots_writes_nothing(other_run, tmp_path):
-    write_paraview(other_run, tmp_path / "paraview", Disks())
-    assert list(tmp_path.iterdir()) == []

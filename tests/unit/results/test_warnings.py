@@ -46,27 +46,32 @@ PULSE = np.where(TIME < 0.5, np.sin(2.0 * np.pi * TIME), 0.0) ** 2
 """One that is over at half time."""
 
 
-def test_a_motion_that_is_over_is_not_warned_of(bar, moved) -> None:
-    assert moved(two(bar), near=PULSE, far=0.5 * PULSE) == []
-
-
-@pytest.mark.parametrize(("share", "warned"), [(0.199, False), (0.201, True)])
-def test_a_motion_that_goes_on_is_warned_of(bar, moved, share: float, warned: bool) -> None:
+def test_a_motion_that_goes_on_is_warned_of(bar, moved) -> None:
     # it swings a hundred times, in the last twentieth five times
-    coda = share * np.sin(200.0 * np.pi * TIME + 0.1) * (TIME > 0.5)
-    crest = np.abs(coda).max() / share  # that of the samples
+    swings = np.sin(200.0 * np.pi * TIME + 0.1) * (TIME > 0.5)
     said = (
         "monitor.near: its velocity is 20 % of its peak when the run ends after 1 s, and still changes "
         "(1 of 2 monitors); the motion is not over, take a longer run.duration"
     )
-    assert moved(two(bar), near=PULSE + coda / crest, far=PULSE) == warned * [said]
+    for share, warned in ((0.0, False), (0.199, False), (0.201, True)):
+        near = PULSE + share * swings / np.abs(swings).max()
+        assert moved(two(bar), near=near, far=0.5 * PULSE) == warned * [said]
+    # what the motion has not reached does not move
+    for largest, names in ((0.011, ["monitor.far"]), (0.009, [])):
+        found = moved(two(bar), near=PULSE, far=largest * TIME**40)
+        assert [warning.split(":")[0] for warning in found] == names
+    assert moved(bar({"monitor": []})) == moved(bar(), middle=np.zeros(1001)) == []
 
 
-@pytest.mark.parametrize(("change", "warned"), [(0.199, False), (0.201, True)])
-def test_a_steady_motion_is_over(bar, moved, change: float, warned: bool) -> None:
+def test_a_steady_motion_is_over_and_a_crest_is_none(bar, moved) -> None:
     # from its peak on it slows evenly over the last tenth of the run, of which 100 samples hold 99 intervals
-    flight = np.minimum(np.minimum(2.0 * TIME, 1.0), 1.0 - change * (TIME - 0.901) / 0.099)
-    assert len(moved(two(bar), near=flight)) == warned
+    for change, warned in ((0.199, False), (0.201, True)):
+        flight = np.minimum(np.minimum(2.0 * TIME, 1.0), 1.0 - change * (TIME - 0.901) / 0.099)
+        assert len(moved(two(bar), near=flight)) == warned
+    # the last tenth of the run is its crest alone, 0.976 and more; three tenths, half of 0.6 s, begin at half of it
+    crest = np.cos(np.pi * (TIME - 0.95)) ** 2
+    for period, warned in ((0.2, False), (0.6, True)):
+        assert len(moved(two(bar, {"wave.pulse.period": period}), near=crest)) == warned
 
 
 def test_the_worst_monitor_is_named_and_all_are_counted(bar, moved) -> None:
@@ -75,19 +80,6 @@ def test_the_worst_monitor_is_named_and_all_are_counted(bar, moved) -> None:
 
     assert warning.startswith("monitor.near: its velocity is 100 % of its peak when the run ends after 1 s")
     assert "(2 of 2 monitors)" in warning
-
-
-@pytest.mark.parametrize(("period", "warned"), [(0.2, False), (0.6, True)])
-def test_a_crest_is_no_steady_motion(bar, moved, period: float, warned: bool) -> None:
-    # the last tenth of the run is its crest alone, 0.976 and more; three tenths, half of 0.6 s, begin at half of it
-    crest = np.cos(np.pi * (TIME - 0.95)) ** 2
-    assert len(moved(two(bar, {"wave.pulse.period": period}), near=crest)) == warned
-
-
-@pytest.mark.parametrize(("largest", "warned"), [(0.011, True), (0.009, False)])
-def test_what_the_motion_has_not_reached_does_not_move(bar, moved, largest: float, warned: bool) -> None:
-    found = moved(two(bar), near=PULSE, far=largest * TIME**40)
-    assert [warning.split(":")[0] for warning in found] == warned * ["monitor.far"]
 
 
 def test_bodies_that_nothing_brakes_move_on(bar, moved) -> None:
@@ -125,55 +117,27 @@ def test_monitors_in_a_continuum_come_to_rest(bar, moved) -> None:
     assert [warning.split(":")[0] for warning in moved(case, near=PULSE, far=TIME**4)] == ["monitor.far"]
 
 
-def test_one_monitor_or_none(bar, moved) -> None:
-    assert moved(bar({"monitor": []})) == []
-    assert moved(bar(), middle=np.zeros(1001)) == []
-
-
-@pytest.mark.parametrize(
-    ("energy", "said"),
-    [
+def test_energy_that_steps_take_or_that_is_missing_is_warned_of(bar, moved) -> None:
+    taken = "run.safety: contacts that open and close within a step have {} of the energy put in; shorter steps change "
+    for energy, said in (
         ({"closing": 0.0099, "relative_error": 0.0099}, []),
-        (
-            {"closing": 0.12},
-            [
-                "run.safety: contacts that open and close within a step have taken 12 % of the energy put in; "
-                "shorter steps change it less"
-            ],
-        ),
-        (
-            {"closing": -0.02, "supplied": 0.5},
-            [
-                "run.safety: contacts that open and close within a step have added 4 % of the energy put in; "
-                "shorter steps change it less"
-            ],
-        ),
-        (
-            {"relative_error": 0.03},
-            ["energy.error: 3 % of the energy put in is unaccounted for; take shorter steps"],
-        ),
-    ],
-)
-def test_energy_that_steps_take_or_that_is_missing_is_warned_of(bar, moved, energy: dict, said: list[str]) -> None:
-    assert moved(two(bar), energy=KEPT | energy, near=PULSE, far=0.5 * PULSE) == said
+        ({"closing": 0.12}, [taken.format("taken 12 %") + "it less"]),
+        ({"closing": -0.02, "supplied": 0.5}, [taken.format("added 4 %") + "it less"]),
+        ({"relative_error": 0.03}, ["energy.error: 3 % of the energy put in is unaccounted for; take shorter steps"]),
+    ):
+        assert moved(two(bar), energy=KEPT | energy, near=PULSE, far=0.5 * PULSE) == said
 
 
-@pytest.mark.parametrize(
-    ("boundary", "said"),
-    [
+def test_sides_that_keep_waves_are_named(bar, moved) -> None:
+    coda = np.sin(200.0 * np.pi * TIME)
+    for boundary, said in (
         ({"left": "viscous", "bottom": "viscous"}, "the motion is not over, take a longer"),
-        (
-            {"left": "viscous"},
-            "the motion is not over: waves between bottom (free) and top (free) are not",
-        ),
+        ({"left": "viscous"}, "the motion is not over: waves between bottom (free) and top (free) are not"),
         (
             {"bottom": "viscous", "left": "fixed", "right": "roller"},
             "waves between left (fixed) and right (roller) are",
         ),
-    ],
-)
-def test_sides_that_keep_waves_are_named(bar, moved, boundary: dict, said: str) -> None:
-    sides = {side: {"type": kind} for side, kind in boundary.items()}
-    coda = np.sin(200.0 * np.pi * TIME)
-    (found,) = moved(two(bar, {"motion.held": [], "wave": {}, "boundary": sides}), near=coda, far=coda)
-    assert said in found
+    ):
+        sides = {side: {"type": kind} for side, kind in boundary.items()}
+        (found,) = moved(two(bar, {"motion.held": [], "wave": {}, "boundary": sides}), near=coda, far=coda)
+        assert said in found

@@ -7,9 +7,8 @@ import pytest
 
 from dembound import check
 from dembound.kinds import with_changes
-from dembound.motion.kind import Plan
 from dembound.motion.ram import in_words
-from dembound.running import disk_space, plan, resume_case, run_case, warnings_before
+from dembound.running import Progress, disk_space, job, plan, resume_case, run_case, warnings_before
 from dembound.running.disk_space import ALWAYS, results_bytes, space_warnings
 
 LAW = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e9, "material.pb_coh": 1e9}
@@ -22,16 +21,20 @@ def written(folder) -> dict[str, float]:
 
 
 @pytest.mark.parametrize(
-    "output", [{}, {"stress": True, "contacts": True, "peaks": True}, {"stress": True, "paraview": "vtkhdf"}]
+    ("changes", "output"),
+    [
+        ({}, {}),
+        (LAW, {"stress": True, "contacts": True, "peaks": True}),
+        (LAW | STATIC, {"stress": True, "paraview": "vtkhdf"}),
+    ],
 )
-@pytest.mark.parametrize("changes", [{}, LAW, LAW | STATIC])
 def test_the_size_of_results_of_disks(bar, tmp_path, changes, output) -> None:
     large = {"packing.size": [30.0, 30.0], "reduce.rows": False, "run.duration": 2e-3}
     case = bar({**large, **changes, "output": {"snapshots": 9, "pictures": False, **output}})
     _require_equal(case, tmp_path)
 
 
-@pytest.mark.parametrize(("horizon", "paraview"), [(1, "vtu"), (1, "vtkhdf"), (6, "both")])
+@pytest.mark.parametrize(("horizon", "paraview"), [(1, "vtu"), (6, "both")])
 def test_the_size_of_results_of_bars(spalling, tmp_path, horizon, paraview) -> None:
     fine = {"bar.spacing": 1e-4, "run.duration": 1e-5, "method": {"type": "peridynamics", "horizon": horizon}}
     # with eight snapshots the chunks of the VTKHDF file, of up to a megabyte, are nearly full
@@ -47,13 +50,13 @@ def _require_equal(case, results) -> None:
 
 
 def test_the_size_of_histories_and_energies(bar, tmp_path) -> None:
-    case = bar({"run.duration": 3.0, "output": {"snapshots": 0, "pictures": False, "energy_interval": 1e-3}})
+    case = bar({"run.duration": 2.0, "output": {"snapshots": 0, "pictures": False, "energy_interval": 1e-3}})
     sizes = results_bytes(plan(case))
     found = written(run_case(case, tmp_path))
 
     grown = sum(sizes[f"output.{name}_interval"] for name in ("history", "side", "energy"))
     assert grown == pytest.approx(found["run.h5"] + 2.0 * found["checkpoint.npz"], rel=0.15)
-    wide = results_bytes(plan(bar({"run.duration": 3.0, "output.history_interval": 0.3, "run.checkpoint": 0.0})))
+    wide = results_bytes(plan(bar({"run.duration": 2.0, "output.history_interval": 0.3, "run.checkpoint": 0.0})))
     assert wide["output.history_interval"] < 0.02 * sizes["output.history_interval"]
     assert wide["run.checkpoint"] == 0.0
 
@@ -72,32 +75,35 @@ def test_a_disk_with_less_space_is_warned_of_with_both_numbers(bar, tmp_path, mo
     assert warning in warnings
 
 
+class Heard(Progress):
+    """Writes down warnings."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def warned(self, message: str) -> None:
+        self.lines.append(message)
+
+
 def test_a_run_warns_before_it_begins(bar, tmp_path, monkeypatch, caplog) -> None:
-    from dembound.running import Progress, job
-
-    heard = []
-    progress = Progress()
-    monkeypatch.setattr(progress, "warned", heard.append)
-    monkeypatch.setattr(disk_space, "disk_free", lambda path: 1e5)
-    run_case(bar(), tmp_path, progress)
-    assert "free" in heard[0]
-
-    monkeypatch.undo()
+    heard = Heard()
+    with monkeypatch.context() as patch:
+        patch.setattr(disk_space, "disk_free", lambda path: 1e5)
+        run_case(bar(), tmp_path, heard)
+    assert "free" in heard.lines[0]
     monkeypatch.setattr(job, "LARGE", 1e5)
     with caplog.at_level(logging.INFO):
         run_case(bar(), tmp_path)
     assert [record.message for record in caplog.records if "of results; the disk has" in record.message]
 
 
-def test_a_continued_run_warns_of_what_it_will_add(bar, tmp_path, monkeypatch, caplog) -> None:
-    from dembound.running import Progress, job
-
-    heard = []
-    progress = Progress()
-    monkeypatch.setattr(progress, "warned", heard.append)
+def test_a_continued_run_warns_of_what_it_will_add(bar, tmp_path, monkeypatch) -> None:
+    heard = Heard()
     case = bar({"output.snapshots": 9})
     folder, longer = run_case(case, tmp_path), 3.0 * case.run.duration
-    first, whole = results_bytes(plan(case)), results_bytes(_continued(case, longer))
+    # the plan of a run that is continued
+    continued = replace(plan(with_changes(case, {"run.duration": longer})), regular_steps=plan(case).steps)
+    first, whole = results_bytes(plan(case)), results_bytes(continued)
     for name in ("output.snapshots", "output.energy_interval"):  # steps, some 30 at first, are rounded up
         assert whole[name] == pytest.approx(3.0 * first[name], rel=1.0 / 30)
 
@@ -105,25 +111,14 @@ def test_a_continued_run_warns_of_what_it_will_add(bar, tmp_path, monkeypatch, c
     left = sum(whole.values()) - sum(written(partial).values())
     with monkeypatch.context() as small_disk:
         small_disk.setattr(disk_space, "disk_free", lambda path: left - 1e3)
-        resume_case(partial, longer, progress)
-    assert f"the results take about {in_words(left)} more, " in heard[0]
-    heard.clear()
+        resume_case(partial, longer, heard)
+    assert f"the results take about {in_words(left)} more, " in heard.lines[0]
 
+    heard = Heard()
     monkeypatch.setattr(disk_space, "disk_free", lambda path: left + 1e3)  # the complete run is copied
-    resume_case(folder, longer + case.run.duration, progress)
-    assert "the results take about" in heard[0]
-    assert " more, " not in heard[0]
-
-    monkeypatch.undo()
-    monkeypatch.setattr(job, "LARGE", 1e5)
-    with caplog.at_level(logging.INFO):
-        resume_case(folder, longer + 2.0 * case.run.duration)
-    assert [record.message for record in caplog.records if "of results; the disk has" in record.message]
-
-
-def _continued(case, until: float) -> Plan:
-    """The plan of a run that is continued to a time in s."""
-    return replace(plan(with_changes(case, {"run.duration": until})), regular_steps=plan(case).steps)
+    resume_case(folder, longer + case.run.duration, heard)
+    assert "the results take about" in heard.lines[0]
+    assert " more, " not in heard.lines[0]
 
 
 def test_outputs_more_often_than_steps_are_mentioned(bar) -> None:

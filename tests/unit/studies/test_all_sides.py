@@ -19,9 +19,6 @@ def test_sides_with_dashpots_have_a_factor_for_each_wave_that_can_move_them(bar)
     # y is what P waves move at the top, S waves at the left and the right
     assert factors_of(bar(DASHPOTS | {"motion.held": ["y"]})) == [("left", "p"), ("right", "p"), ("top", "s")]
     assert factors_of(bar(DASHPOTS | {"motion.held": ["rotation"]})) == both
-
-
-def test_a_case_without_dashpots_is_refused(bar) -> None:
     grip = {"boundary.left": {"type": "velocity", "wave_p": "pulse"}, "boundary.right": {"type": "fixed"}}
     with pytest.raises(CaseError, match="boundary: has no side with dashpots"):
         factors_of(bar(grip))

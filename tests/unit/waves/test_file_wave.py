@@ -37,13 +37,10 @@ def test_displacement_is_exact_between_and_beyond_samples(tmp_path: Path) -> Non
 
     # areas under the triangle: t² on the rise; 3 − (3 − t)²/2 on the fall
     assert wave.displacement(t).tolist() == [0.0, 0.25, 1.0, 2.5, 3.0, 3.0]
-
-
-def test_record_may_begin_late_and_away_from_zero(tmp_path: Path) -> None:
-    wave = record(tmp_path, "1.0 2.0\n2.0 2.0\n2.5 2.0\n")
-
-    assert wave.velocity(np.array([0.999, 1.0, 2.5, 2.501])).tolist() == [0.0, 2.0, 2.0, 0.0]
-    assert wave.displacement(np.array([0.5, 1.5, 2.25, 9.0])).tolist() == [0.0, 1.0, 2.5, 3.0]
+    late = record(tmp_path, "1.0 2.0\n2.0 2.0\n2.5 2.0\n")  # and away from zero
+    assert late.velocity(np.array([0.999, 1.0, 2.5, 2.501])).tolist() == [0.0, 2.0, 2.0, 0.0]
+    assert late.displacement(np.array([0.5, 1.5, 2.25, 9.0])).tolist() == [0.0, 1.0, 2.5, 3.0]
+    assert wave == record(tmp_path, TRIANGLE) != late
 
 
 def test_frequencies_of_a_sampled_pulse(tmp_path: Path) -> None:
@@ -55,14 +52,6 @@ def test_frequencies_of_a_sampled_pulse(tmp_path: Path) -> None:
     # |V| itself, sin(πx)/[πx(1 − x²)], falls below 1 % for good at x = 2.797, and the next bin is given
     assert wave.dominant_frequency() == pytest.approx(0.837 / 0.5, abs=0.25)
     assert 2.79 / 0.5 <= wave.highest_frequency() <= 2.80 / 0.5 + 0.25
-
-
-def test_a_record_that_ends_in_motion_counts_to_its_last_sample(tmp_path: Path) -> None:
-    # two equal samples 1 s apart: |V| is 2|cos πf|, and f·|V| of the bins, 1/16 Hz, is largest where πf·tan πf is next
-    # to 1, from f = 0.274 Hz down to 0.25 Hz; of the first one alone |V| would be the same at all frequencies
-    wave = record(tmp_path, "0.0 1.0\n1.0 1.0\n")
-
-    assert wave.dominant_frequency() == pytest.approx(0.25, rel=1e-12)
 
 
 def test_frequencies_do_not_suffer_from_a_long_line(tmp_path: Path) -> None:
@@ -78,16 +67,10 @@ def test_frequencies_do_not_suffer_from_a_long_line(tmp_path: Path) -> None:
     assert wave.highest_frequency() == pytest.approx(2.764 * frequency, abs=0.125)
 
 
-def test_commas_separate_the_columns_of_a_csv_file(tmp_path: Path) -> None:
-    path = tmp_path / "gauge.csv"
-    path.write_text("# time,stress\n0,0.5\n1, -2\n")
-
-    assert samples(path).tolist() == [[0.0, 0.5], [1.0, -2.0]]
-
-
 @pytest.mark.parametrize(
     ("name", "text"),
     [
+        ("gauge.csv", "# time,stress\n0,0.5\n1, -2\n"),
         ("gauge.csv", "Time (s),Stress 1 (Pa)\n0,0.5\n1, -2\n"),
         ("gauge.csv", "\ufefft;s\n0;0.5\n1;-2\n"),
         ("gauge.csv", "0;0,5\n1,0;-2\n"),
@@ -102,38 +85,20 @@ def test_headers_marks_of_spreadsheets_and_semicolons_are_read(tmp_path: Path, n
     assert samples(tmp_path / name).tolist() == [[0.0, 0.5], [1.0, -2.0]]
 
 
-def test_columns_are_called_what_they_are_for(tmp_path: Path) -> None:
-    path = tmp_path / "three.txt"
-    path.write_text("0 0 0\n1 1 1\n")
-    for given, called in (({}, "values"), ({"quantity": "stress (Pa)"}, "stress (Pa)")):
-        with pytest.raises(ValueError, match="has 3 columns") as caught:
-            samples(path, **given)
-        assert str(caught.value).endswith(f"must have two: time (s), {called}")
-
-
-def test_equal_files_make_equal_waves(tmp_path: Path) -> None:
-    assert record(tmp_path, TRIANGLE) == record(tmp_path, TRIANGLE)
-    assert record(tmp_path, TRIANGLE) != record(tmp_path, "0 0\n1 1\n3 0\n")
-
-
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("", "contains no numbers"),
         ("# only words\n", "contains no numbers"),
-        ("0 0 0\n1 1 1\n", "has 3 columns, must have two"),
+        ("0 0 0\n1 1 1\n", r"has 3 columns, must have two: time \(s\), values$"),
         ("0\n1\n", "has 1 columns"),
         ("0 0\n1 1 1\n", "is not two columns of numbers"),
         ("time velocity\ns m/s\n0 0\n1 1\n", "is not two columns of numbers"),
         ("time 0\n0 0\n1 1\n", "is not two columns of numbers"),
         ("0,0;1.000,5\n1;1\n", "is not two columns of numbers"),
-        ("time velocity\n", "contains no numbers"),
         ("0,0\n1,1\n", "is not two columns of numbers"),
         ("0 0\n1 nan\n", "not finite"),
-        ("0 0\ninf 1\n", "not finite"),
         ("0 1\n", "at least two"),
         ("0 0\n1 1\n1 2\n", "row 3"),
-        ("0 0\n2 1\n1 2\n3 0\n", "row 3"),
         ("0 0\n1 0\n", "only zeros"),
     ],
 )
@@ -150,5 +115,5 @@ def test_absent_or_binary_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="no file"):
         samples(tmp_path / "absent.txt")
     (tmp_path / "binary").write_bytes(b"\xff\xfe\x00\x80")
-    with pytest.raises(ValueError, match="is not two columns of numbers"):
-        samples(tmp_path / "binary")
+    with pytest.raises(ValueError, match=r"is not two columns of numbers"):
+        samples(tmp_path / "binary", quantity="stress (Pa)")

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.chart.references import exact_of
-from dembound.accuracy.choice import choices_of
 from dembound.accuracy.history import History
 from dembound.accuracy.of_bars.pulse import PulseInBar
 from dembound.accuracy.of_disks.exact.continuum import Continuum
@@ -30,9 +29,6 @@ def test_a_bar_that_spalls_has_one_until_then(spalling) -> None:
     assert isinstance(found, PulseInBar)
     assert found.findings["spall place"] == pytest.approx(1.0 - 0.2 / 3.0)
     assert found.until == found.findings["spall time"] == pytest.approx(0.2e-3 + (1.0 + 0.2 / 3.0) / 1000.0)
-
-
-def test_a_bar_that_holds_has_one_for_ever(spalling) -> None:
     assert exact_of(spalling({"bar.strength": 13e6})).until == math.inf
 
 
@@ -68,6 +64,9 @@ def test_a_plane_wave_that_leaves_has_one(bar) -> None:
     found = exact_of(bar(EVEN))
     assert isinstance(found, PlaneWave)
     assert (found.side, found.motion) == ("left", "p")
+    sides = {f"boundary.{side}": {"type": "periodic"} for side in ("bottom", "top")}
+    wave = {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, "motion.held": []}
+    assert exact_of(bar({**wave, **sides})).motion == "s"
 
 
 @pytest.mark.parametrize(
@@ -84,12 +83,6 @@ def test_a_plane_wave_that_leaves_has_one(bar) -> None:
 def test_waves_that_do_not_stay_plane_or_do_not_leave_have_none(bar, changes) -> None:
     with pytest.raises(CaseError, match="no exact solution"):
         exact_of(bar({**EVEN, **changes}))
-
-
-def test_s_waves_have_one_between_periodic_sides(bar) -> None:
-    sides = {f"boundary.{side}": {"type": "periodic"} for side in ("bottom", "top")}
-    wave = {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, "motion.held": []}
-    assert exact_of(bar({**wave, **sides})).motion == "s"
 
 
 @pytest.mark.parametrize(
@@ -129,41 +122,13 @@ def test_its_motion_is_that_of_each_choice_at_the_monitors_of_the_choice() -> No
     crests = [np.hypot(*gauges["side"].velocity[:, :2].T).max() for gauges in (here, elsewhere)]
     assert radii[1] > radii[0]
     assert crests[1] < crests[0]
-
-
-@pytest.mark.parametrize(
-    ("name", "changes", "reason"),
-    [
-        ("cavity", {"boundary.left": {"type": "viscous"}}, 'boundary.left.type: is "viscous", but the wave of'),
-        ("cavity", {"boundary.top": {"type": "viscoelastic", "distance": 20.0}}, "boundary.top.type: is"),
-        ("cavity", {"incident.type": "s"}, "incident.type: "),
-        ("blast", {"load.blast.hole": "shaft"}, "load[1, blast].hole: "),
-    ],
-)
-def test_choices_that_do_not_apply_are_left_out_by_name(name, changes, reason) -> None:
-    case = load(folder() / "charts" / f"{name}.toml")
-    choices, left_out = choices_of(case, {"as it is": {}, "of another kind": changes})
-    assert [choice.name for choice in choices] == ["as it is"]
-    (line,) = left_out
-    assert line.startswith(f"of another kind: left out, {reason}")
-
-
-def test_sides_of_a_choice_that_end_the_rock_are_its_error() -> None:
-    """The exact motion beside free and fixed sides, whose top is no free surface either, is that of endless rock."""
-    case = load(folder() / "charts" / "blast.toml")
+    # beside sides that end the rock, whose error that is, it is that of endless rock
     ended = {f"boundary.{side}": {"type": "fixed"} for side in ("left", "right", "bottom")}
-    still = History.of(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
-    beside, alone = (
-        exact_of(case).motions(each, dict.fromkeys(("side", "between", "diagonal"), still))
-        for each in (with_changes(case, ended | {"boundary.top": {"type": "free"}}), case)
-    )
-    for name, gauge in alone.items():
-        np.testing.assert_array_equal(beside[name].velocity, gauge.velocity)
-
-
-def test_a_choice_of_another_problem_has_none() -> None:
-    """A quarter beside mirror planes: the solution is that of a hole with rock on all sides."""
-    case = load(folder() / "charts" / "blast.toml")
+    ended = with_changes(case, ended | {"boundary.top": {"type": "free"}})
+    gauges = dict.fromkeys(("side", "between", "diagonal"), still)
+    beside, alone = (solution.motions(each, gauges)["side"] for each in (ended, case))
+    np.testing.assert_array_equal(beside.velocity, alone.velocity)
+    # a quarter beside mirror planes is another problem
     quarter = with_changes(case, {"boundary.left": {"type": "symmetry"}})
     with pytest.raises(CaseError, match=r'boundary\.left\.type: is "symmetry", must be a side beyond'):
-        exact_of(case).motions(quarter, {})
+        solution.motions(quarter, {})

@@ -13,11 +13,10 @@ from dembound.accuracy.chart import references as reference
 from dembound.accuracy.chart import study
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.chart.tables import COLUMNS, write_results, write_table
-from dembound.accuracy.choice import Choice, choices_of, combinations
+from dembound.accuracy.choice import choices_of, combinations
 from dembound.accuracy.of_bars.judge import BarJudge
 from dembound.accuracy.of_disks.judge import REALISATIONS, DiskJudge
-from dembound.accuracy.reference import Reference, Wanted
-from dembound.accuracy.runner import Run
+from dembound.accuracy.reference import Wanted
 from dembound.errors import CaseError, RunError
 from dembound.motion.kind import Finding
 from dembound.results.structure import run_of
@@ -92,17 +91,6 @@ def test_a_choice_that_fails_is_kept_with_its_reason(charted, spalling) -> None:
     assert (good.outcome.failure, bad.errors) == ("", ())
     assert bad.outcome.failure.startswith("run.courant: is 3, must not be above")
     assert found.front == [0]
-
-
-def test_reasons_against_a_comparison_are_one_line(bar) -> None:
-    def motions(*_):
-        raise CaseError(["hole: is no circle", "motion.held: must be empty"])
-
-    line = study._line(Choice("odd", {}, bar()), Run(), Reference("exact", "exact", motions), Options())
-    assert (line.outcome.failure, line.errors) == ("hole: is no circle; motion.held: must be empty", ())
-
-
-def test_nothing_but_failures_is_a_failure(charted, spalling) -> None:
     with pytest.raises(RunError, match=r"courant 3: run\.courant"):
         charted(spalling(), {"run.courant": [3.0]})
 
@@ -115,20 +103,15 @@ def test_the_finest_choice_is_the_reference_of_disks_without_a_solution(charted,
     assert found.judged == found.front == [1]
     assert found.lines[0].errors[0].rms == 0.0
     assert found.sentence.endswith(f"the reference itself: radius 0.25 m ({found.lines[0].cpu:.2g} s)")
-
-
-def test_a_choice_that_is_the_reference_run_again_is_not_its_cheapest(charted, bar) -> None:
-    case = bar({"run.duration": 0.02, "motion.held": []})
+    # a choice that is the reference run again is not its cheapest: the number of snapshots changes no run
     found, _ = charted(case, {"run.safety": [0.45, 0.9], "output.snapshots": [0, 2]}, repeats=1)
-    assert found.reference.own == (0, 1)  # the number of snapshots changes no run
-    assert found.judged == [2, 3]
+    assert (found.reference.own, found.judged) == ((0, 1), [2, 3])
     assert found.cheapest(1.0) in (2, 3)
 
 
 @pytest.mark.parametrize(
     ("costs", "named"),
     [
-        ((1.0, 1.0), "boundary.right viscous (10 %, 1 s)"),
         ((1.0, 0.8), "boundary.right viscous (10 %, 1 s)"),  # within the noise of CPU times the works decide: equal
         ((1.0, 0.4), "boundary.right free (10 %, 0.4 s)"),
     ],
@@ -162,11 +145,6 @@ def test_a_finer_run_is_the_reference_of_bars_without_a_solution(charted, spalli
     errors = {line.choice.name: line.errors[0].rms for line in found.lines}
     # without attenuation no error would be left at ν = 1; with it 0.04 %, and 16 % at ν = 0.9
     assert errors["spacing 0.025 m, courant 1"] < 0.05 * errors["spacing 0.025 m, courant 0.9"]
-
-
-def test_the_finer_run_is_of_bars(charted, bar) -> None:
-    with pytest.raises(CaseError, match="finer is for bars"):
-        charted(bar(), {"run.safety": [0.45, 0.9]}, repeats=1, reference="finer")
 
 
 def test_the_finest_choice_takes_its_place_where_it_fails(charted, spalling, monkeypatch) -> None:
@@ -215,7 +193,7 @@ def test_histories_are_compared_up_to_the_first_broken_bond(charted, bar) -> Non
     assert whole.lines[0].errors[0].rms > 3.0 * found.lines[0].errors[0].rms
 
 
-def test_random_packings_are_realisations(charted, bar) -> None:
+def test_random_packings_are_realisations_but_boxes_elsewhere_have_the_same_bricks(charted, bar) -> None:
     packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
     case = bar({"packing": packing, "run.duration": 0.004})
     found, _ = charted(case, {"packing.seed": [1, 2]}, repeats=1, reference="finest")
@@ -223,6 +201,14 @@ def test_random_packings_are_realisations(charted, bar) -> None:
     same = charted(case, {"packing.size": [[9.0, 3.0], [12.0, 3.0]]}, repeats=1, reference="finest")[0]
     assert not same.left_out  # the same brick, more of them
     assert not charted(bar(), {"packing.radius": [0.25, 0.5]}, repeats=1, reference="finest")[0].left_out
+    packing = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+    case = bar({"packing": packing | {"size": [10.0, 10.0]}, "motion.held": []})
+    box = {"ground.size": [10.0, 10.0], "packing": packing | {"size": [5.0, 5.0], "origin": [0.0, 5.0]}}
+    sides = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "bottom")}
+    choices, _ = choices_of(case, {"all": {}, "box": box | sides, "other": {"packing.seed": 7}})
+    cases = [choice.case for choice in choices]
+    assert DiskJudge().cautions(cases[:2]) == ()
+    assert len(DiskJudge().cautions(cases)) == 1
 
 
 def test_breaks_beyond_the_scene_of_the_case_are_no_end_of_the_comparison(bar, monkeypatch, tmp_path) -> None:
@@ -252,31 +238,12 @@ def test_an_extended_scene_lets_waves_in_through_the_continuum_of_a_choice(bar, 
     assert by_continuum < 0.2 * by_field
 
 
-def test_boxes_elsewhere_have_the_same_bricks(bar) -> None:
-    packing = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
-    case = bar({"packing": packing | {"size": [10.0, 10.0]}, "motion.held": []})
-    box = {"ground.size": [10.0, 10.0], "packing": packing | {"size": [5.0, 5.0], "origin": [0.0, 5.0]}}
-    sides = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "bottom")}
-    choices, _ = choices_of(case, {"all": {}, "box": box | sides, "other": {"packing.seed": 7}})
-    cases = [choice.case for choice in choices]
-    assert DiskJudge().cautions(cases[:2]) == ()
-    assert len(DiskJudge().cautions(cases)) == 1
-
-
 def test_places_in_an_extended_scene_are_those_in_the_case() -> None:
     found = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
     shifted = reference._shifted(found, (200.0, 2.0, 240.0, 22.0), DiskJudge.places)
     assert {name: value for name, (value, _) in shifted.items()} == {"break time": 0.1, "break x": 3.0, "break y": 3.0}
     spall = {"spall place": Finding(1.5, "m")}
     assert reference._shifted(spall, (1.0, 0.0, 2.0, 0.0), BarJudge.places)["spall place"].value == 0.5
-
-
-def test_a_law_that_does_not_break_is_described_so(bar, tmp_path) -> None:
-    unbreakable = {"density": 2500.0, "p_wave_speed": 1000.0, "contact_share": 0.0}
-    case = bar(SPALLING_DISKS)
-    options = {"law": {"material": unbreakable}, "own": {"run.safety": 0.4}}
-    found = chart(case, Options(named=options, repeats=1), tmp_path, False, Log())
-    assert found.found(found.lines[0]) == "no break time, break x, break y"
 
 
 def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:
@@ -305,17 +272,21 @@ def test_what_cannot_be_compared_is_bad_input(charted, spalling, changes, option
         charted(spalling(changes), repeats=1, **options)
 
 
-def test_stress_is_of_bars(charted, bar) -> None:
-    with pytest.raises(CaseError, match="stress is that along a bar"):
-        charted(bar(), {"run.safety": [0.5]}, wanted=Wanted("stress"))
-
-
-def test_folders_of_something_else_are_not_deleted(charted, spalling, tmp_path) -> None:
+def test_single_choices_folders_of_something_else_and_what_only_bars_have_are_refused(
+    charted, spalling, bar, tmp_path
+) -> None:
+    with pytest.raises(CaseError, match="is the only valid choice, which would be its own reference"):
+        charted(spalling(), {"bar.spacing": [0.05]}, reference="finest")
+    assert not (tmp_path / "chart").exists()
     (tmp_path / "chart").mkdir()
     (tmp_path / "chart" / "thesis.tex").touch()
     with pytest.raises(CaseError, match="holds no chart"):
         charted(spalling())
-    assert (tmp_path / "chart" / "thesis.tex").exists()
+    (tmp_path / "chart" / "thesis.tex").unlink()
+    with pytest.raises(CaseError, match="finer is for bars"):
+        charted(bar(), {"run.safety": [0.45, 0.9]}, repeats=1, reference="finer")
+    with pytest.raises(CaseError, match="stress is that along a bar"):
+        charted(bar(), {"run.safety": [0.5]}, wanted=Wanted("stress"))
 
 
 def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:
@@ -340,9 +311,3 @@ def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:
         np.testing.assert_array_equal(gauge["velocity"][:], motion.velocity)
         assert file["reference"].attrs["spall place"] == pytest.approx(1.0 - 0.2 / 3.0)
         assert file.attrs["sentence"] == found.sentence
-
-
-def test_a_choice_is_not_compared_with_itself(charted, spalling, tmp_path) -> None:
-    with pytest.raises(CaseError, match="is the only valid choice, which would be its own reference"):
-        charted(spalling(), {"bar.spacing": [0.05]}, reference="finest")
-    assert not (tmp_path / "chart").exists()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from estimated_bars import LAYER, scene
 
-from dembound.accuracy.of_bars.chain import Chain, Clock, Response, observed_near
+from dembound.accuracy.of_bars.chain import Chain, Clock, Response
 from dembound.bar.scene import build_bar
 from dembound.exact.dispersion import Lattice
 from dembound.kinds import with_changes
@@ -42,35 +42,6 @@ def test_waves_run_as_on_the_infinite_row(name: str, horizon: int, step: float) 
     here = [response.at(moved, chain.first + node) for node in (40, 50, 60)]
     for near, far in pairwise(here):
         np.testing.assert_allclose(far / near, np.exp(-0.1j * wavenumber), atol=0.02 if horizon == 8 else 3e-3)
-
-
-@pytest.mark.parametrize(
-    "name", ["m = 3, soft ends", "matched layer, m = 3", "input by a matched layer, m = 3", "ranges", "attenuation"]
-)
-def test_uniform_parts_need_not_be_solved_for(name: str) -> None:
-    built = build_bar(scene(name))
-    chain, clock = Chain(built, built.layers, STEP), Clock.of(50.0 + 1j * np.array([2e4, 2e5]), STEP)
-    few, all_nodes = Response(chain, [7, 71]), Response(chain, range(built.count))
-
-    moved = [each.velocities(clock, {7: np.array([1.0, 2.0 + 1j])}) for each in (few, all_nodes)]
-
-    assert moved[0].shape[1] < 0.9 * moved[1].shape[1]
-    for node in (7, 71):
-        pair = [each.at(own, chain.first + node) for each, own in zip((few, all_nodes), moved, strict=True)]
-        np.testing.assert_allclose(*pair, rtol=1e-9)
-
-
-def test_the_tension_at_rest_is_the_same_everywhere() -> None:
-    # pulled at both ends slowly, the bar has the same force through all planes; (2πfL/c)²/2 = 3e-8 of it is inertia
-    built = build_bar(scene("m = 3, soft ends"))
-    chain, clock = Chain(built, {}, STEP), Clock.of(2j * np.pi * np.array([0.1]), STEP)
-    last = built.count - 1
-    response = Response(chain, observed_near(chain, range(built.count)))
-
-    moved = response.velocities(clock, {0: np.array([-3.0 + 0j]), last: np.array([3.0 + 0j])})
-
-    for plane in (0, 1, 2, 50, last - 1):
-        np.testing.assert_allclose(response.tension(moved, clock, plane), 3.0, rtol=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,10 @@ from dembound.casefile.bar import BarCase
 from dembound.kinds import with_changes
 
 PLACES = {"near": 0.2, "far": 0.8}
+FROM_THE_RIGHT: dict[str, Any] = {
+    "load": [{"name": "hit", "side": "right", "pressure": 1e6, "wave": "pulse", "nodes": 2}],
+    "boundary": {"left": {"type": "viscous"}},
+}
 
 
 def built(name: str, **changes: Any) -> BarScene:
@@ -40,10 +44,14 @@ def floor(known: BarOption, other: BarOption, error: float = 0.3, without_echo: 
 def test_of_finer_nodes_they_fall_with_the_square_of_the_spacing(known: BarOption) -> None:
     assert floor(known, choice("viscous end", 0.5, 0.0025)) == pytest.approx(0.3 / 16 / MARGIN)
     assert floor(known, known) == pytest.approx(0.3 / MARGIN)
-
-
-def test_of_coarser_nodes_they_are_as_large(known: BarOption) -> None:
+    # of coarser ones they are as large; other methods and Courant numbers say nothing; the largest of all counts
     assert floor(known, choice("viscous end", 0.5, 0.04)) == pytest.approx(0.3)
+    assert floor(known, choice("viscous end", 0.6), without_echo=0.3) == 0.0
+    assert floor(known, replace(known, method=", corrected ends"), without_echo=0.3) == 0.0
+    floors = Floors()
+    for error in (0.1, 0.4, 0.2):
+        floors.add(known, error, 0.0)
+    assert floors.of(known) == pytest.approx(0.4 / MARGIN)
 
 
 def test_of_other_ends_only_what_is_wrong_before_an_echo_counts(known: BarOption) -> None:
@@ -53,18 +61,6 @@ def test_of_other_ends_only_what_is_wrong_before_an_echo_counts(known: BarOption
     finer, coarser = (choice("viscous end", 0.5, spacing, "layers") for spacing in (0.005, 0.04))
     assert floor(known, finer, without_echo=0.12) == pytest.approx(0.12 / 4 / MARGIN)
     assert floor(known, coarser, without_echo=0.12) == pytest.approx(0.12 / MARGIN)
-
-
-def test_other_methods_and_courant_numbers_say_nothing(known: BarOption) -> None:
-    assert floor(known, choice("viscous end", 0.6), without_echo=0.3) == 0.0
-    assert floor(known, replace(known, method=", corrected ends"), without_echo=0.3) == 0.0
-
-
-def test_the_largest_of_all_counts(known: BarOption) -> None:
-    floors = Floors()
-    for error in (0.1, 0.4, 0.2):
-        floors.add(known, error, 0.0)
-    assert floors.of(known) == pytest.approx(0.4 / MARGIN)
 
 
 @pytest.mark.parametrize(
@@ -100,6 +96,7 @@ def test_monitors_elsewhere_make_errors_irregular() -> None:
         ("grip", {}, {"near": 1.8, "far": 1.2}),
         ("wall", {}, {"near": np.inf, "far": np.inf}),
         ("wall in place of rock", {}, {"near": 1.8, "far": 1.2}),
+        ("viscous end", FROM_THE_RIGHT, {"near": 1.19, "far": 1.79}),
         # beyond 0.6 m at half the speed
         ("ranges", {"boundary.right": {"type": "viscous"}}, {"near": 1.4 + 1.2, "far": 1.4 + 0.4}),
     ],
@@ -110,9 +107,3 @@ def test_the_first_echo_takes_the_way_to_the_end_and_back(
     case = with_changes(scene(name), changes)
     assert isinstance(case, BarCase)
     assert first_echo(build_bar(case)) == pytest.approx({key: way / 2740.0 for key, way in ways.items()})
-
-
-def test_a_load_at_the_right_end_is_as_far_from_the_left_one() -> None:
-    load = [{"name": "hit", "side": "right", "pressure": 1e6, "wave": "pulse", "nodes": 2}]
-    loaded = built("viscous end", load=load, boundary={"left": {"type": "viscous"}})
-    assert first_echo(loaded) == pytest.approx({"near": 1.19 / 2740.0, "far": 1.79 / 2740.0})

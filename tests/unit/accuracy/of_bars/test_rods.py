@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from estimated_bars import BAR, RANGES, WALL, scene
+from estimated_bars import BAR, RANGES, WALL
 from small_cases import small
 
 from dembound.accuracy.of_bars.rods import Rods
@@ -14,16 +14,6 @@ SPEED, IMPEDANCE = 2740.0, 2620.0 * 2740.0
 
 def rods(case, *places: float) -> Rods:
     return Rods(case, build_bar(case).rod, np.array(places), S)
-
-
-def test_a_push_in_an_endless_rod_sends_a_plane_wave() -> None:
-    found = rods(small(BAR, changes={"boundary.right": {"type": "viscous"}}), 0.0, 0.3, 1.0)
-
-    velocity, stress = found.motion({"left": np.full(len(S), 5.0)}, {})
-
-    wave = 5.0 / IMPEDANCE * np.exp(-np.outer(S, [0.0, 0.3, 1.0]) / SPEED)
-    np.testing.assert_allclose(velocity, wave, rtol=1e-10)
-    np.testing.assert_allclose(stress, -IMPEDANCE * wave, rtol=1e-10)
 
 
 @pytest.mark.parametrize(("end", "reflected"), [({}, 1.0), ({"boundary.right": WALL}, -1.0)])
@@ -58,9 +48,3 @@ def test_an_interface_transmits_by_the_impedances() -> None:
     np.testing.assert_allclose(velocity[:, 0], through, rtol=1e-10)
     np.testing.assert_allclose(velocity[:, 1], through * np.exp(-0.2 * S / 1370.0), rtol=1e-10)
     np.testing.assert_allclose(stress[:, 0], -softer * through, rtol=1e-10)
-
-
-def test_a_grip_moves_as_prescribed() -> None:
-    velocity, _ = rods(scene("grip"), 0.0, 0.5).motion({}, {"left": np.ones(len(S))})
-
-    np.testing.assert_allclose(velocity, np.exp(-np.outer(S, [0.0, 0.5]) / SPEED), rtol=1e-9)

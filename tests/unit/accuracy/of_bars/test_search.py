@@ -49,8 +49,12 @@ def test_the_choice_is_as_accurate_as_asked_for(
     choice = choose(case, bound, kept)
 
     assert choice.holds
-    assert true_error(choice) <= bound
-    assert choice.error == pytest.approx(true_error(choice), rel=0.03, abs=1e-4)
+    error = true_error(choice)
+    assert error <= bound
+    assert choice.error == pytest.approx(error, rel=0.03, abs=1e-4)
+    for name in ("wave", "load", "monitor", "output"):
+        assert getattr(choice.case, name) == getattr(case, name)
+    assert choice.case.run.duration == case.run.duration
 
 
 @pytest.mark.parametrize(
@@ -81,21 +85,6 @@ def test_the_search_finds_what_the_errors_of_all_choices_give(
     assert all(tried < 0.3 * len(motions) for _, tried in found)
 
 
-def test_only_nodes_steps_ends_and_their_correction_change() -> None:
-    case = scene("viscous soft end, m = 3")
-
-    changed = choose(case, 0.2).case
-
-    assert isinstance(changed, BarCase)
-    for name in ("wave", "load", "monitor", "output"):
-        assert getattr(changed, name) == getattr(case, name)
-    assert changed.bar.given() | {"spacing": 0.0} == case.bar.given() | {"spacing": 0.0}
-    assert changed.method.largest_horizon == 3
-    assert changed.side("left") == case.side("left")
-    assert changed.side("right").is_artificial
-    assert changed.run.duration == case.run.duration
-
-
 def test_the_cheapest_of_all_choices_is_taken() -> None:
     """At Courant number 1 coarse nodes are exact but for the corners of the wave, and longer steps are fewer."""
     case = scene("finite differences, ν = 0.9")
@@ -111,9 +100,7 @@ def test_the_cheapest_of_all_choices_is_taken() -> None:
 
 def test_the_small_stress_beside_a_free_end_does_not_count() -> None:
     case = with_changes(scene("finite differences, ν = 0.9"), {"monitor.far.position": 1.0})
-
     choice = choose(case, 0.05, ["bar", "run"])
-
     recorded, _ = recorded_of(case)
     errors = {q: v[:, 0] - exact(case, recorded["far"])[q] for q, v in recorded["far"].values.items()}
     shares = {q: np.linalg.norm(errors[q]) / np.linalg.norm(v[:, 0]) for q, v in recorded["far"].values.items()}

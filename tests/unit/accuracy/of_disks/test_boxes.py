@@ -1,7 +1,6 @@
 """The box of disks that check proposes, and the time of a step that it is compared by."""
 
 import tomllib
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -9,7 +8,6 @@ import pytest
 from dembound.accuracy.of_disks.boxes import box_facts
 from dembound.api import case
 from dembound.casefile.disks import DiskCase
-from dembound.disks import step_cost
 from dembound.disks.scene import build
 
 SIZE = (120.0, 100.0)
@@ -81,16 +79,6 @@ def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
 )
 def test_there_is_no_box(changes: dict[str, Any]) -> None:
     assert dict(box_facts(build(tunnel(**changes)))) == {}
-
-
-def test_a_step_costs_what_its_parts_do() -> None:
-    scene = build(tunnel())
-    costs = step_cost.of_scene(scene)
-
-    assert costs["disks"] == step_cost.of_disk(scene) * scene.disk_count
-    assert sum(costs.values()) == costs["disks"]
-    nearly = replace(scene, case=scene.case)
-    assert step_cost.of_scene(nearly) == costs
 
 
 SLOPE = {"name": "slope", "type": "polygon", "points": [[60.0, 101.0], [75.0, 80.0], [121.0, 80.0], [121.0, 101.0]]}

@@ -36,16 +36,9 @@ def test_whole_cells_reflect_out_of_phase():
     assert whole.out_of_phase == pytest.approx(math.tan(2.0 * math.pi * 15.0 / 1000.0 * 0.5 / 4.0), rel=0.3)
     assert whole.out_of_phase > 20.0 * half.out_of_phase
     assert whole.dashpots == pytest.approx(0.0, abs=1e-6)
-
-
-def test_parts_in_and_out_of_phase_make_the_size():
-    share = Reflected(0.5, -0.3)
-    assert share.signed == -0.5
-    assert share.out_of_phase == pytest.approx(0.4)
+    share = Reflected(0.5, -0.3)  # parts in and out of phase make the size
+    assert (share.signed, share.out_of_phase) == (-0.5, pytest.approx(0.4))
     assert Reflected(0.1, 0.3).out_of_phase == 0.0
-
-
-def test_a_factor_reflects_its_share():
-    for share in (-0.4, 0.0, 0.3):
-        factor = factor_for(share)
-        assert (1.0 - factor) / (1.0 + factor) == pytest.approx(share)
+    for reflection in (-0.4, 0.0, 0.3):
+        factor = factor_for(reflection)
+        assert (1.0 - factor) / (1.0 + factor) == pytest.approx(reflection)

@@ -36,6 +36,8 @@ def test_quadratic_motion_is_found_at_any_place() -> None:
 )
 def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], middle: tuple[float, float]) -> None:
     np.testing.assert_allclose(patch_around(lattice(), np.array(place)), 0.5 * NINE + middle, atol=1e-12)
+    low = lattice(**{"packing.size": [10.0, 1.0], "monitor": [{"name": "back", "position": [9.6, 0.2]}]})
+    np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), [[3.25, 0.25]], atol=1e-12)
 
 
 def test_a_patch_has_no_disks_that_a_hole_has_taken() -> None:
@@ -44,11 +46,6 @@ def test_a_patch_has_no_disks_that_a_hole_has_taken() -> None:
     assert patch[4] == pytest.approx([4.75, 1.75]) or patch[4] == pytest.approx([5.25, 1.75])
     disks = {(round(x, 6), round(y, 6)) for x, y in scene.positions}
     assert all((round(x, 6), round(y, 6)) in disks for x, y in patch)
-
-
-def test_bodies_two_disks_high_have_single_disks() -> None:
-    scene = lattice(**{"packing.size": [10.0, 1.0], "monitor": [{"name": "back", "position": [9.6, 0.2]}]})
-    np.testing.assert_allclose(patch_around(scene, np.array([3.3, 0.3])), [[3.25, 0.25]], atol=1e-12)
 
 
 def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:

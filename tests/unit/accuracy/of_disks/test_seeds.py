@@ -13,7 +13,7 @@ from dembound.errors import CaseError
 TIME = np.linspace(0.0, 1.0, 21)
 
 
-def test_the_difference_to_another_seed_over_the_root_of_two(monkeypatch):
+def test_the_difference_to_another_seed_over_the_root_of_two_and_none_of_a_lattice(monkeypatch):
     case = small(GRAINS, changes={"packing.seed": 7, "run.until": "silent"})
     seen = []
 
@@ -32,8 +32,5 @@ def test_the_difference_to_another_seed_over_the_root_of_two(monkeypatch):
     assert found.cost == 1.5
     assert seen[0].packing.seed == 8
     assert seen[0].run.until != "silent"  # it must not end before the record
-
-
-def test_a_lattice_has_no_second_seed():
     with pytest.raises(CaseError, match="no random packing"):
         packing.cause_of_packing(small(PUSHED), {}, 1.0)

@@ -25,14 +25,6 @@ def test_frequencies_share_the_energy_of_the_waves_evenly() -> None:
     assert (np.diff(found) > 0.0).all()
 
 
-def test_without_waves_they_are_those_of_twenty_to_two_hundred_diameters() -> None:
-    case = small({key: value for key, value in GRAINS.items() if key not in ("wave", "boundary")})
-    ground = ground_of(case)
-    found = frequencies_of(case, ground, 5)
-    lengths = ground.wave_speeds(0)[0] / found / ground.brick.mean_diameter
-    np.testing.assert_allclose(lengths[[0, -1]], [200.0, 20.0])
-
-
 def test_the_mean_frequency_is_that_of_the_energy() -> None:
     case = small(GRAINS | {"wave": {"pulse": {"type": "ricker", "amplitude": 1.0, "frequency": 20.0}}})
     # energies f⁴ exp(−2f²/f0²): f0 Γ(3)/(√2 Γ(5/2)); samples of a Ricker wavelet cut off where it is 1e-4

@@ -1,17 +1,14 @@
 """Records of a continuum have the total motion of its nodes beside the scattered one that it is computed with."""
 
 import h5py
-import meshio
 import numpy as np
 import pytest
 from small_cases import SURROUNDED, small
 
-from dembound.disks.kind import Disks
 from dembound.disks.scene import build
 from dembound.motion.simulation import Simulation
 from dembound.plot.field import read_field
 from dembound.results.recorder import Recorder
-from dembound.results.vtk import write_paraview
 
 WAVES = {
     "boundary.bottom": {"type": "outside", "wave_s": "up"},
@@ -49,18 +46,6 @@ def test_beside_a_column_the_total_motion_is_recorded_too(waved, name) -> None:
         np.testing.assert_array_equal(beyond[f"scattered_{name}"][:], own)
         np.testing.assert_allclose(beyond[name][:, :2], own[:, :2] + ground * known, atol=1e-12)
     assert np.abs(ground).max() > 0.1 * np.abs(own).max()
-
-
-def test_paraview_is_given_both(waved) -> None:
-    _, _, folder = waved
-    write_paraview(folder / "run.h5", folder / "paraview", Disks())
-    data = meshio.read(folder / "paraview" / "continuum_0000.vtu").point_data
-    with h5py.File(folder / "run.h5") as file:
-        fields = {name: values[:] for name, values in file["snapshots/0000/continuum"].items()}
-    shown = {"linVelVec": "velocity", "scatteredVelocity": "scattered_velocity"}
-    shown |= {"displacement": "displacement", "scattered": "scattered_displacement"}
-    for name, column in shown.items():
-        np.testing.assert_array_equal(data[name][:, :2], fields[column][:, :2].astype(np.float32), err_msg=name)
 
 
 def test_stresses_of_the_scattered_motion_are_not_drawn_beside_total_ones(waved, tmp_path) -> None:

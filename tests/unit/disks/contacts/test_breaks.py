@@ -1,6 +1,5 @@
 """The first broken bonds of a run, found without a record."""
 
-import numpy as np
 import pytest
 
 from dembound.disks.contacts.breaks import BREAK_TIME, BREAK_X, BREAK_Y, first_break
@@ -47,17 +46,6 @@ def test_only_those_inside_a_part_of_the_scene_count(bar) -> None:
     assert found[BREAK_TIME].value == pytest.approx(cracks.step[rest].min() * run.time_step)
     assert found[BREAK_X].value < last - 0.1
     assert first_break(run_of(bar(BONDS)), (0.0, 0.0, 0.3, 1.0)) == {}
-
-
-def test_places_are_those_without_the_displacement_at_rest(bar) -> None:
-    by = 1e-3
-    case = bar(BONDS)
-    moved = np.zeros((3, Disks().build(case).count))
-    moved[0] = by
-    moved[1] = -by
-    still, shifted = first_break(run_of(case)), first_break(run_of(case, datum=moved))
-    for name in (BREAK_X, BREAK_Y):
-        assert shifted[name].value == pytest.approx(still[name].value, abs=0.01 * by)
 
 
 def test_a_run_without_broken_bonds_has_none(bar) -> None:

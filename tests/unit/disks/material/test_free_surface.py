@@ -10,7 +10,6 @@ from dembound.disks.material import free_surface
 from dembound.disks.material.free_surface import LEAST_MASS, _curved, _turned, cut_at, inset, mass_of, skin_depths
 from dembound.disks.material.homogenise import Network, homogenise
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
-from dembound.laws import Stiffness
 from dembound.outside.mesh import Around, Mesh
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, pack_dense
@@ -63,19 +62,6 @@ def test_a_layer_of_unequal_rows_lies_where_its_stiff_rows_are() -> None:
     assert skin_depths(brick, stiffness, tensor, axis=0) == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-def test_a_random_packing_is_softer_near_its_surface(dense: PackedMaterial, monkeypatch) -> None:
-    diameter = dense.brick.mean_diameter
-    depths = [dense.skin(side) for side in SIDES]
-    assert all(0.0 < depth < diameter for depth in depths)
-    assert sum(depths) > diameter
-    # the skins of both surfaces are apart: what is left at their distance has decayed by e^(−2π H/L) with the brick's
-    # width L = 6 m and H = 15 m, to 1e-7; of the moment only as (δ/H)², to 1e-3
-    monkeypatch.setattr(free_surface, "SLENDER", 4.0)
-    higher = skin_depths(dense.brick, dense.stiffness, dense.material_tensor)
-    assert sum(higher) == pytest.approx(sum(depths[2:]), abs=1e-4 * diameter)
-    assert higher[1] == pytest.approx(depths[3], abs=5e-3 * diameter)
-
-
 def test_a_turned_packing_has_its_skins_at_other_sides(dense: PackedMaterial) -> None:
     """Contacts have the same constants in the mirror image, as shear and rotation change their signs together."""
     turned = make_packed_material(_turned(dense.brick), MATERIAL, ())
@@ -95,23 +81,6 @@ def test_disks_that_hang_by_one_contact_carry_nothing(dense: PackedMaterial, mon
     fainter = replace(loose, held=())
     assert [fainter.skin(side) for side in SIDES] == pytest.approx(depths, rel=1e-6)
     assert all(0.0 < depth < loose.brick.mean_diameter for depth in depths)
-
-
-def test_curvature_strains_contacts_as_a_beam_that_is_bent(dense: PackedMaterial) -> None:
-    strip = tile(dense.brick, (1, 2), (False, False))
-    stiffness: Stiffness = dense.stiffness
-    network = Network.of_assembly(dense.brick, stiffness, strip)
-    x, y = strip.positions.T
-    bent = np.concatenate([x * (y - 5.0), -0.5 * x**2, -x])
-
-    # elongations are differences of values up to x²: rounding of 36
-    np.testing.assert_allclose(_curved(network, strip.positions, 5.0), network.motion_matrix() @ bent, atol=1e-13 * 36)
-
-
-def test_a_softer_contact_of_the_surface_makes_it_deeper(dense: PackedMaterial) -> None:
-    half = replace(dense.stiffness, shear=0.5 * dense.stiffness.shear, bending=0.5 * dense.stiffness.bending)
-    softer = skin_depths(dense.brick, half, homogenise(dense.brick, half, ()).tensor)
-    assert sum(softer) > dense.skin("bottom") + dense.skin("top")
 
 
 def test_the_mass_up_to_the_edge_of_the_body_is_kept() -> None:
@@ -157,15 +126,33 @@ def test_the_mass_below_a_cut_ends_where_it_is_used_up(dense: PackedMaterial) ->
     assert dense.cut(first + 2.0 * float(brick.size[1])) == pytest.approx(dense.cut(first))
 
 
-def test_a_cut_at_the_edge_of_bricks_has_the_skin_of_the_top(dense: PackedMaterial) -> None:
-    mass_end, surface = dense.cut(0.0)
-
-    assert (mass_end, surface) == pytest.approx((dense.brick.mass_offset[1], -dense.skin("top")), abs=1e-12)
-
-
 @pytest.mark.parametrize("height", [0.01, 0.24, 0.26, 0.49])
 def test_a_lattice_that_is_cut_ends_between_its_rows(height: float) -> None:
     """Rows are 0.5 m apart, the first one at 0.25 m: cuts above it end at 0.5 m, those below at 0."""
     end = 0.5 if height > 0.25 else 0.0
 
     assert np.add(square().cut(height), height) == pytest.approx([end, end], abs=1e-9)
+
+
+def test_a_random_packing_is_softer_near_its_surface(dense: PackedMaterial, monkeypatch) -> None:
+    diameter = dense.brick.mean_diameter
+    depths = [dense.skin(side) for side in SIDES]
+    assert all(0.0 < depth < diameter for depth in depths)
+    assert sum(depths) > diameter
+    # the skins of both surfaces are apart: what is left at their distance has decayed by e^(−2π H/L) with the brick's
+    # width L = 6 m and H = 15 m, to 1e-7; of the moment only as (δ/H)², to 1e-3
+    monkeypatch.setattr(free_surface, "SLENDER", 4.0)
+    higher = skin_depths(dense.brick, dense.stiffness, dense.material_tensor)
+    assert sum(higher) == pytest.approx(sum(depths[2:]), abs=1e-4 * diameter)
+    assert higher[1] == pytest.approx(depths[3], abs=5e-3 * diameter)
+
+
+def test_curvature_strains_contacts_as_a_beam_that_is_bent(dense: PackedMaterial) -> None:
+    strip = tile(dense.brick, (1, 2), (False, False))
+    stiffness = dense.stiffness
+    network = Network.of_assembly(dense.brick, stiffness, strip)
+    x, y = strip.positions.T
+    bent = np.concatenate([x * (y - 5.0), -0.5 * x**2, -x])
+
+    # elongations are differences of values up to x²: rounding of 36
+    np.testing.assert_allclose(_curved(network, strip.positions, 5.0), network.motion_matrix() @ bent, atol=1e-13 * 36)

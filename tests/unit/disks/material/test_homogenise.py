@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.material.homogenise import Network, homogenise
+from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
 from dembound.packings.dense import Recipe, pack_dense
 from dembound.packings.square import Square
-from dembound.packings.tiling import tile
 
 MATERIAL = Material(density=2500.0, p_wave_speed=1000.0, fric=0.5)
 
@@ -45,19 +44,3 @@ def test_the_mass_stays_where_the_mean_gradient_moves_it(dense: PackedMaterial) 
     mean = dense.mass @ dense.continuum.corrector[:2]
     assert np.abs(mean).max() <= 1e-12 * dense.mass.sum() * np.abs(dense.continuum.corrector[:2]).max()
     assert np.abs(dense.continuum.corrector[:2]).max() > 0.01 * dense.brick.mean_diameter
-
-
-def test_held_motions_are_zero(dense: PackedMaterial) -> None:
-    held = homogenise(dense.brick, dense.stiffness, (1, 2)).corrector
-    assert not held[1:].any()
-    assert held[0].any()
-
-
-def test_copies_of_a_brick_have_its_springs(dense: PackedMaterial) -> None:
-    whole = tile(dense.brick, (2, 3), (True, True))
-    copies = Network.of_assembly(dense.brick, dense.stiffness, whole)
-    alone = Network.of_brick(dense.brick, dense.stiffness)
-    twelve = [each.gradient_matrix().T @ (each.springs[:, None] * each.gradient_matrix()) for each in (copies, alone)]
-
-    # sums of some 1,000 terms
-    np.testing.assert_allclose(twelve[0], 6.0 * twelve[1], atol=1e-12 * np.abs(twelve[0]).max())

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.material.homogenise import homogenise
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
+from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, pack_dense
@@ -44,11 +43,6 @@ def test_masses_add_up_to_density_times_area(dense: Brick) -> None:
     np.testing.assert_allclose(made.inertia, made.mass * dense.radii**2 / 2.0, rtol=1e-14)
 
 
-def test_the_lattice_has_the_mass_of_its_cell() -> None:
-    # m = ρD²
-    assert ground(lattice()).mass.tolist() == [DENSITY * 0.5**2]
-
-
 @pytest.mark.parametrize(("fric", "shear"), [(0.0, 0.5 * K / 4.0), (0.5, 0.5 * K / 4.0 + 0.5 * K / 2.0)])
 def test_the_lattice_has_its_closed_form_stiffness(fric: float, shear: float) -> None:
     # k_n = K; k_s of the bond is K/2/pb_kratio, of the contact K/2/kratio, with friction only
@@ -75,42 +69,6 @@ def test_wave_speeds_are_the_closed_form_and_nan_where_motion_is_held() -> None:
     np.testing.assert_allclose(ground(lattice(), held=("y",)).wave_speeds(1), [np.nan, 500.0], rtol=SOLVE)
 
 
-def test_a_materials_own_stiffness_does_not_know_the_scenes_held_translations(dense: Brick) -> None:
-    free, held = ground(dense), ground(dense, held=("y",))
-
-    np.testing.assert_array_equal(held.material_tensor, free.tensor)
-    # where y is held the disks cannot get out of the way sideways
-    assert held.tensor[0, 0] > free.tensor[0, 0]
-
-
-def test_the_homogenised_tensor_is_a_stiffness(dense: Brick) -> None:
-    made = ground(dense, fric=0.5)
-    tensor = made.tensor
-
-    np.testing.assert_allclose(tensor, tensor.T, atol=SOLVE * K)
-    # free rotations: xy and yx are one shear, a rigid turn costs nothing
-    np.testing.assert_allclose(tensor[2], tensor[3], atol=SOLVE * K)
-    assert (np.linalg.eigvalsh(tensor[:3, :3]) > 0.0).all()
-    # relaxing can only lower the energy: nothing held lies below everything held
-    stiff = homogenise(dense, made.stiffness, (0, 1, 2)).tensor
-    assert (np.linalg.eigvalsh(stiff - tensor) > -SOLVE * K).all()
-
-
-def test_stiffness_is_that_of_the_strained_brick(dense: Brick) -> None:
-    # everything held, by hand: the energy of all contacts under the mean gradients xx, yy, xy = ∂u_x/∂y, yx
-    made = ground(dense, held=("x", "y", "rotation"))
-    dx, dy = dense.vectors.T
-    n = dense.vectors / np.hypot(dx, dy)[:, None]
-    t = np.column_stack([-n[:, 1], n[:, 0]])
-    zero = np.zeros_like(dx)
-    apart = [np.column_stack(u) for u in ([dx, zero], [zero, dy], [dy, zero], [zero, dx])]
-    along, across = (np.array([np.sum(u * way, axis=1) for u in apart]) for way in (n, t))
-    by_hand = (along * made.stiffness.normal) @ along.T + (across * made.stiffness.shear) @ across.T
-
-    # sums of some 300 terms
-    np.testing.assert_allclose(made.tensor, by_hand / 30.0, atol=1e-12 * K)
-
-
 @pytest.mark.parametrize(("held", "axis"), [((), 0), (("y",), 0), (("x",), 1)])
 def test_an_assembly_can_be_given_the_speed_asked_for(dense: Brick, held: tuple[str, ...], axis: int) -> None:
     nominal, matched = ground(dense, held), ground(dense, held, match="assembly")
@@ -119,15 +77,6 @@ def test_an_assembly_can_be_given_the_speed_asked_for(dense: Brick, held: tuple[
     assert nominal.wave_speeds(axis)[0] != pytest.approx(1000.0, rel=1e-3)
     # both moduli by one factor
     assert matched.moduli.emod / nominal.moduli.emod == pytest.approx(matched.moduli.pb_emod / nominal.moduli.pb_emod)
-
-
-def test_moduli_come_from_the_speed_or_from_the_case() -> None:
-    by_speed = nominal_moduli(Material(density=DENSITY, p_wave_speed=1000.0, pb_rmul=0.5, kratio=3.0, fric=0.2))
-    given = nominal_moduli(Material(density=DENSITY, emod=3e9, pb_emod=4e9))
-
-    assert (by_speed.emod, by_speed.pb_emod, by_speed.pb_rmul) == (1.25e9, 2.5e9, 0.5)
-    assert (by_speed.kratio, by_speed.fric) == (3.0, 0.2)
-    assert (given.emod, given.pb_emod) == (3e9, 4e9)
 
 
 def test_a_material_that_resists_no_shear_is_refused(dense: Brick) -> None:
@@ -192,8 +141,3 @@ def test_no_more_is_locked_in_than_a_tenth_of_the_contact_modulus(dense: Brick) 
     ground(dense, law="linearpbond", match="assembly", locked_in=limit * (1.0 - 1e-9))
     with pytest.raises(CaseError, match="must be at most"):
         ground(dense, law="linearpbond", match="assembly", locked_in=limit * (1.0 + 1e-9))
-
-
-def test_without_contacts_nothing_can_be_locked_in(dense: Brick) -> None:
-    with pytest.raises(CaseError, match="needs disks that were packed under stress"):
-        ground(dense, law="linearpbond", contact_share=0.0, locked_in=1e5)

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from dembound.disks.reduced.one_row import OneRow
@@ -13,7 +12,6 @@ P_INPUT = {"boundary.left": {"type": "viscous_input", "wave_p": "pulse"}}
 S_INPUT = {"motion.held": ["x"], "boundary.left": {"type": "viscous_input", "wave_s": "pulse"}}
 PERIODIC = {"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}
 SPRINGS = {"type": "viscoelastic", "distance": 20.0}
-HALF_CELLS = {"type": "viscous", "beta_p": 0.0, "beta_s": 0.0, "half_mass": True}
 HOLE = {"hole": [{"name": "gap", "type": "circle", "centre": [5.25, 1.25], "radius": 0.1}]}
 BROAD = {"packing.size": [10.0, 2.0]}
 """20 × 4 disks."""
@@ -39,17 +37,12 @@ def load(**keys):
         {},
         {"motion.held": []},  # nothing exerts a force across the bar
         {"monitor": [{"name": "corner", "position": [0.0, 2.0]}]},
-        {"motion.held": [], **PERIODIC},
         {"boundary.bottom": {"type": "roller"}, "boundary.top": {"type": "roller"}, "motion.held": []},
         {"boundary.bottom": {"type": "symmetry"}, "boundary.top": {"type": "symmetry"}, "motion.held": []},
         {"boundary.right": SPRINGS},
-        {"boundary.right": {"type": "fixed"}},
-        S_INPUT | PERIODIC,
         S_INPUT | PERIODIC | {"motion.held": []},
         load(region=[2.0, 0.0, 4.0, 2.0], force=[1e6, 0.0]),
         load(region=[2.0, 0.0, 4.0, 2.0], force=[1e6, 0.0], wave="pulse"),
-        load(acceleration=[9.81, 0.0]),
-        {"material.damp": 0.1},
     ],
 )
 def test_rows_that_move_identically_are_stepped_as_one(scene, changes) -> None:
@@ -61,14 +54,6 @@ def test_rows_that_move_identically_are_stepped_as_one(scene, changes) -> None:
     assert row.count == 20
     assert row.weight == pytest.approx(4.0, rel=1e-15)
     assert row.reduced == ("rows: 4 identical rows are stepped as one, 20 of 80 disks",)
-
-
-@pytest.mark.parametrize("more", [{"boundary.right": SPRINGS}, load(region=[2.0, 0.0, 4.0, 2.0], force=[1e6, 0.0])])
-def test_half_cells_along_the_rows_have_half_of_all_forces(scene, more) -> None:
-    row = reduced(scene({"boundary.bottom": HALF_CELLS, "boundary.top": HALF_CELLS, **more})).scene
-
-    assert isinstance(row, OneRow)
-    assert row.weight == pytest.approx(3.0, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -104,13 +89,6 @@ def test_rows_that_differ_are_stepped_one_by_one(scene, changes) -> None:
     assert whole.weight == 1.0
 
 
-def test_bricks_of_a_frame_have_no_rows(bar) -> None:
-    framed = {"pattern": "C", "size": [6.0, 6.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0]}
-    case = bar({"packing": {**framed, "edge_radius": 0.25}, "monitor": [], **P_INPUT})
-
-    assert not isinstance(reduced(build(case)).scene, OneRow)
-
-
 @pytest.mark.parametrize(
     "change",
     [
@@ -136,15 +114,3 @@ def reversed_arms(rows):
     constants = rows.constants.copy()
     constants[:, 5:7] *= -1.0
     return rows._replace(constants=constants)
-
-
-def test_energies_are_those_of_all_masses(scene) -> None:
-    # the outer rows are half cells, the end of each row has half the mass as well
-    grip = {"type": "velocity", "wave_p": "pulse"}
-    half = {f"boundary.{side}": HALF_CELLS for side in ("right", "bottom", "top")}
-    whole = scene({"boundary.left": grip, **half})
-    row = reduced(whole).scene
-
-    assert row.weight == pytest.approx(3.0, rel=1e-15)
-    assert row.mass[-1] == 0.5 * row.mass[0]
-    assert np.array_equal(row.widened("place", row.positions[:, 0]), whole.positions[:, 0])

@@ -22,8 +22,7 @@ def side() -> Side:
     return Side.of()
 
 
-@pytest.mark.parametrize("angle", [0.0, 30.0, 60.0, 75.0])
-@pytest.mark.parametrize("kind", ["p", "s"])
+@pytest.mark.parametrize(("kind", "angle"), [("p", 0.0), ("p", 75.0), ("s", 30.0)])
 def test_of_a_lattice_it_sends_back_what_waves_of_rows_of_disks_say(side, kind, angle) -> None:
     """`angles` adds up the lattice's own waves, wave number by wave number, beside one row of elements.
 
@@ -36,23 +35,19 @@ def test_of_a_lattice_it_sends_back_what_waves_of_rows_of_disks_say(side, kind, 
     assert found.total(kind)[0, 0] == pytest.approx(expected, rel=5e-2 if angle > 70.0 else 2e-3)
 
 
-@pytest.mark.parametrize("name", ["left", "right", "bottom", "top"])
-def test_without_absorption_all_comes_back(name) -> None:
+@pytest.mark.parametrize(("name", "element"), [("left", 2.0), ("right", 12.0), ("bottom", 12.0), ("top", 2.0)])
+def test_without_absorption_all_comes_back(name, element) -> None:
     """Of P and S waves of a random packing, at all sides: the outer edge is at rest, and ties take no energy.
 
     Elements are a half and three times as long as bricks: two along a brick, and three bricks along an element.
     """
-    for element in (2.0, 12.0):
-        changes = {
-            "boundary": {name: {"type": "outside"}},
-            "outside": {"element": element, "layers": 2, "damping": 0.0},
-        }
-        scene = build(small(GRAINS, changes=changes | {"packing.size": [24.0, 24.0]}))
-        body = replace(scene.outside.body, absorption=Absorption(reflection=1.0, delay=0.0))
-        (found,) = beyond(replace(scene, outside=replace(scene.outside, body=body)), name, 1e-4).measure([20.0], ANGLES)
-        for kind in found.kinds:
-            np.testing.assert_allclose(found.total(kind), 1.0, rtol=1e-7)
-            assert found.converted[kind][0, 1] > 0.01
+    changes = {"boundary": {name: {"type": "outside"}}, "outside": {"element": element, "layers": 2, "damping": 0.0}}
+    scene = build(small(GRAINS, changes=changes | {"packing.size": [24.0, 24.0]}))
+    body = replace(scene.outside.body, absorption=Absorption(reflection=1.0, delay=0.0))
+    (found,) = beyond(replace(scene, outside=replace(scene.outside, body=body)), name, 1e-4).measure([20.0], ANGLES)
+    for kind in found.kinds:
+        np.testing.assert_allclose(found.total(kind), 1.0, rtol=1e-7)
+        assert found.converted[kind][0, 1] > 0.01
 
 
 @pytest.mark.parametrize("name", ["right", "top"])

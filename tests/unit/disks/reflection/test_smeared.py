@@ -34,8 +34,7 @@ def test_springs_and_dashpots_along_the_normal_reflect_by_their_impedance() -> N
     assert found.converted["p"][0, 0] < 1e-20
 
 
-@pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
-@pytest.mark.parametrize("kind", ["free", "fixed"])
+@pytest.mark.parametrize(("side", "kind"), [("left", "fixed"), ("right", "free"), ("bottom", "free"), ("top", "fixed")])
 def test_what_takes_nothing_sends_all_back_and_as_much_of_each_type_as_disks(side, kind) -> None:
     """Up to the square of a disk in 1/k of S waves, ωD/c_s = 0.026 at 5 Hz, times tan 75° = 3.7: 2.6e-3."""
     scene = grains(side, type=kind)
@@ -44,17 +43,6 @@ def test_what_takes_nothing_sends_all_back_and_as_much_of_each_type_as_disks(sid
     for wave in found.kinds:
         np.testing.assert_allclose(found.total(wave), 1.0, rtol=1e-9)
         np.testing.assert_allclose(found.converted[wave], expected.converted[wave], atol=2.6e-3)
-
-
-@pytest.mark.parametrize("side", ["right", "top"])
-def test_dashpots_of_a_random_packing_send_back_nearly_as_much_as_beside_disks(side) -> None:
-    """Beyond disks it lacks their masses at the side, ωρD/ρc = 0.016 at 5 Hz, in quadrature: squares are left."""
-    scene = grains(side, type="viscous", beta_p=0.4, beta_s=0.6)
-    found = by_smeared_supports(scene, side, [5.0], ANGLES)
-    (expected,) = Meter.of(side, 1e-4, scene).measure([5.0], ANGLES)
-    for wave in found.kinds:
-        np.testing.assert_allclose(found.total(wave), expected.total(wave), rtol=0.03, atol=1e-4)
-        np.testing.assert_allclose(found.converted[wave], expected.converted[wave], rtol=0.1, atol=3e-4)
 
 
 def test_a_side_is_answered_quickly_beside_matched_factors() -> None:

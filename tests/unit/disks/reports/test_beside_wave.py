@@ -8,7 +8,6 @@ from dembound.disks.reports.beside_wave import Grid, taken_from_waves, undisturb
 from dembound.disks.scene import build
 
 SPEED, PERIOD = 1000.0, 0.02
-OPPOSITE = {"bottom": "top", "top": "bottom", "left": "right", "right": "left"}
 
 
 def scene_of(driven: str, along: dict, motion: str = "s", **others):
@@ -58,14 +57,6 @@ def test_the_undisturbed_ground_carries_the_wave_and_its_surface_doubles_it() ->
     # the surface sends them back through the bottom
     assert np.abs(ground.v[-5:]).max() < 0.02
     assert not ground.v[:, :, 0].any()
-
-
-def test_springs_take_more_than_dashpots_alone_and_less_of_wider_bodies() -> None:
-    dashpots = shares("bottom", {"type": "viscous"})
-    springs = shares("bottom", {"type": "viscoelastic", "distance": 10.0})
-    wide = shares("bottom", {"type": "viscous"}, **{"packing.size": [64.0, 10.0], "monitor.a.position": [32.5, 2.5]})
-    assert all(more > less for more, less in zip(springs, dashpots, strict=True))
-    assert wide[0] < 0.75 * dashpots[0]  # four times as wide; waves of its sides come to the middle late and spread
 
 
 @pytest.mark.parametrize(

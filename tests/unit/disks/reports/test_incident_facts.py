@@ -5,7 +5,6 @@ import pytest
 from small_cases import SURROUNDED, small
 
 from dembound.disks.reports.incident_facts import incident_facts
-from dembound.disks.reports.warnings import disk_warnings
 from dembound.disks.scene import build
 
 BESIDE = {"name": "beside", "position": [-1.5, 3.5]}
@@ -44,23 +43,6 @@ def test_other_waves_are_told(changes, name: str, words: str) -> None:
     assert words in dict(incident_facts(build(small(CASE, changes=changes))))[name]
 
 
-def test_monitors_have_the_motion_of_the_ground_where_the_continuum_rests() -> None:
-    scene = build(small(CASE))
-    waves, times = scene.ground_waves, np.array([0.02, 0.03, 0.035])
-    observed = scene.observed(np.zeros((3, len(scene.probes), 6)), times)
-    names = list(scene.monitors)
-    assert names == ["middle", "beside", "middle.free_field", "beside.free_field"]
-
-    place = scene.monitored["beside"][None]
-    corrector = np.moveaxis(scene.ground.continuum.corrector[:, [0]], 1, 2)
-    moved, moving = (waves.motion(of, times, place, corrector)[:, 0] for of in ("displacement", "velocity"))
-    assert np.abs(moving).max() > 0.01
-    for name in ("beside", "beside.free_field"):
-        np.testing.assert_allclose(observed[:, names.index(name)], np.hstack([moved, moving]), rtol=1e-12)
-    assert not observed[:, names.index("middle")].any()
-    assert np.abs(observed[:, names.index("middle.free_field"), 3]).max() > 0.01
-
-
 def test_snapshots_of_the_continuum_have_the_total_motion_and_the_scattered_one() -> None:
     scene = build(small(CASE))
     values = np.random.default_rng(1).normal(size=(scene.count, 3))
@@ -72,9 +54,3 @@ def test_snapshots_of_the_continuum_have_the_total_motion_and_the_scattered_one(
     np.testing.assert_allclose(ground, expected, atol=1e-12)
     assert np.abs(ground).max() > 0.01
     assert scene.beside.columns["total"][0].all()
-
-
-def test_a_wave_that_does_not_arrive_has_a_warning() -> None:
-    for y, late in ((-50.0, True), (-1.0, False)):
-        scene = build(small(CASE, changes={"incident.point": [0.0, y], "run.duration": 0.05}))
-        assert any("reaches the disks at" in line for line in disk_warnings(scene, 1e-5)) == late

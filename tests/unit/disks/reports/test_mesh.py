@@ -21,17 +21,14 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
     """Points and point data of a snapshot, written out column by column, and rounded to single precision."""
     particles, snapshot = file["particles"], file["snapshots"][number]
     displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
-    points, moved, linear, angular = (np.zeros((len(velocity), 3)) for _ in range(4))
-    for axis in range(2):
-        points[:, axis] = particles["position"][:, axis] + displacement[:, axis]
-        moved[:, axis] = displacement[:, axis]
-        linear[:, axis] = velocity[:, axis]
-    angular[:, 2] = velocity[:, 2]
+    flat, moved, linear = (
+        np.pad(each[:, :2], ((0, 0), (0, 1))) for each in (particles["position"][:], displacement, velocity)
+    )
     data = {
         "radii": particles["radius"][:],
         "id": np.arange(len(velocity)),
         "linVelVec": linear,
-        "angVelVec": angular,
+        "angVelVec": velocity * [0.0, 0.0, 1.0],
         "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
         "displacement": moved,
         "rotation": displacement[:, 2],
@@ -40,39 +37,26 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
         "nbCracks": np.zeros(len(velocity)),
         "damage": np.zeros(len(velocity)),
     }
-    return points, {name: values.astype(np.float32) for name, values in data.items()}
+    return flat + moved, {name: values.astype(np.float32) for name, values in data.items()}
 
 
-def test_positions_are_in_double_and_fields_in_single_precision(exported):
-    mesh = meshio.read(exported / "particles_0001.vtu")
-    kinds = {name: values.dtype for name, values in mesh.point_data.items()}
-    whole = {"id", "brick_particle", "nbCracks"}
-    assert mesh.points.dtype == np.float64
-    assert kinds.pop("column") == np.uint8
-    assert kinds == {name: np.int32 if name in whole else np.float32 for name in kinds}
-
-
-@pytest.mark.parametrize("number", ["0000", "0001"])
-def test_meshio_reads_back_what_the_record_holds(small_run, exported, number):
-    mesh = meshio.read(exported / f"particles_{number}.vtu")
-    with h5py.File(small_run) as file:
-        points, data = expected(file, number)
-    assert all(np.abs(data[name]).max() > 0.0 for name in ("linVelVec", "angVelVec", "displacement", "rotation"))
-    np.testing.assert_array_equal(mesh.points, points)
-    assert mesh.point_data.keys() == data.keys()
-    for name, values in data.items():
-        np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
-
-
-def test_vtk_reads_one_vertex_per_disk(small_run, exported):
-    mesh = pyvista.read(exported / "particles_0001.vtu")
+def test_meshio_and_vtk_read_back_what_the_record_holds(small_run, exported):
+    """Places in double and fields in single precision, one vertex per disk."""
+    mesh, of_vtk = meshio.read(exported / "particles_0001.vtu"), pyvista.read(exported / "particles_0001.vtu")
     with h5py.File(small_run) as file:
         points, data = expected(file, "0001")
-    assert mesh.n_cells == len(points)
-    assert set(mesh.celltypes) == {pyvista.CellType.VERTEX}
-    np.testing.assert_array_equal(mesh.points, points)
+    assert all(np.abs(data[name]).max() > 0.0 for name in ("linVelVec", "angVelVec", "displacement", "rotation"))
+    assert mesh.points.dtype == np.float64
+    assert of_vtk.n_cells == len(points)
+    assert set(of_vtk.celltypes) == {pyvista.CellType.VERTEX}
+    assert mesh.point_data.keys() == data.keys()
+    whole = {"id", "brick_particle", "nbCracks"}
     for name, values in data.items():
-        np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
+        kind = np.uint8 if name == "column" else np.int32 if name in whole else np.float32
+        assert mesh.point_data[name].dtype == kind
+        for found in (mesh, of_vtk):
+            np.testing.assert_array_equal(found.points, points)
+            np.testing.assert_array_equal(found.point_data[name], values, err_msg=name)
 
 
 def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_path):
@@ -87,16 +71,6 @@ def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_
             np.testing.assert_array_equal(mesh.point_data["stress"].T, tensors)
             peaks = file["particles/peak_velocity"][:].astype(np.float32)
             np.testing.assert_array_equal(mesh.point_data["peakVelocity"], peaks)
-
-
-def test_circle_glyphs_of_factor_two_have_the_radii(exported):
-    # as the module tells users to set ParaView's glyph filter, whose 2D circle has the diameter 1
-    mesh = pyvista.read(exported / "particles_0000.vtu")
-    circle = pyvista.Circle(radius=0.5, resolution=4)
-    disks = mesh.glyph(geom=circle, scale="radii", factor=2.0, orient=False)
-    corners = disks.points.reshape(mesh.n_points, -1, 3) - mesh.points[:, None, :]
-    # VTK keeps glyph points in single precision: 6e-8 of coordinates up to 10 m
-    np.testing.assert_allclose(np.linalg.norm(corners, axis=2), 0.25, atol=2e-6)
 
 
 def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path):
@@ -136,15 +110,3 @@ def test_contacts_are_lines_between_the_centres_of_their_disks(cracked_run, tmp_
             np.testing.assert_array_equal(mesh.cell_data["bonded"], contacts["bonded"])
             assert contacts["bonded"].any()
     assert counts[1] < counts[0]  # where bonds have broken
-
-
-def test_disks_of_a_column_are_marked(small_run, tmp_path):
-    run = tmp_path / "run.h5"
-    run.write_bytes(small_run.read_bytes())
-    marked = np.arange(100) < 25
-    with h5py.File(run, "r+") as file:
-        assert not file["particles/column"][:].any()
-        file["particles/column"][:] = marked
-    write_paraview(run, tmp_path / "paraview", Disks())
-    column = pyvista.read(tmp_path / "paraview" / "particles_0001.vtu").point_data["column"]
-    np.testing.assert_array_equal(column, marked)

@@ -1,10 +1,9 @@
 """Warnings about sides that send back much of a wave, or take much of one along them."""
 
 import pytest
-from warned_cases import DENSE, SLOW, warned
+from warned_cases import SLOW, warned
 
 from dembound.casefile import Case
-from dembound.running import plan
 
 TWO_WAYS = {"motion.held": []}
 
@@ -15,20 +14,11 @@ def about(case: Case, side: str) -> list[str]:
     return [line.removeprefix(start) for line in warned(case) if line.startswith(f"{start}sends back")]
 
 
-@pytest.mark.parametrize("side", ["viscous", "viscoelastic", "free_field"])
-def test_factors_are_those_of_the_packing_where_none_are_given(bar, side: str) -> None:
-    springs = {"distance": 1000.0} if side == "viscoelastic" else {}
-    sides = {"boundary.bottom": {"type": "viscous_input", "wave_p": "pulse"}, "boundary.left": {"type": "free"}}
-    changes = {**DENSE, **sides, "boundary.right": {"type": side, **springs}, **TWO_WAYS}
-
-    assert about(bar(changes), "right") == about(bar(changes), "bottom") == []
-
-
-@pytest.mark.parametrize("beta", [0.0, 0.66, 0.68, 1.0, "matched", 1.49, 1.51, 5.0])
+@pytest.mark.parametrize("beta", [0.66, 0.68, "matched", 1.49, 1.51])
 def test_a_factor_is_judged_by_its_value(bar, beta) -> None:
     """The matched factor of the lattice is 1, and (1 − β)/(1 + β) is 0.2 at β = 2/3 and 3/2."""
     found = about(bar({**SLOW, "boundary.right.beta_p": beta}), "right")
-    if beta in (0.68, 1.0, "matched", 1.49):
+    if beta in (0.68, "matched", 1.49):
         assert found == []
         return
     share = 100.0 * abs(1.0 - beta) / (1.0 + beta)
@@ -44,17 +34,11 @@ def test_a_factor_is_judged_by_the_packing(bar) -> None:
     changes = {**SLOW, **TWO_WAYS, "boundary.right.beta_s": 1.0}
     assert about(bar({**changes, "material.s_wave_speed": 500.0}), "right") == []
     (line,) = about(bar({**changes, "material.s_wave_speed": 250.0}), "right")
-    assert line.startswith(
-        "sends back 33 % of the amplitude of S waves along its normal: beta_s is 1, matched would be 2;"
-    )
-
-
-def test_a_wave_enters_through_a_wrong_factor_with_another_amplitude(bar) -> None:
-    """2β/(β0 + β): 1.5 at β = 3."""
+    start = "sends back 33 % of the amplitude of S waves along its normal: beta_s is 1, matched would be 2;"
+    assert line.startswith(start)
+    # a wave enters with 2β/(β0 + β) of its amplitude: 1.5 at β = 3
     (line,) = about(bar({**SLOW, "boundary.left.beta_p": 3.0}), "left")
-    assert line.startswith(
-        "sends back 50 % of the amplitude of P waves along its normal and lets in 1.5 times wave pulse:"
-    )
+    assert line.startswith("sends back 50 % of the amplitude of P waves along its normal and lets in 1.5 times wave p")
 
 
 def test_springs_hold_long_waves_back(bar) -> None:
@@ -67,10 +51,6 @@ def test_springs_hold_long_waves_back(bar) -> None:
         if found:
             assert "% of the amplitude of P waves along its normal at their mean frequency, 1" in found[0]
             assert "as its springs hold" in found[0]
-
-
-def test_nothing_is_said_of_what_is_held(bar) -> None:
-    assert about(bar({**SLOW, "boundary.right.beta_s": 0.0}), "right") == []
 
 
 def test_sides_along_a_wave_are_warned_of(bar) -> None:
@@ -88,15 +68,6 @@ def test_sides_along_a_wave_are_warned_of(bar) -> None:
     )
     assert line.endswith('% where least (RMS); take "free_field", or "outside" there and at bottom')
 
-    moving = {**plate, "boundary.left": {"type": "free_field"}, "boundary.right": {"type": "free_field"}}
-    across = {
-        **plate,
-        "boundary.bottom": {"type": "free"},
-        "boundary.left": {"type": "viscous_input", "wave_p": "pulse"},
-    }
-    for other in (moving, across):
-        assert [line for line in warned(bar(other)) if "along wave" in line] == []
-
 
 @pytest.mark.parametrize("given", [{}, {"type": "free"}], ids=["forgotten", "free on purpose"])
 def test_upright_sides_that_a_case_does_not_give_are_taken_as_forgotten(bar, given: dict) -> None:
@@ -106,14 +77,3 @@ def test_upright_sides_that_a_case_does_not_give_are_taken_as_forgotten(bar, giv
     middle = {"monitor": [{"name": "middle", "position": [10.0, 5.0]}]}
     plate = {"packing.size": [20.0, 10.0], "run.duration": 0.1, **TWO_WAYS, **middle, "boundary": enters | sides}
     assert len([line for line in warned(bar(plate)) if "along wave" in line]) == (not given)
-
-
-def test_the_numbers_of_the_side_are_printed(bar) -> None:
-    from dembound.check import check
-
-    facts, _ = check(bar({**DENSE, "boundary.left.beta_p": 1.0}))
-    scene = plan(bar(DENSE)).scene
-    edge, own = scene.edges["right"], scene.ground.wave_speeds(0)[0]
-    matched = own / 1000.0 * edge.length / edge.diameters.sum()
-    assert facts["right side"].startswith(f"viscous, β_P = {matched:g} (matched), β_S = 1;")
-    assert facts["left side"].startswith("viscous_input, β_P = 1 (matched: ")

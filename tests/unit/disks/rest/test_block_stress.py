@@ -73,17 +73,6 @@ def test_the_packing_has_the_stress_on_the_whole(body, pattern: str) -> None:
     np.testing.assert_allclose(stress.mean(axis=(0, 1)), asked, rtol=0.0, atol=1e-9 * 3e6)
 
 
-def test_a_hole_counts_as_no_stress(body) -> None:
-    hole = {"name": "hole", "type": "rectangle", "corners": [4.0, 4.0, 6.0, 6.0]}
-    whole, with_hole = body(10.0, 10.0), body(10.0, 10.0, hole=[hole])
-    asked = np.array([-1e6, -1e6, 0.0])
-    found = [Blocks.of(each).stress(packing_pieces(each, asked), each.positions) for each in (whole, with_hole)]
-    np.testing.assert_allclose(found[0], np.broadcast_to(asked, (1, 1, 3)), rtol=0.0, atol=1e-9 * 1e6)
-    # 2 × 2 m of 6 × 6 m, less the contacts round it, of half a diameter at every side: 2.5 × 2 m for each direction
-    lost = 1.0 - found[1][0, 0, :2] / asked[:2]
-    np.testing.assert_allclose(lost, 2.5 * 2.0 / 36.0, rtol=1e-9)
-
-
 def test_blocks_move_and_grow_with_the_sides(body) -> None:
     scene = body(14.0, 14.0)
     moved = strained(scene, -0.01, 0.02) + np.array([[3.0], [-2.0], [0.0]])

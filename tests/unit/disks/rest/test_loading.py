@@ -4,10 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from settling import FIXED, STANDING, scene
+from settling import scene
 
 from dembound.disks.rest.loading import LEAST, LOOK, Loading
-from dembound.disks.rest.stage import settle
 from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.simulation import Simulation
@@ -71,19 +70,6 @@ def test_the_elastic_way_ends_where_the_first_bond_is_at_its_strength(bar, share
     assert left[0] == pytest.approx((1.0 - reached) * 0.5 * 1e6, rel=0.5)  # of a disk at a side, with its shear
 
 
-def test_what_is_still_to_be_put_on_is_remembered(bar) -> None:
-    one, other = (sheared(bar, **{"material.pb_coh": 0.25 * SHEAR}) for _ in range(2))
-    one.state.displacement = one.rest
-    assert not one.loading.is_the_answer(one.state)
-    other.loading.recall(one.loading.memory())
-    other.system.switch(other.state)
-    for each in (one, other):
-        each.state.displacement = 0.5 * one.rest
-        each.state.step = 300
-        each.loading.put_on(each.state)
-    np.testing.assert_array_equal(one.system.load, other.system.load)
-
-
 def test_a_body_that_the_elastic_law_does_not_hold_goes_on_from_its_start(bar) -> None:
     found = sheared(bar)
     found.state.displacement = found.rest
@@ -92,18 +78,3 @@ def test_a_body_that_the_elastic_law_does_not_hold_goes_on_from_its_start(bar) -
     found.loading.put_on(found.state)
     assert np.abs(found.system.load).max() < 1e-9 * 1e6
     assert not found.loading.give_up_elastic_law(found.state)
-
-
-def test_without_an_elastic_start_the_own_law_takes_over_at_rest(bar) -> None:
-    """Nothing has to be put on slowly then: both settle to the same place, after about as many steps."""
-    law = {
-        "material.law": "linearpbond",
-        "material.fric": 0.5,
-        "static": {"boundary": {"bottom": FIXED}, "ratio": 1e-8},
-    }
-    found = [settle(scene(bar, **STANDING, **law, **{"material.elastic_start": start})) for start in (True, False)]
-    assert [each.start.has_history for each in found] == [False, True]
-    assert found[1].steps < found[0].steps + LEAST * LOOK
-    scale = np.abs(found[0].start.displacement).max()
-    # normals move by strains of 1e-5
-    np.testing.assert_allclose(*(each.start.displacement for each in found), rtol=0.0, atol=1e-4 * scale)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import fitted, turn
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.rest.tractions import Tractions
@@ -13,17 +14,6 @@ FOLLOWING = {"material.law": "linearpbond"}
 STILL = {"elastic": {}, "reference": {"material.law": "linearpbond", "material.geometry": "reference"}}
 RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 STRESS = (-3e6, 2e6, 1e6)
-OUTWARD = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "bottom": (0.0, -1.0), "top": (0.0, 1.0)}
-
-
-@pytest.fixture
-def lattice(bar):
-    """Makes lattices of disks of 0.5 m that nothing holds."""
-
-    def make(width: float, height: float, **changes: object) -> DiskScene:
-        return build(bar({**BODY, "packing.size": [width, height], **changes}))
-
-    return make
 
 
 @pytest.fixture
@@ -34,11 +24,6 @@ def random_body(bar):
         return build(bar({**BODY, "packing": RANDOM, **changes}))
 
     return make
-
-
-def turn(angle: float) -> np.ndarray:
-    """Rotation matrix (2, 2)."""
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 def moved(scene: DiskScene, seed: int = 1, size: float = 0.1) -> np.ndarray:
@@ -55,31 +40,6 @@ def torque(scene: DiskScene, force: np.ndarray, displacement: np.ndarray) -> flo
     """Of all forces about a point outside the body."""
     x, y = scene.positions.T + displacement[:2] + [[7.0], [-5.0]]
     return float(np.sum(x * force[1] - y * force[0]) + np.sum(force[2]))
-
-
-def fitted(places: np.ndarray, moved: np.ndarray) -> float:
-    """Rotation that is nearest to the motion of some places (2, m), by a polar decomposition."""
-    a, r = (x - x.mean(axis=1, keepdims=True) for x in (places, places + moved))
-    left, _, right = np.linalg.svd(r @ a.T)
-    rotation = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
-    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
-
-
-@pytest.mark.parametrize(("size", "stress"), [((8.0, 4.0), (-3e6, 2e6, 0.0)), ((8.0, 4.0), STRESS)])
-def test_each_disk_of_a_lattice_has_the_traction_of_its_diameter_at_its_edge(
-    lattice, size: tuple, stress: tuple
-) -> None:
-    scene = lattice(*size)
-    force = Tractions(scene, stress).forces(np.zeros((3, scene.count)))
-    tensor = np.array([[stress[0], stress[2]], [stress[2], stress[1]]])
-
-    # contacts act a radius away from the centres: the shear forces have moments; rounding is 1e-15 of each sum
-    expected = np.zeros((3, scene.count))
-    for side, edge in scene.edges.items():
-        nx, ny = OUTWARD[side]
-        fx, fy = tensor @ OUTWARD[side] * 0.5
-        expected[:, edge.nodes] += np.array([fx, fy, 0.25 * (nx * fy - ny * fx)])[:, None]
-    np.testing.assert_allclose(force, expected, rtol=0.0, atol=1e-13 * 3e6)
 
 
 @pytest.mark.parametrize("follows", [False, True])
@@ -132,16 +92,6 @@ def test_tractions_neither_move_nor_turn_a_body(random_body, changes: dict) -> N
         # sums of some fifty terms, of arms of 20 m
         assert abs(torque(scene, force, where)) < 20.0 * 1e-14 * scale
         assert np.abs(force[:2].sum(axis=1)).max() < 1e-14 * scale
-
-
-@pytest.mark.parametrize("angle", [0.02, -2.0])
-def test_tractions_turn_with_a_body_whose_law_follows_the_motion(random_body, angle: float) -> None:
-    scene = random_body(**FOLLOWING)
-    tractions = Tractions(scene, STRESS)
-    before, after = tractions.forces(np.zeros((3, scene.count))), tractions.forces(turned(scene, angle))
-
-    # angles as of sums over twenty disks
-    np.testing.assert_allclose(after[:2], turn(angle) @ before[:2], rtol=0.0, atol=1e-13 * 8.0 * 3e6)
 
 
 @pytest.mark.parametrize("changes", STILL.values(), ids=STILL)

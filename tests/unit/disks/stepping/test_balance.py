@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from disk_systems import fitted
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
@@ -49,24 +50,6 @@ def at(body: DiskScene, x: float, y: float) -> int:
     return int(found[0])
 
 
-def fitted(places: np.ndarray, moved: np.ndarray) -> float:
-    """Rotation that is nearest to the motion of some places (2, m), by a polar decomposition."""
-    a, r = (x - x.mean(axis=1, keepdims=True) for x in (places, places + moved))
-    left, _, right = np.linalg.svd(r @ a.T)
-    rotation = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
-    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
-
-
-def test_work_is_that_of_constant_forces_since_the_datum(scene) -> None:
-    body = scene()
-    force, datum, moved = shaken(body, 1), shaken(body, 3), shaken(body, 4)
-    balance = Balance(body, force, shaken(body, 2), datum, np.zeros_like(force))
-
-    # sixty terms of size 1
-    assert balance.work(moved) == pytest.approx(np.sum(force * (moved - datum)), rel=0.0, abs=1e-13)
-    assert balance.work(datum) == 0.0
-
-
 def test_forces_belong_to_their_sides_those_of_corners_half_to_each(scene) -> None:
     body = scene()
     across = shaken(body, 5)
@@ -89,22 +72,6 @@ def test_forces_belong_to_their_sides_those_of_corners_half_to_each(scene) -> No
     assert not table.extra.any()
 
 
-def test_members_of_a_side_stand_where_they_do_at_the_datum(scene) -> None:
-    body = scene()
-    balance, _ = balance_of(body)
-    table = balance.followers
-    datum = shaken(body, 3, 0.1)
-    places = body.positions.T + datum[:2]
-    for k, edge in enumerate(body.edges.values()):
-        members = slice(table.start[k], table.start[k + 1])
-        assert np.array_equal(table.member[members], edge.nodes)
-        here = places[:, edge.nodes]
-        # means of some five numbers of size 1
-        np.testing.assert_allclose(table.arm[:, members], here - here.mean(axis=1)[:, None], rtol=0.0, atol=1e-15)
-    assert np.array_equal(table.rest, datum[:2, table.member])
-    assert (table.twin == -1).all()
-
-
 def test_sides_turn_by_their_mean_with_the_opposite_one(scene) -> None:
     body = scene()
     moved = shaken(body, 4, 0.2)
@@ -117,17 +84,6 @@ def test_sides_turn_by_their_mean_with_the_opposite_one(scene) -> None:
     assert found == pytest.approx(expected, rel=0.0, abs=1e-14)
     assert abs(own["left"] - own["right"]) > 0.02
     assert abs(found["left"] - found["top"]) > 0.05
-
-
-def test_a_side_without_an_opposite_one_turns_by_itself(scene) -> None:
-    body = scene(RANDOM, left=FREE_FIELD)
-    wrapped = scene({**LATTICE, "size": [0.5, 2.0]})
-    assert set(mean_rotations(body, np.zeros((3, body.count)))) == set(body.edges)
-    # one disk alone has no rotation of its own: bottom and top of a column of four
-    angle, moved = 0.3, np.zeros((3, 4))
-    x, y = wrapped.positions.T
-    moved[:2] = [np.cos(angle) * x - np.sin(angle) * y - x, np.sin(angle) * x + np.cos(angle) * y - y]
-    assert mean_rotations(wrapped, moved) == pytest.approx({"left": angle, "right": angle}, rel=0.0, abs=1e-14)
 
 
 @pytest.mark.parametrize("sides", [("left", "right"), ("right",)])
@@ -265,20 +221,6 @@ def test_what_is_left_of_the_sides_turns_by_its_own_rotation(scene) -> None:
     assert side_rotations(moved, balance.followers) == pytest.approx(np.full(4, angle), rel=1e-14)
 
 
-def test_a_contact_that_pushes_still_carries_the_forces(scene) -> None:
-    body = scene()
-    parts, (balance, steady) = parts_of(body), balance_of(body)
-    corner = at(body, 0.25, 0.25)
-    isolate(parts, [corner])
-    pairs = parts[0].pairs
-    pairs.force[0, np.flatnonzero(pairs.first == corner)[0]] = -1.0
-    load = steady + balance.force
-    balance.end_on_debris(parts, shaken(body, 4), shaken(body, 5), STEP, load)
-
-    assert np.array_equal(load, steady + balance.force)
-    assert balance.force[:, corner].all()
-
-
 def test_a_break_is_remembered_when_its_pair_has_left_the_list(scene) -> None:
     body = scene()
     parts, (balance, steady) = parts_of(body), balance_of(body)
@@ -350,45 +292,6 @@ def test_what_keeps_coming_through_a_seam_is_taken_off(scene) -> None:
     beside = np.arange(body.count) >= body.seam.count
     kept = np.where(beside, balance.force, 0.0), np.where(beside, before, 0.0)
     np.testing.assert_allclose(*(resultants(body, force) for force in kept), rtol=0.0, atol=1e-12)
-    # the force of the last step acted until half a step before u
-    lost = np.sum((balance.force - before) * (u - 0.5 * STEP * v - balance.datum))
-    expected = np.sum(balance.force * (u - balance.datum)) - lost
-    # some 400 terms of size 1
-    assert balance.work(u) == pytest.approx(expected, rel=0.0, abs=1e-12)
-    # what has ended does not end again
-    ended_load, ended_force, work = load.copy(), balance.force.copy(), balance.work(u)
-    balance.end_on_debris(parts, 2.0 * u, v, STEP, load)
-    assert np.array_equal(load, ended_load)
-    assert np.array_equal(balance.force, ended_force)
-    assert balance.work(u) == work
     # what comes through turns no more with the body
     turn_forces(balance.followers, u, v, load, STEP)
     np.testing.assert_allclose(load[:, ended], (steady - across)[:, ended], rtol=0.0, atol=1e-15)
-
-
-def test_a_break_counts_where_an_older_one_has_left_the_list(scene) -> None:
-    body = scene()
-    parts, (balance, steady) = parts_of(body), balance_of(body)
-    corner, load = at(body, 0.25, 0.25), steady + balance.force
-    right, top = at(body, 0.75, 0.25), at(body, 0.25, 0.75)
-    u, v = np.zeros((3, body.count)), np.zeros((3, body.count))
-    contacts = parts[0].contacts
-    assert contacts is not None
-
-    def break_bond_to(other: int) -> None:
-        pairs = contacts.arrays
-        ends = np.sort(np.stack([pairs.first, pairs.second]).astype(np.int64), axis=0)
-        broken = (ends == np.sort([corner, other])[:, None]).all(axis=0)
-        assert broken.sum() == 1
-        pairs.state[broken], pairs.cracked[broken] = TENSION, 1
-
-    break_bond_to(right)
-    balance.count_breaks_from(parts)
-    u[0, corner] = -0.5  # it opens further, so that the search drops the pair that broke before
-    contacts.search(u)
-    balance.end_on_debris(parts, u, v, STEP, load)
-    assert balance.force[:, corner].any()
-    break_bond_to(top)
-    contacts.arrays.force[...] = 0.0
-    balance.end_on_debris(parts, u, v, STEP, load)
-    assert not balance.force[:, corner].any()

@@ -20,21 +20,8 @@ from disk_systems import (
 )
 
 from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.start import Start
 from dembound.disks.stepping.system import DiskSystem
-
-
-def test_a_law_without_history_begins_with_its_loads_alone(loose) -> None:
-    pull = {"name": "pull", "force": [2.0, 3.0], "position": [1.0, 1.0]}
-    for loads in ([], [pull]):
-        body = loose(load=loads)
-        system = DiskSystem(body, STEP)
-        state = begun(system)
-
-        assert state.laws == [(ELASTIC, 0)]
-        assert system.contacts == {}
-        assert system.balance is None
-        assert system.turning is None
-        assert np.array_equal(system.steady, body.steady_load if loads else np.zeros((3, 0)))
 
 
 @pytest.mark.parametrize("at_once", [False, True])
@@ -55,23 +42,6 @@ def test_what_is_locked_in_pushes_a_body_as_built_under_either_law(loose, bounda
     assert {part.law_name for part in system.parts} == {state.laws[0][0]}
     assert system.balance is None
     assert not any(part.stops_at_breaks for part in system.parts)
-
-
-@pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
-def test_a_settled_body_without_history_is_balanced_under_the_elastic_law(loose, boundary: dict) -> None:
-    body = loose(**WEIGHT, boundary=boundary)
-    start = settled(body, has_history=False)
-    system = DiskSystem(body, STEP, start)
-    state = begun(system, start.displacement)
-    pushes = system.forces.elastic(start.displacement)
-
-    assert state.laws == [(ELASTIC, 0)]
-    assert np.array_equal(system.steady, -pushes)
-    assert system.balance is not None
-    assert np.array_equal(system.balance.force, -pushes - body.steady_load)
-    assert np.abs(pushes).max() > 1e2
-    assert system.turning is None
-    assert system.balancing_work(start.displacement) == 0.0
 
 
 def test_what_springs_of_supports_bear_is_balanced_too(loose) -> None:
@@ -133,3 +103,33 @@ def test_beside_a_free_field_a_body_that_settles_begins_under_the_elastic_law(lo
 
     assert begun(system).laws == [(ELASTIC, 0)]
     assert np.array_equal(system.steady, locked_in_forces(body))
+
+
+@pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
+def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(loose, boundary: dict) -> None:
+    body = loose(**WITH_HISTORY, boundary=boundary)
+    system, u = DiskSystem(body, STEP), shaken(body, 1e-6)
+    lists = system.contacts
+    for contacts in lists.values():
+        contacts.push(np.zeros_like(u), reference=True)
+    locked_in = system.forces.last(lists)
+    for contacts in lists.values():
+        contacts.start_from_displacements(u)
+        contacts.push(u, reference=True)
+    total = system.forces.last(lists)
+
+    # sums of some five locked-in forces, of which the difference is taken
+    scale = max(np.abs(contacts.force[:, :2]).max() for contacts in lists.values())
+    found = system.forces.elastic(u)
+    np.testing.assert_allclose(found, total - locked_in, rtol=0.0, atol=20.0 * EPS * scale)
+    assert np.abs(found).max() > 1e6 * 20.0 * EPS * scale
+    assert [part.name for part in system.parts] == (["column", "body"] if boundary else ["body"])
+    assert len(system.ties) == bool(boundary)
+
+
+def test_displacements_of_a_start_lie_row_after_row_in_memory() -> None:
+    """As those that are read from a record do: sums of them then have one order of terms."""
+    moved = np.arange(12.0).reshape(4, 3).T
+    assert not moved.flags.c_contiguous
+    assert Start(moved).displacement.flags.c_contiguous
+    assert np.array_equal(Start(moved).displacement, moved)

@@ -6,7 +6,7 @@ from small_cases import SURROUNDED, small
 
 from dembound.boundaries.sides import SIDES
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stepping.near_ties import OPENED, near_tie_warnings, sides_near
+from dembound.disks.stepping.near_ties import sides_near
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import TENSION
 from dembound.motion.simulation import Simulation
@@ -102,17 +102,6 @@ def test_a_contact_that_is_open_without_slip_is_found(scene, way, opens) -> None
         assert {event["position"][0] for event in found.values()} == {10.0}
 
 
-def test_slip_from_before_does_not_count(scene) -> None:
-    """Such as that of a body that has settled."""
-    run = Watched(scene)
-    near = run.between((2.5, 4.5), (3.5, 4.5))
-    run.pairs.arrays.slip[near] = 0.3
-    run.watch.begin(run.pairs)
-    assert run.look(10) == {}
-    run.pairs.arrays.slip[near] = 0.2
-    assert set(run.look(20)) == {"left"}
-
-
 def test_pairs_are_followed_as_lists_are_renewed(scene) -> None:
     """Those that are no longer listed are far apart."""
     run = Watched(scene)
@@ -143,47 +132,3 @@ def test_a_continued_run_remembers_it(scene) -> None:
     later.pairs = later.system.contacts["body"]
     later.pairs.arrays.force[0, later.pairs.live[0]] = 1e6
     assert later.look(60) == found == {"bottom": {"time": 50 * STEP, "position": [5.5, 1.0]}}
-
-
-@pytest.mark.parametrize(
-    "changes", [{}, {**FULL, "boundary": {"left": {"type": "viscous"}}}], ids=["elastic law", "no continuum"]
-)
-def test_nothing_is_watched_without_a_history_or_a_continuum(changes) -> None:
-    scene = build(small(SURROUNDED, "not_watched", changes))
-    assert Simulation(scene, STEP).system.near_ties is None
-    nothing = {"time": np.ones(1), "position": np.ones((1, 2)), "particles": np.array([[0, 1]])}
-    assert list(near_tie_warnings(scene, {}, nothing)) == []
-
-
-def warnings(scene, opened: dict, *cracks: tuple[float, tuple[float, float]]) -> list[str]:
-    """Of a run in which contacts have opened or slid near sides, and bonds broke at times (s) and places (m)."""
-    boundaries = {side: {OPENED: opened.get(side)} for side in ("left", "right", "bottom")}
-    places = np.array([place for _, place in cracks]).reshape(-1, 2)
-    pairs = scene.assembly.pairs
-    middles = scene.assembly.positions[pairs].mean(axis=1)
-    broken = [int(np.argmin(np.hypot(*(middles - place).T))) for place in places]
-    columns = {
-        "time": np.array([time for time, _ in cracks]),
-        "position": places,
-        "particles": pairs[np.array(broken, dtype=int)],
-    }
-    return list(near_tie_warnings(scene, {"boundaries": boundaries}, columns))
-
-
-def test_cracks_near_a_side_are_warned_of_once_with_the_first(scene) -> None:
-    assert warnings(scene, {}, (0.1, (6.0, 4.5))) == []
-    (line,) = warnings(scene, {}, (0.1, (6.0, 4.5)), (0.3, (5.5, 2.0)), (0.2, (6.5, 1.0)))
-    assert line == (
-        "boundary.bottom: the first of 2 bonds broke at t = 0.2 s near (6.5, 1) m, within 2 diameters of the ties to "
-        "the continuum, which stays elastic; take a larger packing.size"
-    )
-    (line,) = warnings(scene, {}, (0.1, (9.0, 4.5)))
-    assert line.startswith("boundary.right: a bond broke at t = 0.1 s near (9, 4.5) m")
-
-
-def test_each_side_has_one_line_for_what_was_first(scene) -> None:
-    slid = {"time": 0.15, "position": [3.0, 4.5]}
-    lines = warnings(scene, {"left": slid, "bottom": slid}, (0.1, (2.0, 4.5)), (0.3, (5.5, 2.0)))
-    assert len(lines) == 2
-    assert lines[0].startswith("boundary.left: a bond broke at t = 0.1 s near (2, 4.5) m")
-    assert lines[1].startswith("boundary.bottom: contacts opened or slid by t = 0.15 s near (3, 4.5) m")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import turn
 
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.rotation import turned_as_a_whole, turns_freely
@@ -18,7 +19,6 @@ RANDOM = {
 VISCOUS = {"type": "viscous"}
 PUSHED = {"wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.1}}}
 SIDES = ("left", "right", "bottom", "top")
-EPS = np.finfo(float).eps
 
 
 def wrapped(*sides: str) -> dict[str, dict[str, str]]:
@@ -29,13 +29,9 @@ def wrapped(*sides: str) -> dict[str, dict[str, str]]:
 @pytest.mark.parametrize(
     ("changes", "free"),
     [
-        ({}, True),
         ({"boundary": {side: VISCOUS for side in SIDES}}, True),
-        ({"boundary": {"left": {"type": "viscous_input", "wave_p": "pulse"}}, **PUSHED}, True),
-        ({"boundary": {"left": {**VISCOUS, "half_mass": True}}}, True),
+        ({"boundary": {"left": {"type": "viscous_input", "wave_p": "pulse", "half_mass": True}}, **PUSHED}, True),
         ({"boundary": {"left": VISCOUS, "bottom": {"type": "fixed"}}}, False),
-        ({"boundary": {"bottom": {"type": "roller"}}}, False),
-        ({"boundary": {"left": {"type": "symmetry"}}}, False),
         ({"boundary": {"left": {"type": "velocity", "wave_p": "pulse"}}, **PUSHED}, False),
         ({"boundary": {"right": {"type": "viscoelastic", "distance": 40.0}}}, False),
         ({"boundary": wrapped("left", "right")}, False),
@@ -72,10 +68,6 @@ def tangent(body: DiskScene, datum: np.ndarray, angle: float) -> np.ndarray:
     return angle * np.stack([-y, x, np.ones(body.count)])
 
 
-def turn(angle: float) -> np.ndarray:
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-
-
 @pytest.mark.parametrize("angle", [0.01, -0.4])
 def test_a_turn_along_the_tangent_becomes_one_that_keeps_all_distances(body: DiskScene, angle: float) -> None:
     datum = datum_of(body)
@@ -110,49 +102,12 @@ def test_the_rotation_is_that_of_the_whole_body_disks_own_spin_included(body: Di
     assert abs(angle - orbit) > 1e-3
 
 
-def test_a_deformation_turns_with_the_body(body: DiskScene) -> None:
-    datum, angle = datum_of(body), 0.2
-    arm = arms(body, datum)
-    strain = np.array([[1e-3, 4e-4], [4e-4, -2e-3]])
-    stretched = strain @ arm
-    # what has no angular momentum as a whole: the symmetric strain less the little turn it comes with
-    spin = np.sum(body.mass * (arm[0] * stretched[1] - arm[1] * stretched[0]))
-    stretched -= spin / np.sum(body.mass * (arm**2).sum(axis=0)) * np.stack([-arm[1], arm[0]])
-    moved = datum + tangent(body, datum, angle)
-    moved[:2] += stretched
-    moved, _ = turned_as_a_whole(body, moved, np.zeros((3, body.count)), datum)
-
-    # as above
-    np.testing.assert_allclose(moved[:2], datum[:2] + turn(angle) @ (arm + stretched) - arm, rtol=0.0, atol=1e-13)
-
-
 def test_velocities_turn_about_that_of_the_centre(body: DiskScene) -> None:
     datum, angle = datum_of(body), 0.5
     v = np.random.default_rng(2).uniform(-1.0, 1.0, (3, body.count)) + np.array([[5.0], [3.0], [1.0]])
-    turned, moved = v.copy(), datum + tangent(body, datum, angle)
-    moved, turned = turned_as_a_whole(body, moved, turned, datum)
+    _, turned = turned_as_a_whole(body, datum + tangent(body, datum, angle), v.copy(), datum)
     mean = np.average(v[:2], axis=1, weights=body.mass)[:, None]
 
     # sums of 60 numbers of size 10
     np.testing.assert_allclose(turned[:2], mean + turn(angle) @ (v[:2] - mean), rtol=0.0, atol=1e-13)
     assert np.array_equal(turned[2], v[2])
-    np.testing.assert_allclose((turned * body.mass).sum(axis=1), (v * body.mass).sum(axis=1), rtol=60 * EPS)
-    kinetic = [np.sum(body.mass * (each[:2] ** 2).sum(axis=0)) for each in (v, turned)]
-    assert kinetic[1] == pytest.approx(kinetic[0], rel=120 * EPS)
-    # and with it the angular momentum about the centre of what has turned
-    arm = arms(body, datum)
-    momentum = [
-        np.sum(body.mass * (r[0] * w[1] - r[1] * w[0])) for r, w in ((arm, v - 0.0), (turn(angle) @ arm, turned))
-    ]
-    assert momentum[1] == pytest.approx(momentum[0], rel=1e-10)
-
-
-def test_what_has_not_turned_stays_where_it_is(body: DiskScene) -> None:
-    datum = datum_of(body)
-    moved, v = datum + np.array([[0.25], [-0.5], [0.0]]), np.full((3, body.count), 2.0)
-    before = moved.copy()
-    moved, v = turned_as_a_whole(body, moved, v, datum)
-
-    # angles of 1e-17 from sums that cancel
-    np.testing.assert_allclose(moved, before, rtol=0.0, atol=1e-14)
-    np.testing.assert_allclose(v, 2.0, rtol=0.0, atol=1e-14)

@@ -1,18 +1,12 @@
 """Stress, particle by particle, where it is known by hand, and that looking at it changes nothing."""
 
 import numpy as np
-import pytest
 
-from dembound.disks.contacts import forces as module
 from dembound.disks.contacts.arrays import plain_contacts
-from dembound.disks.rest.block_stress import block_stress
-from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.stress import particle_stress
-from dembound.disks.stepping.system import DiskSystem
-from dembound.kernels.contacts import REFERENCE, UPDATED
+from dembound.kernels.contacts import REFERENCE
 from dembound.motion.simulation import Simulation
 
 K = 2500.0 * 1000.0**2
@@ -58,20 +52,6 @@ def test_half_cells_answer_as_whole_ones_do(bar) -> None:
     np.testing.assert_allclose(stress[kept, :2], np.tile([K * xx, K * yy], (kept.sum(), 1)), atol=1e-14 * K * abs(yy))
 
 
-@pytest.mark.parametrize("piece", [100, module.PIECE])
-def test_elastic_stress_is_that_of_the_pairs_forces_at_the_start(bar, monkeypatch, piece: int) -> None:
-    monkeypatch.setattr(module, "PIECE", piece)
-    scene = build(bar({**BODY, "boundary": WRAP, "packing": RANDOM}))
-    displacement = np.random.default_rng(5).normal(0.0, 1e-4, (3, scene.count))
-    contacts = contact_lists(scene)["body"]
-    contacts.push(displacement)
-    listed = particle_stress(scene, contacts.arrays, np.zeros_like(displacement), UPDATED)
-
-    assert len(contacts.arrays.first) > 2 * 100
-    # the order of summation differs: some ten terms of about the largest stress
-    np.testing.assert_allclose(elastic_stress(scene, displacement), listed, rtol=0.0, atol=1e-14 * np.abs(listed).max())
-
-
 LOCKED_IN = {"material.law": "linearpbond", "material.locked_in": 3e6, "static": {}}
 
 
@@ -86,20 +66,6 @@ def test_the_locked_in_stress_is_in_it(bar) -> None:
     # 3 MPa in place of the 10 MPa it was packed under; overlaps are 2e-3 of the diameter, rounding is 1e-13 of them
     packed = scene.ground.brick.stress
     np.testing.assert_allclose(mean, 3e6 * packed / -(0.5 * packed[:2].sum()), rtol=1e-11)
-
-
-@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
-def test_a_run_after_a_static_stage_begins_with_its_stress(bar, law: str) -> None:
-    static = {"ratio": 1e-6, "stress": [-1e6, -2e6, 0.0]}
-    scene = build(bar({**BODY, "static": static, "packing.size": [6.0, 6.0], "material.law": law}))
-    settled = settle(scene)
-    step, start = choose_step(scene)[0], settled.start
-    system = DiskSystem(scene, step, start)
-    simulation = Simulation(scene, step, system=system, datum=start.displacement)
-    stress = block_stress(scene, system, simulation.state.displacement)
-
-    # summation in another order
-    np.testing.assert_allclose(stress.mean(axis=(0, 1)), settled.stress, rtol=0.0, atol=1e-12 * 2e6)
 
 
 def test_to_look_changes_nothing(bar) -> None:

@@ -60,6 +60,11 @@ def test_histories_are_those_of_a_direct_run(heavy, tmp_path):
                 assert (np.abs(motion[:, number, columns] - values) <= atol).all()
     for quantity in ("velocity", "displacement"):
         assert all(found.peak < 1e-12 for found in compare(direct, [path], quantity))
+    # the step is a fraction of the spacing and of the histories' 0.4 ms, in whole steps of 0.25 ms, as in runs
+    step, apart = heavy.case.run.time_step, heavy.time[1] - heavy.time[0]
+    assert apart == pytest.approx(2 * step)
+    for whole in (SPACING / step, SPACING / apart):
+        assert whole == pytest.approx(round(whole))
 
 
 def test_inputs_without_a_record_are_silent(heavy, tmp_path):
@@ -86,15 +91,6 @@ def test_responses_begin_with_their_triangle(heavy):
         shifted = heavy.motion({name: np.array([0.0, 0.0, 0.0, 1.0])}) - heavy.rest
         steps = round(2 * SPACING / (heavy.time[1] - heavy.time[0]))
         np.testing.assert_allclose(shifted[steps:], response[:-steps], atol=1e-14 * np.abs(response).max() * 100)
-
-
-def test_the_step_is_a_fraction_of_the_spacing_and_of_the_histories(heavy):
-    step = heavy.case.run.time_step
-    whole = SPACING / step
-    assert whole == pytest.approx(round(whole))
-    apart = heavy.time[1] - heavy.time[0]  # history_interval, 0.4 ms, in whole steps of 0.25 ms, as in runs
-    assert apart == pytest.approx(2 * step)
-    assert SPACING / apart == pytest.approx(round(SPACING / apart))
 
 
 def test_a_scene_without_steady_forces_needs_one_run(tmp_path):

@@ -10,13 +10,15 @@ from dembound.studies.library.record import on_spacing
 CLOCK = Clock(spacing=0.1, duration=1.0)
 
 
-def test_values_between_lines_are_on_straight_lines():
+def test_values_between_lines_are_on_straight_lines_and_begin_later_under_a_wave_at_an_angle():
     samples = np.array([[0.2, 0.0], [0.3, 2.0], [0.6, -4.0], [0.8, 0.0]])
     np.testing.assert_allclose(on_spacing(samples, CLOCK), [0, 0, 0, 2, 0, -2, -4, -2, 0], atol=1e-14)
-
-
-def test_a_record_as_long_as_the_library_may_end_anyhow():
+    # one as long as the library may end anyhow
     np.testing.assert_allclose(on_spacing(np.array([[0.0, 0.0], [1.0, 5.0]]), CLOCK), np.arange(11) * 0.5)
+    rows = np.array([(0.0, 0.0), (0.2, 0.0), (0.3, 1.0), (0.4, 0.0)])
+    assert on_spacing(rows, CLOCK._replace(lead=2))[3] == 1.0
+    with pytest.raises(ValueError, match=r"begins at 0\.2 s, but .* it must be 0 up to 0\.3 s"):
+        on_spacing(rows, CLOCK._replace(lead=3))
 
 
 @pytest.mark.parametrize(
@@ -33,13 +35,6 @@ def test_a_record_as_long_as_the_library_may_end_anyhow():
 def test_what_no_library_responds_to_is_said(rows, problem):
     with pytest.raises(ValueError, match=problem):
         on_spacing(np.array(rows), CLOCK)
-
-
-def test_under_a_wave_at_an_angle_records_begin_later():
-    rows = np.array([(0.0, 0.0), (0.2, 0.0), (0.3, 1.0), (0.4, 0.0)])
-    assert on_spacing(rows, CLOCK._replace(lead=2))[3] == 1.0
-    with pytest.raises(ValueError, match=r"begins at 0\.2 s, but .* it must be 0 up to 0\.3 s"):
-        on_spacing(rows, CLOCK._replace(lead=3))
 
 
 @pytest.fixture

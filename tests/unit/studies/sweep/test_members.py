@@ -13,20 +13,18 @@ def names(case, vary, together=False):
     return [member.name for member in members]
 
 
-def test_all_combinations_are_members_the_last_key_first(bar) -> None:
-    assert names(bar(), {"run.safety": [0.5, 0.9], "run.duration": [0.01, 0.02]}) == [
-        "safety=0.5,duration=0.01",
-        "safety=0.5,duration=0.02",
-        "safety=0.9,duration=0.01",
-        "safety=0.9,duration=0.02",
-    ]
-
-
-def test_values_taken_together_are_one_member(bar) -> None:
+def test_all_combinations_are_members_the_last_key_first_or_values_together(bar) -> None:
     vary = {"run.safety": [0.5, 0.9], "run.duration": [0.01, 0.02]}
+    assert names(bar(), vary) == [f"safety={s},duration={d}" for s in (0.5, 0.9) for d in (0.01, 0.02)]
     assert names(bar(), vary, together=True) == ["safety=0.5,duration=0.01", "safety=0.9,duration=0.02"]
     with pytest.raises(CaseError, match=r"--together: .* run.safety 2 values, run.duration 1 value"):
         changes_of(vary | {"run.duration": [0.01]}, together=True)
+    with pytest.raises(CaseError, match="--vary: is missing"):
+        changes_of({}, False)
+    # invalid ones are left out and equal ones count once
+    members, left_out = members_of(bar(), changes_of({"run.safety": [0.5, 2.0, 0.5]}, False), "run", "impedance")
+    assert [member.name for member in members] == ["safety=0.5"]
+    assert [line.split(":")[0] for line in left_out] == ["safety=2"]
 
 
 def test_names_are_those_of_folders_and_differ(bar) -> None:
@@ -53,18 +51,7 @@ def test_keys_depend_on_results_alone(bar) -> None:
     assert len({key(bar()), *others}) == 4
 
 
-def test_invalid_members_are_left_out_and_equal_ones_count_once(bar) -> None:
-    members, left_out = members_of(bar(), changes_of({"run.safety": [0.5, 2.0, 0.5]}, False), "run", "impedance")
-    assert [member.name for member in members] == ["safety=0.5"]
-    assert [line.split(":")[0] for line in left_out] == ["safety=2"]
-
-
 def test_groups_are_the_changes_without_seeds() -> None:
     random = small(GRAINS)
     members, _ = members_of(random, changes_of({"packing.seed": [1, 2], "run.safety": [0.5]}, False), "run", "ratio")
     assert [member.group for member in members] == [{"run.safety": 0.5}] * 2
-
-
-def test_a_sweep_needs_a_key() -> None:
-    with pytest.raises(CaseError, match="--vary: is missing"):
-        changes_of({}, False)

@@ -12,18 +12,19 @@ from dembound.results.results import Results
 from dembound.running import job, run_case
 from dembound.studies.all_sides import calibrate_all
 from dembound.studies.sweep.members import changes_of, members_of
-from dembound.studies.sweep.perform import ALONE, MEMBERS, Outcome, forget_replaced, outcome_in, perform
+from dembound.studies.sweep.perform import ALONE, MEMBERS, OUTCOMES, Outcome, forget_replaced, outcome_in, perform
 from dembound.studies.sweep.values import ENERGY, unit_of
 
 
 def test_values_are_those_of_the_run_alone(rods, task, tmp_path) -> None:
-    (member,) = rods(12e6)
+    (member,) = rods(12e6, **{"output.estimate": True, "output.history_interval": 3e-4})
     outcome = perform(task(member))
     alone = Results(run_case(member.case, tmp_path / "alone"))
     assert outcome.failure == ""
     assert outcome_in(tmp_path, member.key) == outcome
     assert (tmp_path / "begun").is_file()
     values, summary = outcome.values, alone.summary
+    assert any("errors are not estimated: " in line for line in outcome.warnings)  # for which it is complete anyway
     assert values["spalls.1.time"] == summary["spalls"][0]["time"]
     assert values["spalls.1.end.to"] == summary["spalls"][0]["end"][1]
     assert values["energy.kinetic"] == summary["energy"]["kinetic"]
@@ -66,7 +67,7 @@ def test_calibrations_are_those_of_the_case_alone(bar, task) -> None:
         assert ("boundary.right.beta_p.ratio" in values) == (method == "impedance")
 
 
-def test_failures_are_outcomes(rods, task, tmp_path) -> None:
+def test_failures_and_bugs_are_outcomes(rods, task, tmp_path, monkeypatch) -> None:
     (unstable,) = rods(12e6, **{"run.courant": 3.0})
     outcome = perform(task(unstable))
     assert outcome.failure.startswith("run.courant: is 3")
@@ -74,13 +75,17 @@ def test_failures_are_outcomes(rods, task, tmp_path) -> None:
     (member,) = rods(12e6)
     (member2,) = members_of(member.case, [{"title": "x"}], "calibrate", "impedance")[0]
     assert "is the case of a bar" in perform(task(member2, "calibrate")).failure
-
-
-def test_bugs_are_outcomes_too(rods, task, monkeypatch) -> None:
     monkeypatch.setattr(job, "plan", lambda *_: 1 / 0)
-    (member,) = rods(12e6)
     assert perform(task(member)).failure == "a bug: ZeroDivisionError: division by zero"
     assert not ALONE.locked()
+    # one thread is used, and others are given back
+    seen, threads = [], numba.get_num_threads
+    before = threads()
+    run = {"run": lambda _: seen.append(threads()) or ({}, [])}
+    monkeypatch.setattr("dembound.studies.sweep.perform._ACTIONS", run)
+    perform(task(member))
+    assert seen == [1]
+    assert threads() == before
 
 
 def test_a_stopped_member_is_continued_to_the_same_results(rods, task, tmp_path, monkeypatch) -> None:
@@ -120,34 +125,19 @@ def test_a_checkpoint_of_another_case_is_not_continued(rods, task, tmp_path, mon
     assert json.loads((tmp_path / MEMBERS / member.name / "summary.json").read_text())["resumed"] == []
 
 
-def test_outcomes_of_runs_that_others_replace_are_forgotten(tmp_path) -> None:
-    (tmp_path / "outcomes").mkdir()
+def test_damaged_outcomes_are_none_and_those_of_runs_that_others_replace_are_forgotten(tmp_path) -> None:
+    (tmp_path / OUTCOMES).mkdir()
+    outcome = Outcome("a", values={"x": 1.0}, warnings=["too short"])
+    outcome.write(tmp_path, "k")
+    assert outcome_in(tmp_path, "k") == outcome
+    for text in ("", "{", "[]", '{"name": 1, "more": 2}'):
+        (tmp_path / OUTCOMES / "k.json").write_text(text)
+        assert outcome_in(tmp_path, "k") is None
     Outcome("a", folder="a").write(tmp_path, "run of a")
     Outcome("a").write(tmp_path, "calibration of a")
     Outcome("b", folder="b").write(tmp_path, "run of b")
     forget_replaced(tmp_path, {"a"})
-    assert {path.stem for path in (tmp_path / "outcomes").iterdir()} == {"calibration of a", "run of b"}
-
-
-def test_one_thread_is_used_and_others_are_given_back(rods, task, monkeypatch) -> None:
-    seen = []
-    run = {"run": lambda _: seen.append(threads()) or ({}, [])}
-    monkeypatch.setattr("dembound.studies.sweep.perform._ACTIONS", run)
-    threads = numba.get_num_threads
-    before = threads()
-    perform(task(*rods(12e6)))
-    assert seen == [1]
-    assert threads() == before
-
-
-@pytest.mark.parametrize("text", ["", "{", "[]", '{"name": 1, "more": 2}'])
-def test_damaged_outcomes_are_none(tmp_path, text) -> None:
-    (tmp_path / "outcomes").mkdir()
-    outcome = Outcome("a", values={"x": 1.0}, warnings=["too short"])
-    outcome.write(tmp_path, "k")
-    assert outcome_in(tmp_path, "k") == outcome
-    (tmp_path / "outcomes" / "k.json").write_text(text)
-    assert outcome_in(tmp_path, "k") is None
+    assert {path.stem for path in (tmp_path / OUTCOMES).iterdir()} == {"k", "calibration of a", "run of b"}
 
 
 def test_calibrations_stop_between_blocks_of_steps(bar, task, tmp_path, monkeypatch) -> None:
@@ -167,11 +157,3 @@ def test_calibrations_stop_between_blocks_of_steps(bar, task, tmp_path, monkeypa
     assert perform(one) is None
     assert len(blocks) == 3
     assert outcome_in(tmp_path, member.key) is None
-
-
-def test_a_member_without_an_estimate_is_complete_and_says_why(rods, task) -> None:
-    (member,) = rods(12e6, **{"output.estimate": True, "output.history_interval": 3e-4})
-    outcome = perform(task(member))
-    assert outcome.failure == ""
-    assert outcome.values["energy.kinetic"] > 0.0
-    assert any("errors are not estimated: " in line for line in outcome.warnings)

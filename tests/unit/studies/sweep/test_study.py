@@ -87,6 +87,10 @@ def test_only_what_is_missing_or_failed_is_done(rods, swept) -> None:
     assert swept(changed)[1].submitted == names(changed)
     assert swept(members)[1].submitted == []
     assert swept(members, anew=True)[1].submitted == names(members)
+    same = rods(1e6, **{"bar.density": 2600.0})
+    assert names(same) == names(members)[:1]
+    swept(same)  # whose run is in the folder of the first member
+    assert swept(members)[1].submitted == names(members)[:1]
 
 
 def test_others_wait_until_the_first_is_stepped(rods, swept) -> None:
@@ -118,13 +122,11 @@ def test_a_lost_member_is_repeated_once_then_failed_and_the_others_go_on(rods, s
     assert outcomes[2].values == {"x": 1.0}
     assert sorted(workers.submitted) == sorted([*names(members), members[0].name, members[1].name])
     assert outcome_in(tmp_path / "a_sweep", members[1].key).failure == outcomes[1].failure
-
-
-def test_other_errors_of_a_cluster_fail_the_member(rods, swept, tmp_path) -> None:
-    members = rods(1e6, 2e6)
-    outcomes, _ = swept(members, **{members[0].name: [ModuleNotFoundError("No module named 'dembound'")]})
+    # other errors of a cluster fail the member, which is repeated in the next sweep
+    (other,) = rods(4e6)
+    outcomes, _ = swept([other], **{other.name: [ModuleNotFoundError("No module named 'dembound'")]})
     assert outcomes[0].failure == "ModuleNotFoundError: No module named 'dembound'"
-    assert outcome_in(tmp_path / "a_sweep", members[0].key) is None  # so it is repeated
+    assert outcome_in(tmp_path / "a_sweep", other.key) is None
 
 
 def test_a_signal_asks_all_to_stop_and_leaves_what_is_done(rods, swept, tmp_path) -> None:
@@ -158,11 +160,3 @@ def test_a_folder_of_something_else_or_in_use_is_refused(rods, swept, tmp_path) 
     swept(rods(1e6))
     with FileLock(folder / LOCK), pytest.raises(CaseError, match="is being written by another sweep"):
         swept(rods(1e6))
-
-
-def test_a_member_in_the_folder_of_another_case_replaces_its_outcome(rods, swept) -> None:
-    members, changed = rods(1e6, 2e6), rods(1e6, **{"bar.density": 2600.0})
-    assert names(changed) == names(members)[:1]
-    swept(members)
-    swept(changed)  # whose run is in the folder of the first member
-    assert swept(members)[1].submitted == names(members)[:1]

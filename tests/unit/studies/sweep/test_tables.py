@@ -40,7 +40,7 @@ def rows_of(path):
         return list(csv.DictReader(file))
 
 
-def test_members_are_rows_with_keys_and_values(swept, tmp_path) -> None:
+def test_tables_have_rows_of_members_and_groups_and_the_record_the_same_with_units(swept, tmp_path) -> None:
     write_tables(swept, tmp_path)
     rows = rows_of(tmp_path / "sweep.csv")
     assert [row["member"] for row in rows] == ["m0", "m1", "m2", "m3", "m4"]
@@ -48,10 +48,6 @@ def test_members_are_rows_with_keys_and_values(swept, tmp_path) -> None:
     assert [row["run.safety"] for row in rows] == ["0.5", "0.5", "0.9", "0.9", ""]
     assert json.loads(rows[4]["boundary.right"]) == SIDE
     assert [row["monitors.end.peak_velocity"] for row in rows] == ["1.0", "3.0", "5.0", "", ""]
-
-
-def test_statistics_are_rows_of_groups(swept, tmp_path) -> None:
-    write_tables(swept, tmp_path)
     rows = rows_of(tmp_path / "statistics.csv")
     assert [(row["run.safety"], row["quantity"], row["unit"], row["count"], row["mean"]) for row in rows] == [
         ("0.5", "monitors.end.peak_velocity", "m/s", "2", "2.0"),
@@ -63,10 +59,6 @@ def test_statistics_are_rows_of_groups(swept, tmp_path) -> None:
     assert float(rows[0]["interval"]) == pytest.approx(np.tan(0.475 * np.pi), rel=1e-9)
     assert float(rows[0]["high"]) - float(rows[0]["low"]) == pytest.approx(2.0 * float(rows[0]["interval"]))
     assert (rows[2]["spread"], rows[2]["low"]) == ("", "")
-
-
-def test_the_record_has_the_same_with_units(swept, tmp_path) -> None:
-    write_tables(swept, tmp_path)
     with h5py.File(tmp_path / "sweep.h5") as file:
         assert [text.decode() for text in file["members/name"][:]] == ["m0", "m1", "m2", "m3", "m4"]
         assert json.loads(file["members/changes"][4]) == {"packing.seed": 1, "boundary.right": SIDE}
@@ -88,9 +80,7 @@ def test_the_picture_has_every_member_and_mean(swept, tmp_path) -> None:
     (mean,) = (bars.lines[0] for bars in panel.containers)
     assert mean.get_ydata().tolist() == [2.0]  # where there is an interval
     assert figure.get_suptitle() == "β and $safety$"
-
-
-def test_groups_with_numbers_are_placed_by_their_value(swept, tmp_path) -> None:
+    # groups with numbers are placed by their value
     write_tables(Swept(swept.case, "run", swept.members[:3], swept.outcomes[:3]), tmp_path)
     (panel,) = plot_sweep(tmp_path / "sweep.h5").axes
     assert panel.get_xlabel() == "run.safety"

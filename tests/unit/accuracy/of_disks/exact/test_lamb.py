@@ -95,11 +95,6 @@ HAMMER = {"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "
         ({"load": [{**HAMMER, "force": [10.0, -1000.0]}]}, "one vertical force"),
         ({"load": [{**HAMMER, "position": [4.75, 2.0]}]}, "load.hammer.position: must be on the top"),
         ({"monitor": [{"name": "deep", "position": [2.0, 1.0]}]}, "monitor.deep.position: must be on the top"),
-        ({"material.fric": 0.0}, "anisotropic"),
-        (
-            {"material.law": "linearpbond"},
-            'material.law: is "linearpbond", must have no history, as "elastic"',
-        ),
         ({"boundary.top": {"type": "viscous"}}, 'boundary.top.type: is "viscous", must be "free"'),
         ({"load": [{**HAMMER, "position": [0.75, 4.75]}]}, "load: is 0.75 m from the left side and 6 m from a monitor"),
         ({"monitor": [{"name": "under", "position": [4.75, 4.75]}]}, "monitor.under.position: lies under the load"),

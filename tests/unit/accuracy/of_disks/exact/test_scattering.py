@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from dembound.accuracy.of_disks import exact as module
 from dembound.accuracy.of_disks.exact import exact_motions
 from dembound.disks.scene import build
 from dembound.errors import CaseError
@@ -39,9 +40,9 @@ angle = 30.0
 wave = "pulse"
 point = [50.0, 20.0]
 [wave.pulse]
-type = "cosine"
+type = "cubic_spline"
 amplitude = 0.5
-period = 0.05
+period = 0.1
 [[hole]]
 name = "tunnel"
 type = "circle"
@@ -61,9 +62,10 @@ SOLID = Solid(2500.0, 1000.0, 1000.0 / math.sqrt(2.0))
 
 
 @pytest.mark.parametrize(("kind", "angle"), [("sv", 30.0), ("p", -20.0)])
-def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, angle) -> None:
+def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, angle, monkeypatch) -> None:
     """Direction, polarisation, and the delay from the point to the hole."""
-    case = with_changes(loads(CASE), {"incident.type": kind, "incident.angle": angle})
+    monkeypatch.setattr(module, "SAMPLES", 300)  # times
+    case = with_changes(loads(CASE), {"incident.type": kind, "incident.angle": angle, "run.duration": 0.16})
     problem, motions = exact_motions(build(case))
     assert problem.name == "scattering"
     speed = SOLID.p_wave_speed if kind == "p" else SOLID.s_wave_speed
@@ -80,8 +82,9 @@ def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, ang
             np.testing.assert_allclose(found[early, :2], moved[0].T, rtol=0.0, atol=1e-4 * size)
 
 
-def test_what_the_surface_sends_back_is_part_of_it_until_the_holes_echo() -> None:
-    """A P wave straight up, of 0.05 s: at the surface, far beside the hole, it is there twice."""
+def test_what_the_surface_sends_back_is_part_of_it_until_the_holes_echo(monkeypatch) -> None:
+    """A P wave straight up, of 0.1 s: at the surface, far beside the hole, it is there twice."""
+    monkeypatch.setattr(module, "SAMPLES", 300)  # times
     far = {"name": "far", "position": [250.5, 119.5]}
     changes = {"incident.type": "p", "incident.angle": 0.0, "outside.margin": 20, "monitor": [far]}
     case = with_changes(loads(CASE), changes)
@@ -100,11 +103,7 @@ def test_what_the_surface_sends_back_is_part_of_it_until_the_holes_echo() -> Non
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        (
-            {"hole": [{"name": "tunnel", "type": "rectangle", "corners": [48.0, 48.0, 52.0, 52.0]}]},
-            "that of one circle",
-        ),
-        ({"material.fric": 0.0, "incident.angle": 10.0}, "anisotropic"),
+        ({"hole": [{"name": "h", "type": "rectangle", "corners": [48.0, 48.0, 52.0, 52.0]}]}, "that of one circle"),
         ({"load": [{"name": "blow", "force": [1.0, 0.0], "position": [45.5, 45.5], "wave": "pulse"}]}, "alone"),
         ({"wave.pulse": {"type": "constant", "amplitude": 1.0}}, r"wave\.pulse: has a jump at"),
     ],

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-import pytest
 
 from dembound.kernels import tables
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, NONE, REFERENCE, SHEAR, TENSION
@@ -106,42 +105,31 @@ class Stepped:
         return body, supports, tables.Log(everyone, record, everyone, peaks, top_speed, work, np.zeros(1))
 
 
-@pytest.fixture
-def stepped() -> Callable[..., Stepped]:
-    """Makes particles of random masses under random loads and five supports, the last prescribed in x and rotation."""
-
-    def make(count: int, steps: int, step: float, *, supported: bool = True, loaded: bool = True, **more) -> Stepped:
-        rng = np.random.default_rng(3)
-        nodes = np.arange(2, count, count // 5)[:5] if supported else np.zeros(0, dtype=np.int64)
-        shape = (len(nodes), 3)
-        prescribed = np.zeros(shape, dtype=bool)
-        prescribed[4:, [0, 2]] = True
-        mass, inertia = rng.uniform(0.5, 2.0, (2, count))
-        load = rng.uniform(-0.1, 0.1, (3, count))
-        damping, stiffness = rng.uniform(0.0, 2.0, (2, *shape))
-        push = rng.uniform(-0.1, 0.1, (steps, *shape))
-        return Stepped(
-            np.stack([mass, mass, inertia]),
-            load if loaded else np.zeros((3, 0)),
-            nodes,
-            damping,
-            stiffness,
-            prescribed,
-            push,
-            step,
-            **more,
-        )
-
-    return make
+def stepped(count: int, steps: int, step: float, *, supported: bool = True, loaded: bool = True, **more) -> Stepped:
+    """Particles of random masses under random loads and five supports, the last prescribed in x and rotation."""
+    rng = np.random.default_rng(3)
+    nodes = np.arange(2, count, count // 5)[:5] if supported else np.zeros(0, dtype=np.int64)
+    shape = (len(nodes), 3)
+    prescribed = np.zeros(shape, dtype=bool)
+    prescribed[4:, [0, 2]] = True
+    mass, inertia = rng.uniform(0.5, 2.0, (2, count))
+    load = rng.uniform(-0.1, 0.1, (3, count))
+    damping, stiffness = rng.uniform(0.0, 2.0, (2, *shape))
+    push = rng.uniform(-0.1, 0.1, (steps, *shape))
+    load = load if loaded else np.zeros((3, 0))
+    return Stepped(np.stack([mass, mass, inertia]), load, nodes, damping, stiffness, prescribed, push, step, **more)
 
 
 @dataclass
 class PlainPairs:
-    """Pairs with a history, one at a time; `lost` is what friction, cracks, and opening and closing took so far."""
+    """Pairs with a history, copied, one at a time; `lost` is what friction, cracks, opening and closing took so far."""
 
     arrays: tables.Contacts
     limits: tables.Limits
     lost: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+    def __post_init__(self) -> None:
+        self.arrays = copied(self.arrays)
 
     def push(self, u: np.ndarray, v: np.ndarray, step: float, number: int) -> np.ndarray:
         """Forces and moments (3, n) of all pairs, whose memories go on; arrays.force gets each pair's own."""
@@ -248,73 +236,47 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
     )
 
 
-@pytest.fixture
-def random_pairs() -> Callable[..., tables.Contacts]:
-    """Makes lists of b pairs of n disks, 1 to 2 apart: half overlap, half do not, by `gap`; two in three are bonded."""
-
-    def make(count: int, b: int, gap: float = 0.05) -> tables.Contacts:
-        rng = np.random.default_rng(11)
-        pairs = np.array([rng.choice(count, 2, replace=False) for _ in range(b)])
-        angle, length = rng.uniform(0.0, 2.0 * np.pi, b), rng.uniform(1.0, 2.0, b)
-        normal, shear, bond_normal, bond_shear = rng.uniform(0.5, 2.0, (4, b))
-        bond_radius = rng.uniform(0.3, 0.5, b)
-        return contacts_of(
-            count,
-            (length * [np.cos(angle), np.sin(angle)]).T,
-            first=pairs[:, 0],
-            second=pairs[:, 1],
-            state=np.where(np.arange(b) % 3 < 2, INTACT, NONE),
-            touch=length + gap * np.where(np.arange(b) % 2, 1.0, -1.0),
-            offset=0.1 * rng.uniform(-1.0, 1.0, b),
-            normal=normal,
-            shear=shear,
-            bond_normal=bond_normal,
-            bond_shear=bond_shear,
-            bending=bond_normal * bond_radius**2 / 3.0,
-            area=2.0 * bond_radius,
-            bond_radius=bond_radius,
-        )
-
-    return make
+def random_pairs(count: int, b: int, gap: float = 0.05) -> tables.Contacts:
+    """A list of b pairs of n disks, 1 to 2 apart: half overlap, half do not, by `gap`; two in three are bonded."""
+    rng = np.random.default_rng(11)
+    pairs = np.array([rng.choice(count, 2, replace=False) for _ in range(b)])
+    angle, length = rng.uniform(0.0, 2.0 * np.pi, b), rng.uniform(1.0, 2.0, b)
+    normal, shear, bond_normal, bond_shear = rng.uniform(0.5, 2.0, (4, b))
+    bond_radius = rng.uniform(0.3, 0.5, b)
+    return contacts_of(
+        count,
+        (length * [np.cos(angle), np.sin(angle)]).T,
+        first=pairs[:, 0],
+        second=pairs[:, 1],
+        state=np.where(np.arange(b) % 3 < 2, INTACT, NONE),
+        touch=length + gap * np.where(np.arange(b) % 2, 1.0, -1.0),
+        offset=0.1 * rng.uniform(-1.0, 1.0, b),
+        normal=normal,
+        shear=shear,
+        bond_normal=bond_normal,
+        bond_shear=bond_shear,
+        bending=bond_normal * bond_radius**2 / 3.0,
+        area=2.0 * bond_radius,
+        bond_radius=bond_radius,
+    )
 
 
-@pytest.fixture
-def one_pair() -> Callable[..., tables.Contacts]:
-    """Makes one pair along x of two disks of radius 1 that touch: k_n = 4, k_s = 2; bond 3, 1, bending 0.5, A = 2."""
-
-    def make(state: int = NONE, overlap: float = 0.0) -> tables.Contacts:
-        constants = {"offset": 0.0, "normal": 4.0, "shear": 2.0, "bond_normal": 3.0, "bond_shear": 1.0, "bending": 0.5}
-        constants |= {"touch": 2.0 + overlap, "area": 2.0, "bond_radius": 1.0}
-        columns = {name: np.array([value]) for name, value in constants.items()}
-        pair = {"first": np.array([0]), "second": np.array([1]), "state": np.array([state])}
-        return contacts_of(2, np.array([[2.0, 0.0]]), **pair, **columns)
-
-    return make
+def one_pair(state: int = NONE, overlap: float = 0.0) -> tables.Contacts:
+    """One pair along x of two disks of radius 1 that touch: k_n = 4, k_s = 2; bond 3, 1, bending 0.5, A = 2."""
+    constants = {"offset": 0.0, "normal": 4.0, "shear": 2.0, "bond_normal": 3.0, "bond_shear": 1.0, "bending": 0.5}
+    constants |= {"touch": 2.0 + overlap, "area": 2.0, "bond_radius": 1.0}
+    columns = {name: np.array([value]) for name, value in constants.items()}
+    pair = {"first": np.array([0]), "second": np.array([1]), "state": np.array([state])}
+    return contacts_of(2, np.array([[2.0, 0.0]]), **pair, **columns)
 
 
-@pytest.fixture
-def copied() -> Callable[[tables.Contacts], tables.Contacts]:
-    """Copies lists of pairs, with all their columns."""
-
-    def copy(pairs: tables.Contacts) -> tables.Contacts:
-        return tables.Contacts(pairs.begin, *(column.copy() for column in pairs[1:]))
-
-    return copy
+def copied(pairs: tables.Contacts) -> tables.Contacts:
+    """Pairs with columns of their own."""
+    return tables.Contacts(pairs.begin, *(column.copy() for column in pairs[1:]))
 
 
-@pytest.fixture
-def behind() -> Callable[[tables.Contacts, int], tables.Contacts]:
-    """Numbers the particles of a list of pairs anew: there are as many others before them."""
-
-    def shift(pairs: tables.Contacts, others: int) -> tables.Contacts:
-        first, second = ((ends + others).astype(np.uint32) for ends in (pairs.first, pairs.second))
-        start = np.concatenate([np.zeros(others, dtype=np.uint32), pairs.start])
-        return pairs._replace(begin=others, first=first, second=second, start=start)
-
-    return shift
-
-
-@pytest.fixture
-def plain() -> type[PlainPairs]:
-    """The law of pairs with a history, written down plainly."""
-    return PlainPairs
+def behind(pairs: tables.Contacts, others: int) -> tables.Contacts:
+    """Pairs whose particles are numbered anew: there are as many others before them."""
+    first, second = ((ends + others).astype(np.uint32) for ends in (pairs.first, pairs.second))
+    start = np.concatenate([np.zeros(others, dtype=np.uint32), pairs.start])
+    return copied(pairs)._replace(begin=others, first=first, second=second, start=start)
