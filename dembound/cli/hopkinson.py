@@ -75,6 +75,15 @@ class BarOptions:
             bar_length=self.bar_length,
         )
 
+    def doubts(self, signal: SignalOptions) -> list[str]:
+        """What is doubtful about the bars."""
+        from dembound.gauge.plausibility import differing_modulus
+        from dembound.meanings import fading
+
+        way = self.incident_gauge + self.transmitted_gauge
+        apart = differing_modulus(signal.youngs_modulus, self.density, self.wave_speed)
+        return [*apart, *fading("--attenuation", self.attenuation * way, way)]
+
 
 @dataclass(frozen=True)
 class PulseOptions:
@@ -153,7 +162,8 @@ def hopkinson(
         said = f"the forces on the specimen never agree to {100.0 * equilibrium:g} %"
         err.print(f"warning: {said}: stress over strain is no law of it")
     error = slope_error(faces, setup, equilibrium, found)
-    for warning in (*doubts_of_slope(found, error), *doubts_of_pulses(signals, faces, setup, windows, found)):
+    doubts = bars.doubts(signal)
+    for warning in (*doubts, *doubts_of_slope(found, error), *doubts_of_pulses(signals, faces, setup, windows, found)):
         err.print(f"warning: {warning}")
     out.print(_overview(found, equilibrium, error))
     _write(faces, found, output, title, table)

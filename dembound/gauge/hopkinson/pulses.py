@@ -238,8 +238,12 @@ def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Windo
     end = begin + length
     largest = float(np.abs(signals.incident).max())
     if signals.second is None and abs(np.interp(end, time, signals.incident)) > ENDED * largest:
+        left = 100.0 * np.interp(end, time, signals.incident) / largest
         said = f"the incident pulse has not ended at {end:.6g} s, when its reflection is back or the window ends"
-        raise CaseError([f"--second-gauge: is needed, {said}; or give --incident-window"])
+        causes = "or look for a baseline that jumps or drifts, AC coupling, lost samples, or a wrong --wave-speed"
+        raise CaseError(
+            [f"--second-gauge: is needed, {said} ({left:.2g} % of its crest); or give --incident-window; {causes}"]
+        )
     return (begin, end), (starts[1], starts[1] + length), (starts[2], starts[2] + length)
 
 
