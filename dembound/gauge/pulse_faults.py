@@ -10,7 +10,7 @@ import numpy as np
 from dembound.gauge.peaks import NOISE_FACTOR, smooth, white_noise, width_of
 
 JUMP, ALONE = 0.1, 5.0
-"""Least change of a pulse in one sample, over its crest, and over the next largest near it, that is one of lost samples.
+"""Least change of a pulse in one sample, over its crest, and over the next largest near it, where samples are lost.
 
 The slopes of a pulse are of many samples, and its steps are alike: the largest is up to twice the next one.
 """
@@ -18,9 +18,13 @@ The slopes of a pulse are of many samples, and its steps are alike: the largest 
 QUIET = 0.05
 """Share of the crest below which a pulse has not begun: a front may be abrupt."""
 
-NARROW, LOWERED, SPIKE = 8.0, 0.05, 0.02
-"""The slower slope of a pulse, from 0.1 to 0.9 of its crest, over the range of the running median; how much that lowers
-a sharp crest, over it: half the range times the slope, (T/16)(0.8/T); and what a spike must have beyond."""
+NARROW = 10.0
+"""The slower slope of a pulse, T for 0.8 of its crest, over the range of the running median."""
+
+LOWERED, SPIKE = 0.06, 0.02
+"""How much that median lowers a sharp crest at most, over it, and what a spike must have beyond: half the range times
+the slope is (T/20)(0.8/T) = 0.04 for straight slopes, and with T from 0.9 to 0.5 of the crest, 2τ ln 1.8, 0.059 for a
+fall exp(−t/τ) behind an abrupt front."""
 
 SPIKE_NOISE = 6.0
 """The same in standard deviations of noise, which a sample in 10⁹ has."""
@@ -33,8 +37,11 @@ UNEXPLAINED = 0.2
 """Largest deviation of that signal from what AC coupling makes of the pulse, over its own size."""
 
 
-def faults(time: np.ndarray, values: np.ndarray, what: str) -> Iterator[str]:
-    """Messages about samples that are lost in a pulse (k,), and about spikes on it; what : has it, as "the pulse"."""
+def faults(time: np.ndarray, values: np.ndarray, what: str, cure: str) -> Iterator[str]:
+    """Message about samples that are lost in a pulse, or else about spikes on it.
+
+    time, values : (k,) s and any unit. what : has the pulse, in words; cure : of spikes.
+    """
     if (jump := lost_samples(values)) is not None:
         share = 100.0 * abs(values[jump + 1] - values[jump]) / float(values.max())
         yield (
@@ -44,8 +51,8 @@ def faults(time: np.ndarray, values: np.ndarray, what: str) -> Iterator[str]:
     elif (spike := largest_spike(values)) is not None:
         place, share = spike
         yield (
-            f"{what} has a spike or a burst of noise at {time[place]:.6g} s, {100.0 * share:.2g} % of its crest, too "
-            "narrow for its slopes: a strength, from largest values, has it in it; use --low-pass or mend the file"
+            f"{what} has a spike or a burst of noise at {time[place]:.6g} s, too narrow for its slopes and "
+            f"{100.0 * share:.2g} % of its crest off them: a strength, from largest values, has it in it; {cure}"
         )
 
 
@@ -83,14 +90,14 @@ def largest_spike(values: np.ndarray) -> tuple[int, float] | None:
 
 
 def _slope_length(values: np.ndarray) -> float:
-    """Samples of the slower slope of a pulse (k,) from 0.1 to 0.9 of its crest, four times those from 0.7 to 0.9."""
-    top, crest = values.max(), int(values.argmax())
-    lengths = []
+    """Samples in which a pulse (k,) falls by 0.8 of its crest on its slower side, as from 0.9 to half or its lowest."""
+    top, crest, lengths = float(values.max()), int(values.argmax()), []
     for part in (values[crest::-1], values[crest:]):
-        low = np.flatnonzero(part < 0.7 * top)
-        if len(low):
-            lengths.append(int(low[0]) - int(np.flatnonzero(part[: low[0]] > 0.9 * top)[-1]))
-    return 4.0 * max(lengths, default=0)
+        high = int(np.flatnonzero(part > 0.9 * top)[-1])
+        low = max(0.5, float(part[high:].min()) / top + SPIKE)
+        if low < 0.8 and len(reached := np.flatnonzero(part[high:] < low * top)):
+            lengths.append(0.8 * int(reached[0]) / (0.9 - low))
+    return max(lengths, default=0.0)
 
 
 def ac_coupling(time: np.ndarray, values: np.ndarray, begun: int) -> Iterator[str]:

@@ -1,10 +1,10 @@
-"""Whether strengths from a gauge can be those of the bar: its spall, the end of its pulse, its speed, and their size."""
+"""Whether strengths from a gauge can be those of the bar: its spall, the end of its pulse, its speed, their size."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.gauge.estimates import ENDED, FEWEST, nominal_strength, rise
+from dembound.gauge.estimates import ENDED, FEWEST, near_free_end, rise
 from dembound.gauge.findings import Findings, Strength
 from dembound.gauge.gauge_io import Gauge
 from dembound.gauge.passages import speed_of_fronts
@@ -13,11 +13,12 @@ from dembound.gauge.pulse_faults import ac_coupling, faults
 from dembound.meanings import MEANINGS, fading
 
 SAME, NEARER = 0.99, 0.9
-"""Share of the tension at the spall that has passed nearer to the free end, within this share of the distance.
+"""Share of the tension at the spall that was nearer to the free end before, within this share of the distance.
 
 The tension grows with the distance until the pulse has its full length there, so a bar that breaks when it reaches its
 strength does so where it still grows: over the last tenth by a tenth under a straight fall. With 0.99 an exponential
-fall is warned of from 0.98 of the crest on, where the place of the spall says little of the strength.
+fall is warned of from 0.98 of the crest on, where the strength hardly follows from the place. Under a rectangular pulse
+all of the tension is where the pulse has its full length first, and nearer to the end later.
 """
 
 PLACES = 20
@@ -27,27 +28,27 @@ AWAY = 0.1
 """Distance of the spall from the results' first crack, over that from the free end: the strength is wrong by as much."""
 
 FRONTS = 0.05
-"""Largest relative difference of a given speed and that of the fronts. They are compared at a fifth of their crests: a
-return of which the spall has kept half is there at a tenth, a tenth of a rise earlier, and a rise that is half the
-way back, or longer, has no quiet before it."""
+"""Largest relative difference of a given speed and that of the fronts, which have risen to a fifth of their crests: of
+a return that a spall has cut at half its height to a tenth, a tenth of a rise earlier. Pulses that have ended when they
+return have rises of less than half that time."""
 
 
 def doubts_of_strengths(gauge: Gauge, found: Findings, free_end: tuple[np.ndarray, np.ndarray] | None) -> Iterator[str]:
     """What is doubtful about strengths, of results too; free_end : times (q,) s and velocities (q,) m/s."""
     speed, strength = found.speed.value, found.strength
-    if found.attenuation is not None and not found.attenuation.points:
+    known = None if gauge.metadata is None else gauge.metadata.attenuation
+    if found.attenuation is not None and not found.attenuation.points and found.attenuation.value != known:
         yield from fading("--attenuation", found.attenuation.value * gauge.length, gauge.length)
     if strength is not None:
-        yield from _spalled_nearer(gauge, strength, speed)
-        yield from _cut_off(strength)
+        yield from list(_cut_off(strength)) or _spalled_nearer(gauge, strength, speed)
         yield from _cracked_elsewhere(gauge, strength)
         if gauge.unit == "strain":
             yield from differing_modulus(gauge.modulus, gauge.density, speed)
     yield from _implausible_strengths(found)
     if free_end is not None and not (most := float(np.abs(free_end[1]).max()) / (2.0 * speed)) < LARGEST_STRAIN:
         yield (
-            f"--free-end: its largest velocity, {2.0 * speed * most:.4g} m/s, is of a wave of {100.0 * most:.3g} % strain, "
-            f"v/2c, of a bar below {100.0 * LARGEST_STRAIN:g} %: is it in m/s?"
+            f"--free-end: its largest velocity, {2.0 * speed * most:.4g} m/s, is of a wave of {100.0 * most:.3g} % "
+            f"strain, v/2c, of a bar below {100.0 * LARGEST_STRAIN:g} %: is it in m/s?"
         )
 
 
@@ -59,7 +60,8 @@ def doubts_of_signals(gauge: Gauge, found: Findings, free_end: tuple[np.ndarray,
         end = len(strength.pulse[0])
         if gauge.recorded is not None:
             coupled = list(ac_coupling(gauge.time[:end], -gauge.recorded[:end], rise(-gauge.stress)[0]))
-        yield from coupled or faults(gauge.time[:end], -gauge.stress[:end], "the pulse")
+        cure = "use --low-pass or mend the file"
+        yield from coupled or faults(gauge.time[:end], -gauge.stress[:end], "the pulse", cure)
     if not found.speed.points and not coupled:
         fronts = speed_of_fronts(gauge.time, gauge.stress, gauge.position, gauge.length)
         if fronts is not None and abs(speed / fronts - 1.0) > FRONTS:
@@ -72,24 +74,27 @@ def doubts_of_signals(gauge: Gauge, found: Findings, free_end: tuple[np.ndarray,
         begun = rise(velocity)[0]
         end = int(np.searchsorted(time, time[begun] + 2.0 * gauge.length / speed))
         if end > FEWEST:
-            yield from (f"--free-end: {said}" for said in faults(time[:end], velocity[:end], "the velocity"))
+            said = faults(time[:end], velocity[:end], "the velocity", "mend the file")
+            yield from (f"--free-end: {each}" for each in said)
 
 
 def _spalled_nearer(gauge: Gauge, strength: Strength, speed: float) -> Iterator[str]:
-    """Message if the tension at the spall has passed before, nearer to the free end, where the bar did not break."""
-    bar = gauge.position, gauge.length, speed
-    for share in np.arange(1, PLACES + 1) / PLACES:
-        place = gauge.length - share * (gauge.length - strength.position)
-        passed = nominal_strength(*strength.pulse, *bar, place)[0]
-        if share > NEARER:
-            return
-        if passed >= SAME * strength.nominal:
-            yield (
-                f"--spall: all of the tension at {strength.position:g} m, {strength.nominal / 1e6:.4g} MPa, has passed "
-                f"at {place:.4g} m before, nearer to the free end, where the bar should have broken: check --spall (it "
-                "is from the loaded end), --length, --wave-speed and --pulse-end"
-            )
-            return
+    """Message if the tension at the spall has been nearer to the free end before, where the bar did not break."""
+    time, stress = strength.pulse
+    shares = np.array([share for share in np.arange(1, PLACES) / PLACES if share <= NEARER] + [1.0])
+    places = gauge.length - shares * (gauge.length - strength.position)
+    begin = float(time[0]) + (strength.position - gauge.position) / speed
+    step, last = float(time[1] - time[0]), float(time[-1]) + strength.way / speed
+    moments = begin + step * np.arange(int((last - begin) / step) + 2)
+    tension = near_free_end(time, stress, gauge.position, gauge.length, speed, places, moments)
+    there = tension >= SAME * tension[-1].max()
+    first = np.where(there.any(axis=1), there.argmax(axis=1), len(moments))
+    if tension[-1].max() > 0.0 and len(before := np.flatnonzero(first < first[-1])):
+        yield (
+            f"--spall: all of the tension at {strength.position:g} m, {strength.nominal / 1e6:.4g} MPa, was at "
+            f"{places[before[0]]:.4g} m before, nearer to the free end, where the bar should have broken: check "
+            "--spall (it is from the loaded end), --length, --wave-speed and --pulse-end"
+        )
 
 
 def _cut_off(strength: Strength) -> Iterator[str]:
@@ -115,7 +120,8 @@ def _cracked_elsewhere(gauge: Gauge, strength: Strength) -> Iterator[str]:
 
 def _implausible_strengths(found: Findings) -> Iterator[str]:
     """Messages about strengths of unlikely sizes."""
-    nominal, attenuated = (None, None) if found.strength is None else (found.strength.nominal, found.strength.attenuated)
+    strength = found.strength
+    nominal, attenuated = (None, None) if strength is None else (strength.nominal, strength.attenuated)
     for name, value in (("nominal", nominal), ("attenuated", attenuated), ("pull-back", found.pull_back)):
         if value is not None and (doubt := MEANINGS["strength"].doubt(value, "Pa", given=False)):
             cause = "--free-end in m/s and --density" if name == "pull-back" else "--unit, --scale and --attenuation"
