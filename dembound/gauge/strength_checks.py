@@ -25,7 +25,7 @@ PLACES = 20
 """Distances from the free end, evenly up to that of the spall, at which the tension is compared."""
 
 AWAY = 0.1
-"""Distance of the spall from the results' first crack, over that from the free end: the strength is wrong by as much."""
+"""Distance of the spall from the first crack of results, over that from the free end: the strength is as wrong."""
 
 FRONTS = 0.05
 """Largest relative difference of a given speed and that of the fronts, which have risen to a fifth of their crests: of

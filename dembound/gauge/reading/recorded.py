@@ -97,9 +97,10 @@ def bar_metadata(file: h5py.File) -> BarMetadata | None:
 
 
 def _first_crack(file: h5py.File) -> float | None:
-    """Place of the first crack of a recorded bar, m from the loaded end; None for an unbroken one."""
+    """Place of the first crack of a recorded bar, m from the loaded end; None for an unbroken one or without places."""
     times = file["cracks/time"][:]
-    return _measured(file, file["cracks/position"][int(times.argmin())]) if len(times) else None
+    known = len(times) and "position" in file["cracks"]
+    return _measured(file, file["cracks/position"][int(times.argmin())]) if known else None
 
 
 def bar_length(file: h5py.File) -> float:

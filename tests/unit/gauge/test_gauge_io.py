@@ -54,6 +54,9 @@ def test_a_record_knows_its_bar_unless_told_otherwise(record, felt):
     assert (gauge.position, gauge.length, gauge.density) == (0.6, 0.99, 2620.0)
     moved = read_gauge(record, "near", position=0.5, length=1.0, density=2000.0)
     assert (moved.position, moved.length, moved.density) == (0.5, 1.0, 2000.0)
+    assert moved.notes[-1] == "--density: 2000 kg/m³ given, results have 2620"
+    assert len(moved.notes) - len(gauge.notes) == 3
+    assert read_gauge(record, "near", position=0.604).notes == gauge.notes
 
 
 def test_the_only_gauge_needs_no_name_and_a_record_no_density(record):

@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 from gauge_records import bits, drift, hum, noise, offset
+from hopkinson_bar import SETUP, signals
 
-from dembound.gauge.gauge_io import read_gauge
+from dembound.errors import CaseError
+from dembound.gauge.gauge_io import BarMetadata, Gauge, read_gauge
+from dembound.gauge.hopkinson.pulses import at_faces
+from dembound.gauge.plausibility import differing_modulus
 from dembound.gauge.spalling import evaluate
 
 STEP, CREST, SPEED, DENSITY = 2e-7, 30e6, 3500.0, 2500.0
@@ -124,7 +128,7 @@ def test_a_fault_of_the_record_is_told(changes, pulse, words, tmp_path):
         ((), BAR, {"spall": 0.1}, CREST, ["all of the tension at 0.1 m, 29."]),
         ((), BAR, {"speed": 350.0}, CREST, ["all of the tension at 1.1 m"]),
         ((), (0.7, 2.4, DENSITY), {}, CREST, ["all of the tension at 1.1 m"]),
-        ((), BAR, {"pulse_end": 75e-6}, CREST, ["cuts the pulse at 7.5e-05 s, where it has 7 of its crest"]),
+        ((), BAR, {"pulse_end": 75e-6}, CREST, ["cuts the pulse at 7.5e-05 s, where it has 7"]),
         ((returns(1.0),), BAR, {"speed": 6000.0}, CREST, ["the front of the pulse is back at the gauge as with 3"]),
         ((returns(0.5),), BAR, {"speed": 3800.0}, CREST, ["the front of the pulse is back at the gauge as with 3"]),
         ((), BAR, {"coefficient": 4.5}, CREST, ["leaves 0.45 % of a wave along the bar of 1.2 m; is it in 1/m?"]),
@@ -135,3 +139,42 @@ def test_an_option_that_cannot_be_is_told(changes, bar, given, scale, words, tmp
     warnings = found(tmp_path / "strong.txt", changes, bar=bar, given=GIVEN | given, scale=scale).warnings
     assert len(warnings) == len(words), warnings
     assert all(word in said for word, said in zip(words, warnings, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("velocity", "words"),
+    [
+        (lambda since: triangle(since), []),
+        (lambda since: triangle(since) - spike(60e-6, 0.2)(since, 0.0), ["--free-end: the velocity has a spike"]),
+        (lambda since: lost(300, 100)(since, triangle(since)), ["--free-end: the velocity jumps by"]),
+        (lambda since: 100.0 * triangle(since), ["--free-end: its largest velocity, 700 m/s, is of a wave of 10 % st"]),
+    ],
+)
+def test_the_velocity_of_a_free_end_is_checked(velocity, words):
+    since = TIME - 20e-6
+    again = 4.0 * triangle(since - 200e-6, 60e-6, 60e-6)
+    free_end = TIME, 7.0 * velocity(since) + again * velocity(np.array([30e-6]))[0]
+    gauge = Gauge(TIME, -CREST * triangle(since), *BAR)
+    warnings = evaluate(gauge, free_end=free_end, speed=SPEED, coefficient=0.0).warnings
+    assert [word in said for word, said in zip(words, warnings, strict=True)] == [True] * len(words)
+
+
+@pytest.mark.parametrize(("spall", "count"), [(1.1, 0), (1.092, 0), (1.109, 0), (1.085, 1), (1.115, 1)])
+def test_a_spall_is_compared_with_the_first_crack_of_results(spall, count):
+    metadata = BarMetadata(SPEED, 0.0, ("free", "free"), 4e-4, first_crack=1.1)
+    found = evaluate(Gauge(TIME, -CREST * triangle(TIME - 20e-6), *BAR, metadata), spall=spall)
+    assert sum("the results have their first crack at 1.1 m" in said for said in found.warnings) == count
+
+
+@pytest.mark.parametrize(("apart", "count"), [(0.96, 0), (1.04, 0), (0.94, 1), (1.06, 1)])
+def test_a_modulus_some_way_from_density_and_speed_is_told(apart, count):
+    modulus = apart * DENSITY * SPEED**2
+    assert len(list(differing_modulus(modulus, DENSITY, SPEED))) == count
+    assert not list(differing_modulus(modulus, None, SPEED))
+
+
+def test_an_undershoot_before_the_reflection_is_no_long_pulse():
+    given = signals()
+    coupled_too = given._replace(incident=given.incident - 0.1 * given.incident.max() * (given.time > 460e-6))
+    with pytest.raises(CaseError, match=r"INCIDENT: .* -1[0-9.]* % of its crest at .*, the other sign: look for AC c"):
+        at_faces(coupled_too, SETUP)
