@@ -30,9 +30,10 @@ def test_a_strong_pulse_gives_the_strength(record, tmp_path):
     gauge = replace(record.gauge(tmp_path / "strong.txt", 200e-6), unit="Pa")
     found = evaluate(gauge, spall=SPALL, speed=SPEED, coefficient=DECAY)
     strength = found.strength.nominal / record.crest
-    if found.warnings:  # noise of 3 % raises a largest value: it is told, and how much
-        assert record.name == "noise of 3 %"
-        assert "% of the wave and makes the strength too large" in found.warnings[0]
+    # a crest of 1 Pa is no strength
+    if warnings := [said for said in found.warnings if "Pa, where soils, rocks and metals have" not in said]:
+        assert record.name == "noise of 3 %"  # it raises a largest value: that is told, and how much
+        assert "% of the wave and makes the strength too large" in warnings[0]
     else:
         assert strength == pytest.approx(exact_nominal(), rel=0.03)
 
