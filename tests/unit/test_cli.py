@@ -1051,7 +1051,7 @@ def test_runs_on_bars_are_read_by_gauge_where_one_end_is_loaded(dembound, spalli
     assert "pull-back strength" in told.out
     speed, attenuation = [cells(line) for line in told.out.splitlines()[3:5]]
     assert (speed[1], speed[2]) == ("1000", "results")
-    assert (attenuation[1], attenuation[2]) == ("0.1", "given")
+    assert (attenuation[1], attenuation[2]) == ("0.1", "given, results have 0")
     refused = "/run.h5: has a bar loaded at {}, must be loaded at the left or the right\n"
     for arguments, said in (
         (["results/one", "--monitor", "far"], "--monitor: is far, must be between the bar's ends, which is gauge\n"),
