@@ -75,15 +75,6 @@ class BarOptions:
             bar_length=self.bar_length,
         )
 
-    def doubts(self, signal: SignalOptions) -> list[str]:
-        """What is doubtful about the bars."""
-        from dembound.gauge.plausibility import differing_modulus
-        from dembound.meanings import fading
-
-        way = self.incident_gauge + self.transmitted_gauge
-        apart = differing_modulus(signal.youngs_modulus, self.density, self.wave_speed)
-        return [*apart, *fading("--attenuation", self.attenuation * way, way)]
-
 
 @dataclass(frozen=True)
 class PulseOptions:
@@ -140,7 +131,7 @@ def hopkinson(
 
     By one, two and three waves, with the time in which the specimen is in equilibrium.
     """
-    from dembound.gauge.hopkinson.pulse_checks import doubts_of_pulses
+    from dembound.gauge.hopkinson.pulse_checks import doubts_of_bars, doubts_of_pulses
     from dembound.gauge.hopkinson.pulses import Windows, at_faces
     from dembound.gauge.hopkinson.records import combined
     from dembound.gauge.hopkinson.slope_error import doubts_of_slope, slope_error
@@ -162,7 +153,7 @@ def hopkinson(
         said = f"the forces on the specimen never agree to {100.0 * equilibrium:g} %"
         err.print(f"warning: {said}: stress over strain is no law of it")
     error = slope_error(faces, setup, equilibrium, found)
-    doubts = bars.doubts(signal)
+    doubts = doubts_of_bars(setup, bars.density)
     for warning in (*doubts, *doubts_of_slope(found, error), *doubts_of_pulses(signals, faces, setup, windows, found)):
         err.print(f"warning: {warning}")
     out.print(_overview(found, equilibrium, error))

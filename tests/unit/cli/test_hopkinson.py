@@ -104,7 +104,10 @@ def test_a_specimen_may_be_as_wide_as_the_bars_and_e_be_measured(dembound, tmp_p
     write(tmp_path / "incident.csv", given, given.incident)
     write(tmp_path / "transmitted.csv", given, given.transmitted)
     options = ("--specimen-diameter", 0.02, "--youngs-modulus", 205e9)
-    assert dembound("hopkinson", "incident.csv", "transmitted.csv", *TEST, *options).code == 0
+    told = dembound("hopkinson", "incident.csv", "transmitted.csv", *TEST, *options, "--attenuation", 3)
+    assert told.code == 0
+    assert "warning: --youngs-modulus: is 2.05e+11 Pa, +5.1 % from ρc², 1.95e+11 Pa, and so are" in told.err
+    assert "warning: --attenuation: leaves 0.45 % of a wave along the bar of 1.8 m" in told.err
 
 
 @pytest.mark.parametrize(
