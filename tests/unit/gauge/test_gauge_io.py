@@ -184,7 +184,9 @@ def test_a_record_tells_of_its_bar(record, loaded):
     with h5py.File(record, "r+") as file:
         del file["cracks/time"]
         file["cracks/time"] = [4e-4, 3e-4, 5e-4]
-    assert read_gauge(record, "near").metadata.broken == 3e-4
+        file["cracks/position"] = [[0.1, 0.0], [0.2, 0.0], [0.3, 0.0]]
+    known = read_gauge(record, "near").metadata
+    assert (known.broken, known.first_crack) == (3e-4, pytest.approx(0.2 if loaded == "left" else 0.79, rel=1e-12))
 
 
 def test_an_end_that_is_held_is_not_free(record):
