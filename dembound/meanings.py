@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from dembound.words import percent
+
 
 class Slip(NamedTuple):
     """A usual mistake: the value is given in another unit, or is another number.
@@ -234,6 +236,22 @@ MEANINGS: dict[str, Meaning] = {
     "count": _free("each has a largest number, with the reason beside it"),
 }
 """Name -> meaning."""
+
+FADED = 0.01
+"""What an attenuation should leave of a wave along a bar at least."""
+
+
+def fading(place: str, exponent: float, length: float) -> Iterator[str]:
+    """Message about an attenuation, at a place, that leaves nothing of a wave.
+
+    exponent : of the decay along the bar; length : of that, m.
+    """
+    if (left := math.exp(-exponent)) < FADED:
+        yield (
+            f"{place}: leaves {percent(left)} of a wave along the bar of {length:g} m; is it in 1/m? 1 dB/m is "
+            "0.115 1/m"
+        )
+
 
 OF_UNITS = {
     "kg/m³": "density",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -26,10 +25,8 @@ from dembound.casefile.magnitudes import (
     time_warnings,
 )
 from dembound.casefile.unlikely import unlikely_in
+from dembound.meanings import fading
 from dembound.words import percent
-
-FADED = 0.01
-"""Share of a wave that attenuation leaves along the whole bar, below which hardly anything arrives."""
 
 _TOO_LARGE = "solids break or yield at a tenth of 3 %, are the units right?"
 
@@ -114,12 +111,8 @@ def _large_strains(case: BarCase) -> Iterator[str]:
 
 def _fades(case: BarCase) -> Iterator[str]:
     """Attenuation that leaves nothing of a wave."""
-    left = math.exp(-sum(part.attenuation * part.length for part in case.bar.parts))
-    if left < FADED:
-        yield (
-            f"bar.attenuation: leaves {percent(left)} of a wave along the bar of {case.bar.length:g} m; is it in "
-            "1/m? 1 dB/m is 0.115 1/m"
-        )
+    along = sum(part.attenuation * part.length for part in case.bar.parts)
+    yield from fading("bar.attenuation", along, case.bar.length)
 
 
 def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:

@@ -18,6 +18,7 @@ from dembound.cli.signal_options import FILE, SignalOptions
 if TYPE_CHECKING:
     from dembound.gauge.estimates import Estimate
     from dembound.gauge.findings import Findings
+    from dembound.gauge.reading.recorded import BarMetadata
 
 MPA = 1e6
 """Pascals in a megapascal."""
@@ -91,14 +92,25 @@ def gauge(
         err.print(f"warning: {warning}")
     for note in gauge.notes:
         out.print(note)
-    sources = tuple("results" if given is None else "given" for given in (wave_speed, attenuation))
-    out.print(_overview(found, sources, None if gauge.metadata is None else gauge.metadata.strength))
+    known = gauge.metadata
+    out.print(_overview(found, _sources(known, wave_speed, attenuation), None if known is None else known.strength))
     if output is not None:
         from dembound.plot.gauge import plot_gauge
         from dembound.plot.style import save
 
         save(plot_gauge(gauge, found), output, title)
         out.print(f"wrote {output}")
+
+
+def _sources(known: BarMetadata | None, speed: float | None, attenuation: float | None) -> list[str]:
+    """Where speed and attenuation are from unless from peaks, and what the results have if another one is given."""
+    from dembound.gauge.gauge_io import differs
+
+    there = (None, None) if known is None else (known.speed, known.attenuation)
+    return [
+        "results" if given is None else f"given, results have {value:.5g}" if differs(given, value) else "given"
+        for given, value in zip((speed, attenuation), there, strict=True)
+    ]
 
 
 def _overview(found: Findings, sources: Sequence[str], known: tuple[float, float] | None) -> Table:

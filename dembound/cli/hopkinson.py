@@ -131,7 +131,7 @@ def hopkinson(
 
     By one, two and three waves, with the time in which the specimen is in equilibrium.
     """
-    from dembound.gauge.hopkinson.pulse_checks import doubts_of_pulses
+    from dembound.gauge.hopkinson.pulse_checks import doubts_of_bars, doubts_of_pulses
     from dembound.gauge.hopkinson.pulses import Windows, at_faces
     from dembound.gauge.hopkinson.records import combined
     from dembound.gauge.hopkinson.slope_error import doubts_of_slope, slope_error
@@ -153,7 +153,8 @@ def hopkinson(
         said = f"the forces on the specimen never agree to {100.0 * equilibrium:g} %"
         err.print(f"warning: {said}: stress over strain is no law of it")
     error = slope_error(faces, setup, equilibrium, found)
-    for warning in (*doubts_of_slope(found, error), *doubts_of_pulses(signals, faces, setup, windows, found)):
+    doubts = doubts_of_bars(setup, bars.density)
+    for warning in (*doubts, *doubts_of_slope(found, error), *doubts_of_pulses(signals, faces, setup, windows, found)):
         err.print(f"warning: {warning}")
     out.print(_overview(found, equilibrium, error))
     _write(faces, found, output, title, table)

@@ -102,7 +102,7 @@ def incident_pulse(
     largest = -stress.min()
     if not largest > 0.0:
         raise CaseError(["--scale: gives no compression, which must be negative; try its other sign"])
-    begun, risen = _rise(-stress)
+    begun, risen = rise(-stress)
     if end is None:
         end = float(time[begun]) + 2.0 * (length - gauge) / speed
         if end < time[risen] or abs(np.interp(end, time, stress)) > ENDED * largest:
@@ -177,7 +177,7 @@ def pull_back_strength(time: np.ndarray, velocity: np.ndarray, density: float, s
     """
     if not velocity.max() > 0.0:
         return np.nan
-    begun, _ = _rise(velocity)
+    begun, _ = rise(velocity)
     end = int(np.searchsorted(time, time[begun] + 2.0 * length / speed))
     return 0.5 * density * speed * first_fall(velocity[begun:end]) if end - begun >= FEWEST else np.nan
 
@@ -190,7 +190,7 @@ def _slope(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> Estimate:
     return Estimate(float(slope), float(np.sqrt(covariance[0, 0])), len(x))
 
 
-def _rise(values: np.ndarray) -> tuple[int, int]:
+def rise(values: np.ndarray) -> tuple[int, int]:
     """Indices at which a history (k,), positive somewhere, begins to rise, and reaches half its largest value."""
     largest = values.max()
     risen = int(np.argmax(values > 0.5 * largest))

@@ -31,6 +31,9 @@ from dembound.results.reader import history_of, open_record
 FREE = "free"
 """The type of a free end."""
 
+DIFFERENT = 0.01
+"""Relative difference of a value that is given and that of the results from which it is told."""
+
 
 @dataclass(frozen=True)
 class Gauge:
@@ -39,7 +42,7 @@ class Gauge:
     time, stress : (k,) s and Pa, or the unit measured, tension positive; position : from the loaded end, m; length :
     the bar's, m; density : kg/m³, or None; metadata : data of the bar from a record, None for a text file; unit : Pa,
     V, strain, or empty if unknown; modulus : E in Pa of strains, None for ρc²; noise : of a measured signal; notes :
-    what was done to it.
+    what was done to it; recorded : (k,) a measured signal before that, in any unit.
     """
 
     time: np.ndarray
@@ -52,6 +55,7 @@ class Gauge:
     modulus: float | None = None
     noise: Noise | None = None
     notes: tuple[str, ...] = ()
+    recorded: np.ndarray | None = None
 
     def in_pascals(self, speed: float) -> "Gauge":
         """The gauge with stresses in Pa: strains times E, by default ρc² with c = speed, m/s.
@@ -106,6 +110,12 @@ def read_gauge(
         signal, known = read_signal(path, reading), GaugeMetadata()
         if monitor is not None:
             raise CaseError([f"--monitor: is for results of a run, {path} is a text file"])
+    options = (("--position", position, "m"), ("--length", length, "m"), ("--density", density, "kg/m³"))
+    replaced = tuple(
+        f"{name}: {given:.5g} {unit} given, results have {there:.5g}"
+        for (name, given, unit), there in zip(options, known[:3], strict=True)
+        if differs(given, there)
+    )
     place, long, dense = (
         recorded if given is None else given
         for given, recorded in zip((position, length, density), known[:3], strict=True)
@@ -121,13 +131,20 @@ def read_gauge(
         raise CaseError(problems)
     assert place is not None
     assert long is not None
-    noise = None
+    noise, as_recorded = None, None
     if not is_record(path):
+        as_recorded = signal.values
         signal, noise = treated(signal, treatment)
     elif treatment is not None:
         signal, _ = treated(signal, replace(treatment, baseline=False))
     known_bar = (place, long, dense, known.metadata)
-    return Gauge(signal.time, signal.values, *known_bar, signal.unit, modulus, noise, signal.notes)
+    notes = (*signal.notes, *replaced)
+    return Gauge(signal.time, signal.values, *known_bar, signal.unit, modulus, noise, notes, as_recorded)
+
+
+def differs(given: float | None, recorded: float | None) -> bool:
+    """Whether a value that is given replaces another one of the results."""
+    return given is not None and recorded is not None and abs(given - recorded) > DIFFERENT * abs(recorded)
 
 
 def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:

@@ -10,12 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.gauge.estimates import Estimate, attenuation, tension_peaks, wave_speed
+from dembound.gauge.estimates import Estimate, attenuation, rise, tension_peaks, wave_speed
 from dembound.gauge.matching import matched
 from dembound.gauge.peaks import Peaks, positive_peaks, white_noise
 
 ENDED = 0.05
 """Share of the largest value below which a pulse has ended between two passages."""
+
+RISEN, FREE_OF_WAVES = 0.2, 0.1
+"""Share of its crest at which a front has come, and part of the way back in which the signal is quiet before it."""
 
 STRONG = 10.0
 """Least height of a passage in standard deviations of noise: a lower one is found where noise makes it too high."""
@@ -87,6 +90,30 @@ def first_return(time: np.ndarray, stress: np.ndarray, position: float, length: 
     if not between > 0.0:
         return None
     return Estimate(way / between, way / between * share * np.sqrt(2.0) * float(time[1] - time[0]) / between, 2)
+
+
+def speed_of_fronts(time: np.ndarray, stress: np.ndarray, position: float, length: float) -> float | None:
+    """Wave speed, m/s, from when the first compression and its reflection have risen to a fifth of their crests.
+
+    A spall changes the reflection behind its front. None without a reflection of a fifth of the compression, or where
+    the signal is not quiet before it for a tenth of the way back.
+
+    time, stress : (k,) s and any unit; position, length : m.
+    """
+    if not stress.max() > RISEN * -stress.min():
+        return None
+    out, back = (_front(time, values) for values in (-stress, stress))
+    if out is None or back is None or not back > out:
+        return None
+    before = (time < back) & (time > back - FREE_OF_WAVES * (back - out))
+    quiet = float(np.abs(stress[before]).max(initial=0.0)) <= RISEN * -float(stress.min())
+    return 2.0 * (length - position) / (back - out) if quiet else None
+
+
+def _front(time: np.ndarray, values: np.ndarray) -> float | None:
+    """Time at which a history (k,) rises above a fifth of its largest value before it first has half of that."""
+    below = np.flatnonzero(values[: rise(values)[1]] < RISEN * values.max())
+    return float(time[below[-1]]) if len(below) else None
 
 
 def _some(peaks: Peaks, chosen: np.ndarray) -> Peaks:

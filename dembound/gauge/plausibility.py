@@ -48,6 +48,12 @@ NOISY = 0.015
 TIED = 2.0
 """Ratio of E and ρc² up to which both may be of one bar: measured ones differ by some per cent."""
 
+APART = 0.05
+"""Relative difference of E and ρc² from which a warning is due: it is in all stresses."""
+
+LARGEST_STRAIN = 0.05
+"""Strain that no bar of a test has: those of steel yield at 1 %."""
+
 UNCERTAIN_SPEED, UNCERTAIN_DECAY = 0.01, 0.2
 """Relative standard errors of wave speed and attenuation from which a warning is due."""
 
@@ -82,6 +88,15 @@ def implausible_modulus(modulus: float | None, density: float | None, speed: flo
         says += f"must be within a factor of {TIED:g} of ρc², {density * speed**2:.4g} Pa"
     units = [slip for slip in MEANINGS["modulus"].slips if least <= slip.mend(modulus) / speed**2 <= most]
     yield says + "".join(f"; likely {slip.what}: write {slip.mend(modulus):.4g}" for slip in units)
+
+
+def differing_modulus(modulus: float | None, density: float | None, speed: float) -> Iterator[str]:
+    """Message about a modulus E, Pa, that is some way from ρc²; density : ρ, kg/m³, None if unknown; speed : c, m/s."""
+    if modulus is not None and density is not None and abs(apart := modulus / (density * speed**2) - 1.0) > APART:
+        yield (
+            f"--youngs-modulus: is {modulus:.4g} Pa, {'+' * (apart > 0.0)}{percent(apart)} from ρc², "
+            f"{density * speed**2:.4g} Pa, and so are all stresses of strains: check it, --density and --wave-speed"
+        )
 
 
 def implausible_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> Iterator[str]:

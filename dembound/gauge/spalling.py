@@ -38,6 +38,7 @@ from dembound.gauge.plausibility import (
     uncertain_speed,
     unlikely_speed,
 )
+from dembound.gauge.strength_checks import doubts_of_signals, doubts_of_strengths
 from dembound.gauge.uncertainty import with_errors
 
 AGREEMENT = 0.05
@@ -93,11 +94,13 @@ def evaluate(
     found = _estimated(gauge, given)
     if free_end is not None:
         found = replace(found, pull_back=_pull_back(gauge, found.speed.value, free_end))
+    doubts = tuple(doubts_of_strengths(gauge, found, free_end))
     if gauge.metadata is not None:
-        return found
+        return replace(found, warnings=doubts)
+    doubts = (*doubts, *doubts_of_signals(gauge, found, free_end))
     same = given if found.peaks is None else given._replace(first=len(found.peaks.time))
     found = with_errors(found, [] if gauge.noise is None else list(_replicates(gauge, gauge.noise, same)))
-    return replace(found, warnings=tuple(_doubts(gauge, found)))
+    return replace(found, warnings=(*_doubts(gauge, found), *doubts))
 
 
 def _estimated(gauge: Gauge, given: Given) -> Findings:

@@ -48,9 +48,10 @@ def test_a_strong_pulse_gives_the_strength(record, tmp_path):
     gauge = replace(record.gauge(tmp_path / "strong.txt", 200e-6), unit="Pa")
     found = evaluate(gauge, spall=SPALL, speed=SPEED, coefficient=DECAY)
     strength = found.strength.nominal
-    if found.warnings:  # noise of 3 % raises a largest value: it is told, and how much
-        assert record.name == "noise of 3 %"
-        assert "% of the wave and makes the strength too large" in found.warnings[0]
+    # a crest of 1 Pa is no strength
+    if warnings := [said for said in found.warnings if "Pa, where soils, rocks and metals have" not in said]:
+        assert record.name == "noise of 3 %"  # it raises a largest value: that is told, and how much
+        assert "% of the wave and makes the strength too large" in warnings[0]
     else:
         assert strength == pytest.approx(exact_nominal(), rel=0.03)
 
@@ -102,7 +103,7 @@ def soft(time: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.tanh(0.8 * values) / 0.8
 
 
-@pytest.mark.parametrize(("change", "level"), [(lost, 0.0), (another_impact, 0.005), (soft, 0.0)], ids=str)
+@pytest.mark.parametrize(("change", "level"), [(lost, 0.0), (another_impact, 0.005), (soft, 0.0)], ids=list("abc"))
 def test_what_one_pulse_to_and_fro_does_not_explain_is_told(change, level, tmp_path):
     """And the error then holds the truth: without this it was 3 to 5 errors away, as the line through the peaks bends.
 

@@ -14,6 +14,8 @@ from dembound.gauge.hopkinson.pulses import Faces, Setup, Signals, Windows, foun
 from dembound.gauge.hopkinson.slope_error import unbalanced
 from dembound.gauge.hopkinson.specimen import Specimen
 from dembound.gauge.peaks import denoised, white_noise
+from dembound.gauge.plausibility import differing_modulus
+from dembound.meanings import fading
 from dembound.words import percent
 
 BALANCED = 0.015
@@ -57,6 +59,13 @@ def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate |
         return None
     speed = 2.0 * setup.incident_gauge / delay
     return Estimate(speed, speed * error / delay, 2)
+
+
+def doubts_of_bars(setup: Setup, density: float) -> Iterator[str]:
+    """What is doubtful about the bars, of this density, kg/m³: a modulus that is not ρc², nothing left of a wave."""
+    yield from differing_modulus(setup.modulus, density, setup.bar.speed)
+    way = setup.incident_gauge + setup.transmitted_gauge
+    yield from fading("--attenuation", setup.bar.attenuation * way, way)
 
 
 def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Windows, found: Specimen) -> Iterator[str]:

@@ -16,6 +16,7 @@ from dembound.errors import CaseError
 from dembound.gauge.hopkinson.separation import Bar, moved, separated
 from dembound.gauge.peaks import CREST, noise_left, smooth, white_noise, width_of
 from dembound.gauge.plausibility import implausible_modulus, implausible_size
+from dembound.words import percent
 
 ONSET = 0.02
 """Share of its largest value at which the incident pulse begins; with noise five standard deviations of it."""
@@ -236,11 +237,25 @@ def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Windo
     if not (min(starts) >= time[0] and length > 3.0 * (time[1] - time[0])):
         raise CaseError([f"--incident-window: {_outside(time, starts)}"])
     end = begin + length
-    largest = float(np.abs(signals.incident).max())
-    if signals.second is None and abs(np.interp(end, time, signals.incident)) > ENDED * largest:
-        said = f"the incident pulse has not ended at {end:.6g} s, when its reflection is back or the window ends"
-        raise CaseError([f"--second-gauge: is needed, {said}; or give --incident-window"])
+    left = float(np.interp(end, time, signals.incident)) / float(np.abs(signals.incident).max())
+    if signals.second is None and abs(left) > ENDED:
+        raise CaseError([_not_ended(end, left)])
     return (begin, end), (starts[1], starts[1] + length), (starts[2], starts[2] + length)
+
+
+def _not_ended(end: float, left: float) -> str:
+    """Why the incident signal still has this share of its crest at its end, s: a fault if it has the other sign."""
+    there = f"at {end:.6g} s, when its reflection is back or the window ends"
+    faults = "AC coupling, a baseline that jumps or drifts, lost samples, or a wrong --wave-speed"
+    if left < 0.0:
+        return (
+            f"INCIDENT: the incident pulse has {percent(left)} of its crest {there}, the other sign: look for "
+            f"{faults}; or give --incident-window"
+        )
+    return (
+        f"--second-gauge: is needed, the incident pulse has not ended {there} ({percent(left)} of its crest); or "
+        f"give --incident-window; or look for {faults}"
+    )
 
 
 def _outside(time: np.ndarray, starts: Sequence[float]) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.gauge.hopkinson.pulses import Signals
 from dembound.gauge.noise import undithered
-from dembound.gauge.plausibility import implausible_signal
+from dembound.gauge.plausibility import LARGEST_STRAIN, implausible_signal
 from dembound.gauge.reading.recorded import is_record
 from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.gauge.treatment import Treatment, treated
@@ -17,9 +17,6 @@ from dembound.words import percent
 
 RISEN = 0.2
 """Share of the largest value at which the sign of the incident pulse, the first wave at its gauge, is seen."""
-
-LARGEST_STRAIN = 0.05
-"""Strain that no bar of a test has: those of steel yield at 1 %."""
 
 
 def read_strain(

@@ -21,7 +21,8 @@ class BarMetadata:
 
     speed : of waves, m/s; attenuation : 1/m; ends : types of the loaded end and of the other end; broken : time at
     which the first bond broke, s, infinite for an unbroken bar; strength : that of the case at the slowest and at the
-    fastest strain rate, Pa, infinite for an unbreakable bar; None if the record does not have it.
+    fastest strain rate, Pa, infinite for an unbreakable bar; first_crack : place of that bond, m from the loaded end.
+    Both are None if the record does not have them.
     """
 
     speed: float
@@ -29,6 +30,7 @@ class BarMetadata:
     ends: tuple[str, str]
     broken: float
     strength: tuple[float, float] | None = None
+    first_crack: float | None = None
 
 
 class GaugeMetadata(NamedTuple):
@@ -90,7 +92,15 @@ def bar_metadata(file: h5py.File) -> BarMetadata | None:
         ends=(left, right) if loaded_end(file) == "left" else (right, left),
         broken=float(np.min(file["cracks/time"][:], initial=np.inf)),
         strength=tuple(file.attrs["strength"].tolist()) if "strength" in file.attrs else None,
+        first_crack=_first_crack(file),
     )
+
+
+def _first_crack(file: h5py.File) -> float | None:
+    """Place of the first crack of a recorded bar, m from the loaded end; None for an unbroken one or without places."""
+    times = file["cracks/time"][:]
+    known = len(times) and "position" in file["cracks"]
+    return _measured(file, file["cracks/position"][int(times.argmin())]) if known else None
 
 
 def bar_length(file: h5py.File) -> float:
@@ -109,7 +119,12 @@ def loaded_end(file: h5py.File) -> str:
 
 def _from_loaded_end(file: h5py.File, group: h5py.Group) -> float:
     """Distance of a recorded monitor from the loaded end, m."""
-    x = float(np.ravel(group.attrs["position"])[0])
+    return _measured(file, group.attrs["position"])
+
+
+def _measured(file: h5py.File, position: np.ndarray) -> float:
+    """A position, whose first component is along the bar, as the distance from the loaded end, m."""
+    x = float(np.ravel(position)[0])
     return x if loaded_end(file) == "left" else bar_length(file) - x
 
 

@@ -19,6 +19,11 @@ SIGNS = str.maketrans({"−": "-", "∞": "inf"})
 UNIT_IN_NAME = re.compile(r"^(.*?)\s*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
 """A name with its unit in brackets, or a unit in brackets alone."""
 
+UNIT = r"[(\[][^()\[\]]+[)\]]"
+WORD_WITH_UNIT = re.compile(rf"[^\s()\[\]]+(?: ?{UNIT})?")
+WORDS_WITH_UNIT = re.compile(rf"[^()\[\]]*[^\s()\[\]] ?{UNIT}")
+"""Names between blanks: of one word, with a unit in brackets or without, and of several words, all with units."""
+
 BROKEN_OFF = 3
 """Lines of numbers above other text from which on this text is a break in the numbers, and no header."""
 
@@ -60,6 +65,13 @@ class Columns:
             words = fields[0].lower().replace(" ", "").rstrip(":")
             if len(fields) > 1 and words in {f"{name}{unit}" for name in axis for unit in ("unit", "units")}:
                 yield fields[1]
+
+    def bracketed(self, column: int) -> str | None:
+        """The text in brackets in the name of a column, or below it, the last one; None without any."""
+        for fields in reversed(self.header):
+            if self.places[column] < len(fields) and (found := UNIT_IN_NAME.match(fields[self.places[column]])):
+                return found[2]
+        return None
 
     def find(self, option: str, wanted: str) -> int:
         """The index of a column by its number, from 1, or name; raises CaseError if there is none or two."""
@@ -159,14 +171,24 @@ def _numbers(path: Path, rows: Sequence[tuple[int, list[str]]], separator: str) 
     if sum(_is_like(fields, places, decimal) for _, fields in rows[:first]) >= BROKEN_OFF:
         raise CaseError([f'"{path}": line {rows[first - 1][0]} is no line of numbers like those around it'])
     left = [fields[: places[0]] for _, fields in rows[first:] if any(fields[: places[0]])]
+    above = [_joined(fields, len(rows[last][1])) if separator == " " else fields for _, fields in rows[:first]]
     return Columns(
         path=path,
-        header=left or [fields for _, fields in rows[:first]],
+        header=left or above,
         lines=[fields for _, fields in rows[first:]],
         numbers=[number for number, _ in rows[first:]],
         places=places,
         decimal=decimal,
     )
+
+
+def _joined(fields: list[str], count: int) -> list[str]:
+    """Words between blanks as so many names of columns, where units in brackets end them; else as they are."""
+    line = " ".join(fields)
+    for names in (WORD_WITH_UNIT, WORDS_WITH_UNIT):
+        if len(found := names.findall(line)) == count:
+            return found
+    return fields
 
 
 def _places(fields: Sequence[str]) -> list[int]:

@@ -107,8 +107,11 @@ def _two_commas(columns: Columns) -> str:
 
 
 def _unit_of_time(columns: Columns, column: int) -> float:
-    """Size in s of the unit of times in the header; 1 by default."""
-    return next((size for size in map(time_unit, columns.units(column)) if size is not None), 1.0)
+    """Size in s of the unit of times in the header, which must be one that is known; 1 by default."""
+    found = next((size for size in map(time_unit, columns.units(column)) if size is not None), None)
+    if found is None and (text := columns.bracketed(column)):
+        raise CaseError([f"{columns.path}: the header has times in {text}, must be s, ms, µs or ns; or --time-unit"])
+    return found or 1.0
 
 
 def _unit_of_values(columns: Columns, column: int, usual: str) -> Unit:
@@ -117,6 +120,10 @@ def _unit_of_values(columns: Columns, column: int, usual: str) -> Unit:
         if unit is not None:
             return unit
     name = columns.names[column].lower()
+    if text := columns.bracketed(column):
+        if usual == "m/s":
+            raise CaseError([f"{columns.path}: the header has values in {text}, must be m/s, cm/s, mm/s or km/s"])
+        return AS_THEY_ARE
     assumed = not any(columns.names) or (usual == "Pa" and "stress" in name) or (usual == "m/s" and "velocity" in name)
     return Unit(usual, usual, 1.0) if assumed else AS_THEY_ARE
 

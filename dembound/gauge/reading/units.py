@@ -47,7 +47,7 @@ VALUES = {
             **dict.fromkeys((f"{micro}{name}" for micro in MICRO for name in ("ε", "m/m", "strain")), 1e-6),
             **dict.fromkeys(("ue", "microstrain"), 1e-6),
         },
-        "m/s": {"m/s": 1.0, "mm/s": 1e-3, "km/s": 1e3},
+        "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/s": 1e3},
     }.items()
     for unit, size in units.items()
 }

@@ -89,7 +89,10 @@ def test_options_without_meaning_are_bad_input(dembound, tmp_path) -> None:
         assert told.startswith(said)
     # as wide as the bars it may be, and E be measured
     options = ("--specimen-diameter", 0.02, "--youngs-modulus", 205e9)
-    assert dembound("hopkinson", "incident.csv", "transmitted.csv", *TEST, *options).code == 0
+    told = dembound("hopkinson", "incident.csv", "transmitted.csv", *TEST, *options, "--attenuation", 3)
+    assert told.code == 0
+    assert "warning: --youngs-modulus: is 2.05e+11 Pa, +5.1 % from ρc², 1.95e+11 Pa, and so are" in told.err
+    assert "warning: --attenuation: leaves 0.45 % of a wave along the bar of 1.8 m" in told.err
 
 
 def test_a_gauge_refuses_other_units_of_the_bar(dembound, tmp_path) -> None:

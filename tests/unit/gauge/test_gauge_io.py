@@ -54,6 +54,9 @@ def test_a_record_knows_its_bar_unless_told_otherwise(record, felt):
     assert (gauge.position, gauge.length, gauge.density) == (0.6, 0.99, 2620.0)
     moved = read_gauge(record, "near", position=0.5, length=1.0, density=2000.0)
     assert (moved.position, moved.length, moved.density) == (0.5, 1.0, 2000.0)
+    assert moved.notes[-1] == "--density: 2000 kg/m³ given, results have 2620"
+    assert len(moved.notes) - len(gauge.notes) == 3
+    assert read_gauge(record, "near", position=0.604).notes == gauge.notes
     with pytest.raises(CaseError, match="--monitor: is not named, must be one of far, near"):
         read_gauge(record)
     with pytest.raises(CaseError, match="--monitor: is end, must be between the bar's ends, which is far or near"):
@@ -176,7 +179,9 @@ def test_a_record_tells_of_its_bar(record, loaded):
     with h5py.File(record, "r+") as file:
         del file["cracks/time"]
         file["cracks/time"] = [4e-4, 3e-4, 5e-4]
-    assert read_gauge(record, "near").metadata.broken == 3e-4
+        file["cracks/position"] = [[0.1, 0.0], [0.2, 0.0], [0.3, 0.0]]
+    known = read_gauge(record, "near").metadata
+    assert (known.broken, known.first_crack) == (3e-4, pytest.approx(0.2 if loaded == "left" else 0.79, rel=1e-12))
 
 
 def test_places_and_velocities_count_from_the_loaded_end(record, felt):
