@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from dembound.gauge.hopkinson.pulses import Setup, Signals
-from dembound.gauge.hopkinson.separation import Bar
+from dembound.gauge.hopkinson.separation import LongBar
 
 SPEED, DENSITY, AREA = 5000.0, 7800.0, np.pi * 0.01**2
 MODULUS = DENSITY * SPEED**2
@@ -14,7 +14,7 @@ SPECIMEN_SPEED, SPECIMEN_DENSITY = 2500.0, 2000.0
 SPECIMEN_MODULUS = SPECIMEN_DENSITY * SPECIMEN_SPEED**2
 """12.5 GPa, as of a weak rock."""
 
-SETUP = Setup(Bar(SPEED), MODULUS, AREA, 1.0, 0.8, LENGTH, SPECIMEN_AREA)
+SETUP = Setup(LongBar(SPEED), MODULUS, AREA, 1.0, 0.8, LENGTH, SPECIMEN_AREA)
 STEP = 0.2e-6
 
 

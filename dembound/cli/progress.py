@@ -25,7 +25,7 @@ def progress_of(name: str) -> Iterator[Progress]:
         TimeRemainingColumn(),
     )
     with RichProgress(*columns, console=err, transient=True) as bar:
-        yield Bar(bar, name)
+        yield ProgressBar(bar, name)
 
 
 def print_warning(name: str, message: str) -> None:
@@ -76,7 +76,7 @@ class Lines(Progress):
             )
 
 
-class Bar(Progress):
+class ProgressBar(Progress):
     """A run's progress as a bar, with rate and time left."""
 
     def __init__(self, bar: RichProgress, name: str) -> None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.gauge.estimates import Estimate
-from dembound.gauge.passages import Part
+from dembound.gauge.passages import PartialFit
 from dembound.gauge.peaks import Peaks
 
 
@@ -56,6 +56,6 @@ class Findings:
     attenuation: Estimate | None
     strength: Strength | None
     pull_back: float | None
-    parts: tuple[Part, ...] = ()
+    parts: tuple[PartialFit, ...] = ()
     misfits: tuple[Misfit, ...] = ()
     warnings: tuple[str, ...] = ()

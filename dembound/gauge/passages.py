@@ -24,7 +24,7 @@ STRONG = 10.0
 """Least height of a passage in standard deviations of noise: a lower one is found where noise makes it too high."""
 
 
-class Part(NamedTuple):
+class PartialFit(NamedTuple):
     """What a part of the passages gives: its name, wave speed in m/s and attenuation in 1/m, nan where it has none."""
 
     name: str
@@ -32,7 +32,9 @@ class Part(NamedTuple):
     decay: float
 
 
-def parts(time: np.ndarray, stress: np.ndarray, bar: tuple[float, float], peaks: Peaks, speed: float) -> list[Part]:
+def parts(
+    time: np.ndarray, stress: np.ndarray, bar: tuple[float, float], peaks: Peaks, speed: float
+) -> list[PartialFit]:
     """Estimates from parts of the passages.
 
     Parameters
@@ -47,7 +49,7 @@ def parts(time: np.ndarray, stress: np.ndarray, bar: tuple[float, float], peaks:
         lines["the returns behind the first"] = _some(peaks, (peaks.height > least) & (peaks.time > peaks.time[0]))
     first = first_passages(time, stress)
     way = 2.0 * (length - position)
-    found = [Part("the first passages", np.nan, float(-np.diff(np.log(first.height))[0]) / way)] if first else []
+    found = [PartialFit("the first passages", np.nan, float(-np.diff(np.log(first.height))[0]) / way)] if first else []
     out = tension_peaks(time, -stress, len(peaks.time) + 1)
     if first is not None and len(out.time) > 1 and _ends_between(time, stress, first.time[1], out.time[1]):
         passed = matched(time, -stress, out)
@@ -56,7 +58,7 @@ def parts(time: np.ndarray, stress: np.ndarray, bar: tuple[float, float], peaks:
         if len(some.time) < 2:
             continue
         passing = wave_speed(some.time, length, some.height).value
-        found.append(Part(name, passing, attenuation(*some, speed).value))
+        found.append(PartialFit(name, passing, attenuation(*some, speed).value))
     return found
 
 

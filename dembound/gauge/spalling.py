@@ -23,7 +23,7 @@ from dembound.gauge.findings import Findings, Strength
 from dembound.gauge.gauge_io import FREE, Gauge, not_above_zero, not_on_bar
 from dembound.gauge.matching import matched
 from dembound.gauge.noise import Noise
-from dembound.gauge.passages import Part, first_return, parts
+from dembound.gauge.passages import PartialFit, first_return, parts
 from dembound.gauge.peaks import Peaks, width_of
 from dembound.gauge.plausibility import (
     FAR,
@@ -106,7 +106,7 @@ def evaluate(
 def _estimated(gauge: Gauge, given: Given) -> Findings:
     """All estimates from one signal."""
     peaks, speed, decay = _waves(gauge, given.speed, given.coefficient, given.first)
-    found: list[Part] = []
+    found: list[PartialFit] = []
     if gauge.metadata is None and peaks is not None and len(peaks.time) > 1:
         found = parts(gauge.time, gauge.stress, (gauge.position, gauge.length), peaks, speed.value)
     strength = None

@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.gauge.estimates import FEWEST, Estimate
 from dembound.gauge.findings import Findings, Misfit
-from dembound.gauge.passages import Part
+from dembound.gauge.passages import PartialFit
 
 SURE = 4.0
 """Difference of a part of the passages from all returns, in its standard errors by noise, that contradicts them."""
@@ -40,7 +40,7 @@ def _estimated(
     found: Findings,
     others: Sequence[Findings],
     whole: Callable[[Findings], Estimate | None],
-    partial: Callable[[Part], float],
+    partial: Callable[[PartialFit], float],
 ) -> tuple[Estimate | None, Misfit | None]:
     """An estimate with its error, and the part that contradicts it most, if one does.
 

@@ -37,7 +37,7 @@ SEARCHED = 1e-9
 
 
 @dataclass(frozen=True)
-class PlaneWave:
+class ElasticPlaneWave:
     """The displacement motion · g(t − delay − slowness·x), with g the displacement of a wave of the case.
 
     Attributes
@@ -53,7 +53,7 @@ class PlaneWave:
         """Delays (k,) s at places (k, 2) m."""
         return self.delay + places @ np.array(self.slowness)
 
-    def shifted(self, by: float) -> PlaneWave:
+    def shifted(self, by: float) -> ElasticPlaneWave:
         """The wave, later by a time, s."""
         return replace(self, delay=self.delay + by)
 
@@ -73,7 +73,7 @@ def traction_of(medium: Medium, sx: float, sy: float) -> np.ndarray:
     return (medium.matrix @ strain_of(sx, sy))[[2, 1]]
 
 
-def incident_wave(medium: Medium, kind: WaveKind, angle: float) -> PlaneWave:
+def incident_wave(medium: Medium, kind: WaveKind, angle: float) -> ElasticPlaneWave:
     """The wave of unit amplitude whose normal is at an angle (degrees) from the vertical, to the right if positive.
 
     "p" moves along its normal, forwards if positive, "sv" across it, to the right where it runs straight up. In media
@@ -84,7 +84,7 @@ def incident_wave(medium: Medium, kind: WaveKind, angle: float) -> PlaneWave:
     number = {"sv": 0, "p": 1}[kind]
     motion = polarisations[:, number]
     motion = motion * np.copysign(1.0, motion @ ((x, y) if kind == "p" else (y, -x)))
-    return PlaneWave(_pair(np.array([x, y]) / speeds[number]), _pair(motion))
+    return ElasticPlaneWave(_pair(np.array([x, y]) / speeds[number]), _pair(motion))
 
 
 def vertical_slownesses(medium: Medium, sx: float) -> np.ndarray:
@@ -99,7 +99,7 @@ def vertical_slownesses(medium: Medium, sx: float) -> np.ndarray:
     return scale * np.roots(determinant)
 
 
-def downgoing(medium: Medium, sx: float) -> list[PlaneWave] | None:
+def downgoing(medium: Medium, sx: float) -> list[ElasticPlaneWave] | None:
     """The two waves with a horizontal slowness (s/m) whose energy runs down, of unit amplitude, the slower one first.
 
     None if one of them is evanescent.
@@ -113,13 +113,15 @@ def downgoing(medium: Medium, sx: float) -> list[PlaneWave] | None:
     for sy in roots.real:
         strain = strain_of(sx, sy)
         polarisation = np.linalg.svd(strain.T @ medium.matrix @ strain - medium.density * np.eye(2))[2][-1].real
-        wave = PlaneWave((sx, float(sy)), _pair(polarisation))
+        wave = ElasticPlaneWave((sx, float(sy)), _pair(polarisation))
         if wave.flux(medium)[1] < 0.0:
             waves.append(wave)
     return sorted(waves, key=lambda wave: -np.hypot(*wave.slowness)) if len(waves) == 2 else None
 
 
-def reflected_waves(medium: Medium, incident: PlaneWave, surface: float, mass: float = 0.0) -> list[PlaneWave] | None:
+def reflected_waves(
+    medium: Medium, incident: ElasticPlaneWave, surface: float, mass: float = 0.0
+) -> list[ElasticPlaneWave] | None:
     """The waves that a free surface y = `surface` (m) sends back; None beyond the critical angle.
 
     That is also where the energy of the incident wave runs down, as that of flat P waves in anisotropic media may.
@@ -147,7 +149,7 @@ def reflected_waves(medium: Medium, incident: PlaneWave, surface: float, mass: f
             pairs = [(0.5 * amplitude + change / apart, -0.5 * apart), (0.5 * amplitude - change / apart, 0.5 * apart)]
         for factor, shift in pairs:
             if abs(factor) > NO_WAVE:
-                found.append(PlaneWave(wave.slowness, _pair(factor * moved), at_once + shift))
+                found.append(ElasticPlaneWave(wave.slowness, _pair(factor * moved), at_once + shift))
     return found
 
 

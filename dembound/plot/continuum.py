@@ -33,7 +33,7 @@ AROUND = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
 
 
 @dataclass(frozen=True)
-class Continuum:
+class ContinuumCells:
     """A continuum before the motion, of m nodes in e elements with c cells each.
 
     nodes (e, c, 4) and corners (e, c, 4, 2) m of the cells between its nodes, counterclockwise; elements (e, 4) m,
@@ -59,7 +59,7 @@ class Continuum:
         return self if displacements is None else replace(self, corners=self.corners + displacements[self.nodes])
 
 
-def read_continuum(file: h5py.File) -> Continuum | None:
+def read_continuum(file: h5py.File) -> ContinuumCells | None:
     """The continuum of an open record, None without one."""
     if GROUP not in file:
         return None
@@ -72,7 +72,7 @@ def read_continuum(file: h5py.File) -> Continuum | None:
     size = elements[:, 2:] - elements[:, :2]
     whole = elements[:, 2:].max(axis=0) - elements[:, :2].min(axis=0)
     corners += whole * (corners < first - 1e-6 * size[:, None, None])  # a periodic one ends at its first nodes
-    return Continuum(nodes, corners, elements, absorbs[node].any(axis=(1, 2)), surface, ties)
+    return ContinuumCells(nodes, corners, elements, absorbs[node].any(axis=(1, 2)), surface, ties)
 
 
 def is_scattered(file: h5py.File) -> bool:
@@ -82,7 +82,7 @@ def is_scattered(file: h5py.File) -> bool:
 
 def draw_continuum(
     axes: Axes,
-    continuum: Continuum,
+    continuum: ContinuumCells,
     disks: Sequence[Window],
     values: np.ndarray | None,
     limits: tuple[float, float],
@@ -113,7 +113,7 @@ def draw_continuum(
 
 
 def _draw_field(
-    axes: Axes, continuum: Continuum, values: np.ndarray, limits: tuple[float, float], element: float
+    axes: Axes, continuum: ContinuumCells, values: np.ndarray, limits: tuple[float, float], element: float
 ) -> None:
     """A field (m,) between the nodes, or its means over elements where cells are small; element : pixels of a side."""
     at_corners = values[continuum.nodes]

@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.holes import Hole
-from dembound.plot.continuum import GROUP, Continuum, is_scattered, read_continuum
+from dembound.plot.continuum import GROUP, ContinuumCells, is_scattered, read_continuum
 from dembound.plot.disks import Window
 from dembound.plot.outlines import read_holes
 from dembound.results.histories import FREE_FIELD, UNITS
@@ -57,7 +57,7 @@ class Disks:
     case: str
     laws: str
     column: int = 0
-    continuum: Continuum | None = None
+    continuum: ContinuumCells | None = None
     holes: tuple[Hole, ...] = ()
 
     @cached_property

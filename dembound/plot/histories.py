@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from dembound.errors import CaseError
 from dembound.plot.style import line_style, measured_once, new_figure, outside_legend, stacked_height, styled, time_unit
 from dembound.results.estimates import Band, read_bands
-from dembound.results.histories import FREE_FIELD, SCALES, UNITS, History, Quantity, read_histories
+from dembound.results.histories import FREE_FIELD, SCALES, UNITS, MonitorRecord, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 
 Component = Literal["x", "y", "both", "rotation"]
 
-Histories = dict[str, History]
+Histories = dict[str, MonitorRecord]
 """The histories of one run by monitor."""
 
 SENSES = {"stress": ", tension positive"}
@@ -126,7 +126,7 @@ def twin_of(monitor: str) -> str:
     return f"{monitor}{FREE_FIELD}"
 
 
-def monitor_title(monitor: str, histories: Sequence[History]) -> str:
+def monitor_title(monitor: str, histories: Sequence[MonitorRecord]) -> str:
     """Name of the monitor, position of its particle in each run, and the given position if it differs."""
     places, wanted = (list(dict.fromkeys(getattr(each, what) for each in histories)) for what in ("place", "wanted"))
     asked = "" if places == wanted else f", wanted {_in_words(wanted)}"

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from dembound.plot.histories import chosen_monitors, direction, largest_values, monitor_title
 from dembound.plot.style import Powers, line_style, measured_once, new_figure, outside_legend, stacked_height, styled
-from dembound.results.histories import History, read_histories
+from dembound.results.histories import MonitorRecord, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 from dembound.waves.spectrum import FADED, amplitude_spectrum
 
@@ -63,7 +63,7 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
     return figure
 
 
-def spectrum_of(history: History, column: int) -> tuple[np.ndarray, np.ndarray]:
+def spectrum_of(history: MonitorRecord, column: int) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (m,), Hz, and amplitudes (m,), m/s per Hz, of a component of a velocity.
 
     The last sample of a run may be nearer to the one before than all others are, so samples are interpolated at the

@@ -21,7 +21,7 @@ from dembound.plot.histories import (
     twin_of,
 )
 from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, styled
-from dembound.results.histories import UNITS, History, Quantity, read_histories
+from dembound.results.histories import UNITS, MonitorRecord, Quantity, read_histories
 from dembound.results.reader import record_names
 from dembound.spectra.fourier import fourier_spectrum, shown_frequencies, smoothed
 from dembound.spectra.response import response_spectrum, usual_periods
@@ -239,7 +239,7 @@ def _along(quantity: Quantity, column: int) -> str:
     return "" if quantity == "stress" else f" {direction(column)}"
 
 
-def _time_step(name: str, history: History) -> float:
+def _time_step(name: str, history: MonitorRecord) -> float:
     """Time (s) between two samples of a history; raises CaseError for too few of them."""
     if len(history.time) < FEWEST:
         raise CaseError([f"monitor {name}: has {len(history.time)} samples, a spectrum needs at least {FEWEST}"])

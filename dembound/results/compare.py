@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.results.histories import FREE_FIELD, UNITS, History, Quantity, read_histories
+from dembound.results.histories import FREE_FIELD, UNITS, MonitorRecord, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 from dembound.results.resample import at_times
 
@@ -70,7 +70,9 @@ def _with_one_twin(lines: list[Difference]) -> list[Difference]:
     return [line for line in lines if line not in twins] + [replace(worst, monitor=name)]
 
 
-def _difference(run: str, monitor: str, history: History, reference: History, quantity: Quantity) -> Difference:
+def _difference(
+    run: str, monitor: str, history: MonitorRecord, reference: MonitorRecord, quantity: Quantity
+) -> Difference:
     """One monitor's difference."""
     if len(history.time) == 0 or len(reference.time) == 0:
         raise CaseError([f"monitor {monitor}: has no samples, as a run was stopped at its start"])

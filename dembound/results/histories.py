@@ -33,7 +33,7 @@ SOURCES = {"acceleration": "velocity"}
 
 
 @dataclass(frozen=True)
-class History:
+class MonitorRecord:
     """The record of one monitor in one run.
 
     time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); position (2,) m of its particle;
@@ -47,7 +47,7 @@ class History:
     wanted: str
 
 
-def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
+def read_histories(path: Path, quantity: Quantity) -> dict[str, MonitorRecord]:
     """The histories of a run by monitor name; empty for a run without monitors.
 
     Accelerations are central differences of the recorded velocity, one-sided ones at both ends; with
@@ -72,11 +72,11 @@ def monitor_names(path: Path) -> list[str]:
         return [name for name in file.get("histories", {}) if not name.endswith(FREE_FIELD)]
 
 
-def _read(group: h5py.Group, quantity: Quantity, size: list[float]) -> History:
+def _read(group: h5py.Group, quantity: Quantity, size: list[float]) -> MonitorRecord:
     """A monitor's history."""
     time, values = history_of(group, SOURCES.get(quantity, quantity))
     if quantity in SOURCES:
         values = np.gradient(values, time, axis=0)
     place, wanted = (place_in_words(group.attrs[name], size) for name in ("position", "wanted"))
     position = np.array(group.attrs["position"], dtype=np.float64)
-    return History(time, values.reshape(len(time), -1) / SCALES[quantity], position, place, wanted)
+    return MonitorRecord(time, values.reshape(len(time), -1) / SCALES[quantity], position, place, wanted)

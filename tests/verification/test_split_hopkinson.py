@@ -21,7 +21,7 @@ from hopkinson_bar import (
 from dembound.errors import CaseError
 from dembound.gauge.hopkinson.pulse_checks import doubts_of_pulses, travel_speed
 from dembound.gauge.hopkinson.pulses import Windows, at_faces, found_windows
-from dembound.gauge.hopkinson.separation import Bar, moved
+from dembound.gauge.hopkinson.separation import LongBar, moved
 from dembound.gauge.hopkinson.slope_error import SlopeError, doubts_of_slope, slope_error
 from dembound.gauge.hopkinson.specimen import EQUILIBRIUM, slope_of, specimen
 
@@ -197,17 +197,17 @@ def test_travel_time_gives_the_wave_speed():
 
 def test_dispersion_of_the_bars_is_taken_back():
     # signals as dispersion on the way to and from the specimen leaves them: at the faces the plain theory holds
-    bar = Bar(SPEED, 0.0, 0.01, 0.3)
+    bar = LongBar(SPEED, 0.0, 0.01, 0.3)
     plain = signals(lambda time: ramp(time, 20e-6, 250e-6))
     cut = 480e-6
     incident = np.where(plain.time < cut, plain.incident, 0.0)
     reflected = plain.incident - incident
 
     def dispersed(values, way):
-        return moved(plain.time, moved(plain.time, values, way, bar), -way, Bar(SPEED))
+        return moved(plain.time, moved(plain.time, values, way, bar), -way, LongBar(SPEED))
 
     def concentrated(values, way):
-        return moved(plain.time, moved(plain.time, values, way, Bar(SPEED)), -way, bar)
+        return moved(plain.time, moved(plain.time, values, way, LongBar(SPEED)), -way, bar)
 
     there = plain._replace(
         incident=concentrated(incident, 1.0) + dispersed(reflected, 1.0), transmitted=dispersed(plain.transmitted, 0.8)

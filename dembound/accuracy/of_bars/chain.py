@@ -27,7 +27,7 @@ RIGID = 1e12
 
 
 @dataclass(frozen=True)
-class Clock:
+class Frequencies:
     """Complex frequencies s (f,) rad/s, and their δ and μ (f,) in steps of so many s; 0 stands for exact time."""
 
     step: float
@@ -36,16 +36,16 @@ class Clock:
     mean: np.ndarray
 
     @classmethod
-    def of(cls, s: np.ndarray, step: float) -> Clock:
+    def of(cls, s: np.ndarray, step: float) -> Frequencies:
         """For steps of so many seconds; 0 stands for exact time."""
         if step == 0.0:
             return cls(step, s, s, np.ones_like(s))
         half = 0.5 * step * s
         return cls(step, s, 2.0 / step * np.sinh(half), np.cosh(half))
 
-    def part(self, chosen: slice) -> Clock:
+    def part(self, chosen: slice) -> Frequencies:
         """The clock at some of its frequencies."""
-        return Clock(self.step, self.s[chosen], self.change[chosen], self.mean[chosen])
+        return Frequencies(self.step, self.s[chosen], self.change[chosen], self.mean[chosen])
 
 
 class Chain:
@@ -105,7 +105,7 @@ class Chain:
         """Number b of nodes in a block, the length of the longest bond."""
         return self.mass.shape[1]
 
-    def matrices(self, block: int, clock: Clock) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(self, block: int, clock: Frequencies) -> tuple[np.ndarray, np.ndarray]:
         """The matrix (f, b, b) of a block with all its bonds, and that (f, b, b) of the next one's velocities in it."""
         wide, change, mean = self.wide, clock.change, clock.mean
         own = np.zeros((len(change), wide, wide), dtype=complex)
@@ -127,12 +127,12 @@ class Chain:
                     own[:, i, i] += self.stiffness(block - 1, wide + i - p, p, clock)
         return own, across
 
-    def stiffness(self, block: int, i: int, length: int, clock: Clock) -> np.ndarray:
+    def stiffness(self, block: int, i: int, length: int, clock: Frequencies) -> np.ndarray:
         """Force over difference of velocities (f,) N·s/m of a bond by its first node and its length."""
         k, decay = self.bond[block, i, length - 1], self.decay[block, i, length - 1]
         return np.asarray(k / (clock.change + decay * clock.mean))
 
-    def mobility(self, side: str, clock: Clock) -> np.ndarray:
+    def mobility(self, side: str, clock: Frequencies) -> np.ndarray:
         """Velocity (f,) m/s of a node under 1 N in a bar that goes on on both sides like the layer at an end."""
         block = (
             self.first // self.wide // 2 if side == "left" else (self.first + self._bar + self.count) // self.wide // 2
@@ -174,7 +174,7 @@ class Response:
         self._stations: list[int] = np.flatnonzero(chosen).tolist()
         self._index = {block: k for k, block in enumerate(self._stations)}
 
-    def velocities(self, clock: Clock, forces: Mapping[int, np.ndarray]) -> np.ndarray:
+    def velocities(self, clock: Frequencies, forces: Mapping[int, np.ndarray]) -> np.ndarray:
         """Velocities (f, k, b) of the stations under forces (f,) N on nodes of the bar."""
         chain, stations = self.chain, self._stations
         rows = {self._kinds[block]: block for block in reversed(stations)}
@@ -192,7 +192,7 @@ class Response:
         block, i = divmod(place, self.chain.wide)
         return np.asarray(moved[:, self._index[block], i])
 
-    def tension(self, moved: np.ndarray, clock: Clock, plane: int) -> np.ndarray:
+    def tension(self, moved: np.ndarray, clock: Frequencies, plane: int) -> np.ndarray:
         """Force (f,) N through the plane between this node of the chain and the next, of all bonds that cross it."""
         chain, total = self.chain, np.zeros(len(clock.s), dtype=complex)
         for length in range(1, chain.wide + 1):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.accuracy.history import History, Motions
-from dembound.accuracy.of_bars.chain import Chain, Clock, Response, observed_near
+from dembound.accuracy.of_bars.chain import Chain, Frequencies, Response, observed_near
 from dembound.accuracy.of_bars.rods import Rods
 from dembound.accuracy.of_bars.window import Window, needed
 from dembound.bar.layers import ENDS, EndLayer
@@ -71,7 +71,7 @@ class BarMotions:
         self, scene: BarScene, layers: Mapping[str, EndLayer], step: float, entering: Iterable[str]
     ) -> Motions:
         """The motion of a chain of nodes; entering : ends at which the wave enters an endless bar."""
-        chain, clock = Chain(scene, layers, self.window.step), Clock.of(self.window.s, step)
+        chain, clock = Chain(scene, layers, self.window.step), Frequencies.of(self.window.s, step)
         forces = self._forces(scene, chain, clock)
         ends = {"left": 0, "right": scene.count - 1}
         waves = {side: self.window.transform(self._wave(side)) / clock.mean for side in entering}
@@ -91,7 +91,7 @@ class BarMotions:
                 found[name].append(np.stack([velocity * now.mean, velocity / now.change, stress]))
         return {name: self._history(self.window, np.concatenate(each, axis=1), name) for name, each in found.items()}
 
-    def _forces(self, scene: BarScene, chain: Chain, clock: Clock) -> dict[int, np.ndarray]:
+    def _forces(self, scene: BarScene, chain: Chain, clock: Frequencies) -> dict[int, np.ndarray]:
         """Node -> transform of the force on it (f,) N; where a velocity is prescribed that on its dashpot."""
         supports, forces = scene.supports, dict[int, np.ndarray]()
         for row, drive, number in zip(supports.drive_row, supports.drive, supports.drive_signal, strict=True):
@@ -101,7 +101,7 @@ class BarMotions:
             forces[node] = forces.get(node, 0.0) + transform * (chain.rigid * clock.mean if rigid else 1.0)
         return forces
 
-    def _running(self, clock: Clock, pushed: Iterable[int], wide: int) -> int:
+    def _running(self, clock: Frequencies, pushed: Iterable[int], wide: int) -> int:
         """How many of the frequencies, from the lowest on, count: above that of the shortest wave nothing runs.
 
         It moves the nodes near those that are pushed; of monitors there all frequencies count.
@@ -156,7 +156,7 @@ class BarMotions:
         return History(self.scene.positions[self.nodes[name], :2], time, found)
 
 
-def _stress(scene: BarScene, response: Response, moved: np.ndarray, clock: Clock, node: int) -> np.ndarray:
+def _stress(scene: BarScene, response: Response, moved: np.ndarray, clock: Frequencies, node: int) -> np.ndarray:
     """Stress (f,) Pa at a node, as kernels/bar.node_stress computes it."""
     planes = [plane for plane in (node - 1, node) if 0 <= plane < scene.count - 1]
     tension = sum(response.tension(moved, clock, response.chain.first + plane) for plane in planes)

@@ -14,8 +14,8 @@ from dembound.accuracy.moved_sides import Extended
 from dembound.accuracy.of_disks.boxes import box_facts
 from dembound.accuracy.of_disks.causes import causes_of_disks
 from dembound.accuracy.of_disks.chart_choices import disk_choices
-from dembound.accuracy.of_disks.exact.continuum import Continuum
-from dembound.accuracy.of_disks.exact.plane_wave import PlaneWave
+from dembound.accuracy.of_disks.exact.continuum import ExactContinuum
+from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.extended import extended_disks
 from dembound.accuracy.of_disks.search import best_of_disks
 from dembound.accuracy.of_disks.seeds import cause_of_packing
@@ -68,9 +68,9 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def exact(self, case: DiskCase) -> Exact[DiskCase] | None:
         """A plane wave, or one of the problems of `exact`; raises CaseError if loads are none of them."""
-        if (plane := PlaneWave.of(case)) is not None:
+        if (plane := ExactPlaneWave.of(case)) is not None:
             return plane
-        return Continuum.of(case) if case.load or case.incident else None
+        return ExactContinuum.of(case) if case.load or case.incident else None
 
     def chart_choices(self, case: DiskCase) -> Named:
         """Coarser disks, half the step, other sides and a box in the ground."""

@@ -21,7 +21,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
 from dembound.outside.gll import Rule
 from dembound.outside.medium import Medium
-from dembound.outside.plane_waves import PlaneWave, critical_angle, incident_wave, reflected_waves
+from dembound.outside.plane_waves import ElasticPlaneWave, critical_angle, incident_wave, reflected_waves
 
 DELAYS = 8
 """Delays at which a wave is computed for the ties of an element.
@@ -48,7 +48,7 @@ class GroundWaves:
     """
 
     medium: Medium
-    waves: tuple[PlaneWave, ...]
+    waves: tuple[ElasticPlaneWave, ...]
     signals: tuple[Incident, ...]
     grain: float
 
@@ -76,7 +76,7 @@ class GroundWaves:
         return moved
 
 
-def _gradient(wave: PlaneWave) -> np.ndarray:
+def _gradient(wave: ElasticPlaneWave) -> np.ndarray:
     """(4,) gradients ∂u_a/∂b by their numbers in `homogenise.GRADIENTS`, per unit of −ġ."""
     gradient = np.zeros(4)
     gradient[np.array(GRADIENT)] = np.outer(wave.motion, wave.slowness)
@@ -143,7 +143,7 @@ class NearPlaces:
         return moved
 
     @staticmethod
-    def _places(wave: PlaneWave, places: np.ndarray, low: float, high: float) -> np.ndarray:
+    def _places(wave: ElasticPlaneWave, places: np.ndarray, low: float, high: float) -> np.ndarray:
         """Delays of a wave at places (d, 2) m as −1 … 1 within its span."""
         return (2.0 * wave.delays(places) - low - high) / (high - low)
 
@@ -161,7 +161,7 @@ def rising_waves(
         for speed, polarisation, part in zip(speeds.tolist(), polarisations.T, parts.tolist(), strict=True):
             if signal is not None and abs(part) > NO_PART:
                 x, y = (part * polarisation).tolist()
-                waves.append(PlaneWave((0.0, 1.0 / speed), (x, y), -height / speed))
+                waves.append(ElasticPlaneWave((0.0, 1.0 / speed), (x, y), -height / speed))
                 own.append(signal)
     return GroundWaves(medium, tuple(waves), tuple(own), grain)
 
@@ -186,7 +186,7 @@ def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) 
     return found
 
 
-def incident_in(case: DiskCase, medium: Medium) -> PlaneWave:
+def incident_in(case: DiskCase, medium: Medium) -> ElasticPlaneWave:
     """The incident wave of a case that has one, in the medium of its ground."""
     assert case.incident is not None
     wave = incident_wave(medium, case.incident.type, case.incident.angle)

@@ -39,7 +39,7 @@ from dembound.disks.beyond.wall import Wall
 from dembound.kernels.sums import add_weighted_sums, weighted_sums
 from dembound.kernels.wall import tie_forces
 from dembound.outside.gll import Rule
-from dembound.outside.plane_waves import PlaneWave
+from dembound.outside.plane_waves import ElasticPlaneWave
 
 PLACES = 8
 """Places along a side at which the power of waves is summed."""
@@ -48,7 +48,7 @@ Sharing = tuple[np.ndarray, np.ndarray]
 """Tied disks (k,), and disks (k,) that have the forces of these, too."""
 
 
-class Part(NamedTuple):
+class TieForces(NamedTuple):
     """Forces through the ties of one element.
 
     ground : the motion near them. node, component : (r,) the degrees of freedom. moved, moving : (count, r) N or N·m
@@ -67,15 +67,15 @@ class Part(NamedTuple):
         weighted_sums(np.ascontiguousarray(self.ground.velocities(half_step).T), self.moving, factors)
         return factors + self.moved
 
-    def shared(self, sharing: Sharing) -> Part:
+    def shared(self, sharing: Sharing) -> TieForces:
         """These forces on other disks, too."""
         row, which = np.nonzero(self.node[:, None] == sharing[0])
         rows = np.concatenate([np.arange(len(self.node)), row])
         node = np.concatenate([self.node, sharing[1][which]])
-        return Part(self.ground, node, self.component[rows], self.moved[:, rows], self.moving[:, rows])
+        return TieForces(self.ground, node, self.component[rows], self.moved[:, rows], self.moving[:, rows])
 
 
-def parts_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> Iterator[Part]:
+def parts_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> Iterator[TieForces]:
     """The forces by which the ground's motion enters through the ties of each element.
 
     positions : (n, 2) m of disks. first : number of the first node of the grid.
@@ -84,7 +84,7 @@ def parts_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int)
         yield _part_of(wall.only(np.flatnonzero(wall.element == element)), ground, positions, first)
 
 
-def _part_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> Part:
+def _part_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> TieForces:
     """The forces that enter through a few ties."""
     bonds = wall.bonds
     disk, own, place = np.unique(bonds.particle, return_index=True, return_inverse=True)
@@ -97,7 +97,7 @@ def _part_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int)
     component, node, at_once = _listed(of_bonds + of_ties, disk)
     nodes = _listed(reactions, first + wall.nodes)
     lagged = wall.lag * np.hstack([_listed(of_ties, disk)[2], nodes[2]])
-    return Part(
+    return TieForces(
         near, np.concatenate([node, nodes[1]]), np.concatenate([component, nodes[0]]), np.hstack([at_once, nodes[2]]),
         lagged,
     )  # fmt: skip
@@ -147,7 +147,7 @@ class SummedDrives:
     node, component : (count,) the degrees of freedom, each once.
     """
 
-    def __init__(self, parts: Sequence[Part]) -> None:
+    def __init__(self, parts: Sequence[TieForces]) -> None:
         numbers = [3 * part.node + part.component for part in parts]
         unique, column = np.unique(np.concatenate(numbers), return_inverse=True)
         self.node, self.component = unique // 3, unique % 3
@@ -212,7 +212,7 @@ def power_through(
     places = np.full((PLACES, 2), edges[number])
     places[:, 1 - axis] = 0.5 * (low + high + (high - low) * rule.points)
 
-    together: dict[tuple[float, float], list[tuple[PlaneWave, Incident]]] = {}
+    together: dict[tuple[float, float], list[tuple[ElasticPlaneWave, Incident]]] = {}
     for wave, signal in zip(ground.waves, ground.signals, strict=True):  # several may have one slowness
         together.setdefault(wave.slowness, []).append((wave, signal))
 
@@ -221,7 +221,7 @@ def power_through(
         for slowness, waves in together.items():
             direction = np.array(waves[0][0].motion) / np.hypot(*waves[0][0].motion)
             x, y = direction.tolist()
-            if (flux := inwards * PlaneWave(slowness, (x, y)).flux(ground.medium)[axis]) > 0.0:
+            if (flux := inwards * ElasticPlaneWave(slowness, (x, y)).flux(ground.medium)[axis]) > 0.0:
                 velocity = sum(
                     np.dot(wave.motion, direction) * signal.velocity(times[:, None] - wave.delays(places))
                     for wave, signal in waves

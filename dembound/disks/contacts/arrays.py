@@ -26,7 +26,7 @@ class Pairs:
     contact_type: np.ndarray
 
 
-class History(NamedTuple):
+class ContactHistory(NamedTuple):
     """The history of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds."""
 
     state: np.ndarray
@@ -51,7 +51,9 @@ class Placed(NamedTuple):
     strays: tuple[np.ndarray, np.ndarray, np.ndarray] | None
 
 
-def in_places(pairs: Pairs, history: History, slot: np.ndarray, constants: np.ndarray, plan: PairPlan | None) -> Placed:
+def in_places(
+    pairs: Pairs, history: ContactHistory, slot: np.ndarray, constants: np.ndarray, plan: PairPlan | None
+) -> Placed:
     """Give pairs their places, and list the contact ends of each particle.
 
     slot : (m,) of each particle. constants : (p, 12) of the types of contacts. plan : rows of copies, whose places come

@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.contacts.arrays import History, Pairs
+from dembound.disks.contacts.arrays import ContactHistory, Pairs
 from dembound.disks.contacts.forces import acting
 from dembound.disks.contacts.neighbours import near_pairs, pair_keys
 from dembound.disks.contacts.pair_list import PairList
@@ -29,7 +29,7 @@ The list is renewed once a particle has moved by half of it.
 """
 
 _HISTORY = ("state", "shear", "slip", "closed", "cracked")
-"""The arrays of the pairs that are their history, in the order of `History`."""
+"""The arrays of the pairs that are their history, in the order of `ContactHistory`."""
 
 _KEPT = ("first", "second", "contact_type", *_HISTORY)
 """The arrays of the pairs, beside their forces, that memory() returns."""
@@ -88,7 +88,7 @@ class ContactList(PairList):
         bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
         zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
         self._constants = self.bonds
-        self._list(pairs, History(bonded, zero, zero, none, np.full(len(first), -1)))
+        self._list(pairs, ContactHistory(bonded, zero, zero, none, np.full(len(first), -1)))
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         self.arms = np.zeros(self.layout.count)
         self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
@@ -101,7 +101,7 @@ class ContactList(PairList):
             first, second = self.pairs
             pairs = Pairs(first, second, self.image, self.of("contact_type"))
             self._plan = PairPlan.of(first, second, pairs.contact_type, len(self.bonds), *plan)
-            self._list(pairs, History(*(self.of(name) for name in _HISTORY)))
+            self._list(pairs, ContactHistory(*(self.of(name) for name in _HISTORY)))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n), without any slip or with that kept."""
@@ -158,7 +158,7 @@ class ContactList(PairList):
             np.concatenate([place[row], own + np.count_nonzero(extra) + met.contact_type]),
         )
         del first, second, row
-        history = History(
+        history = ContactHistory(
             np.concatenate([self.of("state")[kept], np.full(len(met.first), NONE, dtype=np.uint8)]),
             np.concatenate([self.of("shear")[kept], np.zeros(len(met.first))]),
             np.concatenate([self.of("slip")[kept], np.zeros(len(met.first))]),
@@ -204,7 +204,7 @@ class ContactList(PairList):
         self._constants = other._constants
         self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
         pairs = Pairs(first[left], second[left], other.image[left], other.of("contact_type")[left])
-        self._list(pairs, History(*(other.of(name)[left] for name in History._fields)))
+        self._list(pairs, ContactHistory(*(other.of(name)[left] for name in ContactHistory._fields)))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
         """Copy the history of each pair's twin from a free-field column settled alone, at displacements (3, n).
@@ -270,6 +270,6 @@ class ContactList(PairList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[memory[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, memory["image"], memory["contact_type"])
-        self._list(pairs, History(*(memory[name] for name in _HISTORY)))
+        self._list(pairs, ContactHistory(*(memory[name] for name in _HISTORY)))
         self.arrays.force[:, self.live] = memory["force"].T
         self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]

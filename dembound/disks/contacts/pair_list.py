@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.disks.contacts.arrays import History, Pairs, in_places
+from dembound.disks.contacts.arrays import ContactHistory, Pairs, in_places
 from dembound.disks.contacts.neighbours import cells_of, pair_keys
 from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.kernels.tables import PairRows
@@ -94,7 +94,7 @@ class PairList:
         self.origin[:, slot] = displacement
         self.cells = cells_of(self.assembly.positions + displacement.T, self.assembly.radii, slot, self.periods)
 
-    def _list(self, pairs: Pairs, history: History) -> None:
+    def _list(self, pairs: Pairs, history: ContactHistory) -> None:
         """Give the pairs their places, and list the contact ends of each particle."""
         placed = in_places(pairs, history, self._slot, self._constants, self._plan)
         self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image

@@ -117,7 +117,7 @@ class Network(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Continuum:
+class HomogenisedMaterial:
     """The continuum that a brick is equivalent to.
 
     Attributes
@@ -133,7 +133,7 @@ class Continuum:
     corrector: np.ndarray
 
 
-def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> Continuum:
+def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> HomogenisedMaterial:
     """The continuum of the infinite tiling of a brick; held : components (0 x, 1 y, 2 rotation) that do not move.
 
     Raises CaseError when disks can move without resistance, as without bonds and friction.
@@ -147,7 +147,7 @@ def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> Con
     area = brick.radii**2 / np.sum(brick.radii**2)
     for component in {0, 1} - set(held):
         corrector[component] -= area @ corrector[component]
-    return Continuum(tensor, corrector)
+    return HomogenisedMaterial(tensor, corrector)
 
 
 def _free_columns(count: int, held: tuple[int, ...]) -> np.ndarray:

@@ -16,7 +16,7 @@ from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
 from dembound.disks.material.free_surface import cut_at, skin_depths
-from dembound.disks.material.homogenise import Continuum, homogenise
+from dembound.disks.material.homogenise import HomogenisedMaterial, homogenise
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
@@ -50,7 +50,9 @@ class PackedMaterial:
     held: tuple[int, ...] = ()
     _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
-    _continua: dict[tuple[int, ...], Continuum] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _continua: dict[tuple[int, ...], HomogenisedMaterial] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @cached_property
     def stiffness(self) -> Stiffness:
@@ -95,7 +97,7 @@ class PackedMaterial:
         return self.continuum.tensor
 
     @property
-    def continuum(self) -> Continuum:
+    def continuum(self) -> HomogenisedMaterial:
         """The continuum that the brick is equivalent to, with both translations free."""
         return self._continuum(tuple(component for component in self.held if component == 2))
 
@@ -118,7 +120,7 @@ class PackedMaterial:
             self._cuts[height] = float(brick.mass_offset[1]), -depth
         return self._cuts[height]
 
-    def _continuum(self, held: tuple[int, ...]) -> Continuum:
+    def _continuum(self, held: tuple[int, ...]) -> HomogenisedMaterial:
         """The continuum with some components held, computed once."""
         if held not in self._continua:
             self._continua[held] = homogenise(self.brick, self.stiffness, held)

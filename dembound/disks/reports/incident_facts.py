@@ -10,7 +10,7 @@ import numpy as np
 from dembound.disks.beyond.ground_waves import GroundWaves, reference_point
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.scene import DiskScene
-from dembound.outside.plane_waves import GRAZING, PlaneWave, critical_angle
+from dembound.outside.plane_waves import GRAZING, ElasticPlaneWave, critical_angle
 from dembound.words import Entries
 
 NAMES = {"sv": "SV", "p": "P"}
@@ -48,7 +48,7 @@ def _way(angle: float) -> str:
     return f"{abs(angle):g}° from the vertical to the {'right' if angle > 0.0 else 'left'}"
 
 
-def _along(wave: PlaneWave, outside: Surroundings) -> str:
+def _along(wave: ElasticPlaneWave, outside: Surroundings) -> str:
     """The speed of its trace along the surface, or along x where there is none."""
     slowness, where = abs(wave.slowness[0]), "x" if outside.free_surface is None else "the surface"
     return f", at {1.0 / slowness:.5g} m/s along {where}" if slowness > STRAIGHT * abs(wave.slowness[1]) else ""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.gauge.hopkinson.separation import Bar, moved, separated
+from dembound.gauge.hopkinson.separation import LongBar, moved, separated
 from dembound.gauge.peaks import CREST, noise_left, smooth, white_noise, width_of
 from dembound.gauge.plausibility import implausible_modulus, implausible_size
 from dembound.words import percent
@@ -52,7 +52,7 @@ class Setup:
     pulses are to be cut before the bars' ends send them back.
     """
 
-    bar: Bar
+    bar: LongBar
     modulus: float
     area: float
     incident_gauge: float
@@ -83,8 +83,8 @@ class Setup:
         """The setup with two equal round bars.
 
         speed : of long waves, m/s; density : kg/m³; diameter : m; attenuation : α, 1/m; poisson : ν; modulus : E, Pa,
-        by default ρc²; disperse : whether waves disperse as in a round bar, see `Bar`, which needs ν; others : as the
-        attributes.
+        by default ρc²; disperse : whether waves disperse as in a round bar, see `LongBar`, which needs ν; others :
+        as the attributes.
 
         Raises CaseError for data that are no lengths, areas or speeds, or of unlikely size, for a modulus that is not
         that of ρ and c, and for waves that disperse with ν not within 0 to 0.5.
@@ -97,7 +97,7 @@ class Setup:
             raise CaseError(problems)
         if disperse and (poisson is None or not 0.0 < poisson < 0.5):
             raise CaseError(["--poisson: is needed by --dispersion-correction, above 0 and below 0.5"])
-        bar = Bar(speed, attenuation, 0.5 * diameter, poisson) if disperse else Bar(speed, attenuation)
+        bar = LongBar(speed, attenuation, 0.5 * diameter, poisson) if disperse else LongBar(speed, attenuation)
         modulus = density * speed**2 if modulus is None else modulus
         lengths = incident_gauge, transmitted_gauge, specimen_length, specimen_area, second_gauge, bar_length
         return cls(bar, modulus, circle_area(diameter), *lengths)

@@ -20,7 +20,7 @@ PADDING = 2
 
 
 @dataclass(frozen=True)
-class Bar:
+class LongBar:
     """A long bar in which waves run.
 
     speed : c_0 of long waves, m/s; attenuation : α, 1/m; radius : m, and poisson : ν, for the dispersion of a round
@@ -41,7 +41,7 @@ class Bar:
         return real - 1j * damping * slope - 1j * self.attenuation
 
 
-def moved(time: np.ndarray, values: np.ndarray, distance: float, bar: Bar) -> np.ndarray:
+def moved(time: np.ndarray, values: np.ndarray, distance: float, bar: LongBar) -> np.ndarray:
     """A wave (k,) as it is after a distance, at the same times; before it, for a negative distance.
 
     time : (k,) s, evenly spaced. distance : m, along the wave's way. Nothing comes before the record.
@@ -53,7 +53,7 @@ def moved(time: np.ndarray, values: np.ndarray, distance: float, bar: Bar) -> np
 
 
 def separated(
-    time: np.ndarray, first: np.ndarray, second: np.ndarray, distance: float, bar: Bar
+    time: np.ndarray, first: np.ndarray, second: np.ndarray, distance: float, bar: LongBar
 ) -> tuple[np.ndarray, np.ndarray]:
     """The waves to the right and to the left (k,), at the first gauge, from two gauges on a bar (Zhao & Gary 1997).
 

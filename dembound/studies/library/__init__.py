@@ -12,14 +12,14 @@ whole number of time steps this is no approximation: a direct run differs by rou
 from dembound.studies.library.build import build_library
 from dembound.studies.library.contacts import LoadFactor, load_factor, watched_contacts
 from dembound.studies.library.library import Library
-from dembound.studies.library.record import Clock, Record, read_records
+from dembound.studies.library.record import Record, RecordTimes, read_records
 from dembound.studies.library.response import write_response
 
 __all__ = [
-    "Clock",
     "Library",
     "LoadFactor",
     "Record",
+    "RecordTimes",
     "build_library",
     "load_factor",
     "read_records",

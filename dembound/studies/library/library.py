@@ -14,7 +14,7 @@ from dembound.errors import CaseError, RecordError
 from dembound.kinds import loads
 from dembound.results.reader import open_record
 from dembound.studies.library.build import FILE, HAT, REST, is_at_rest
-from dembound.studies.library.record import Clock
+from dembound.studies.library.record import RecordTimes
 from dembound.version import __version__
 
 WIDTH = 6
@@ -59,9 +59,9 @@ class Library:
         self.time = times[: len(times) - self.lead * self._per_spacing]
 
     @property
-    def clock(self) -> Clock:
+    def clock(self) -> RecordTimes:
         """Times that records have to keep."""
-        return Clock(self.spacing, self.case.run.duration, self.lead)
+        return RecordTimes(self.spacing, self.case.run.duration, self.lead)
 
     @cached_property
     def rest(self) -> np.ndarray:

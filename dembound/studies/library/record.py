@@ -25,7 +25,7 @@ class Record(NamedTuple):
     files: dict[str, tuple[Path, str]]
 
 
-class Clock(NamedTuple):
+class RecordTimes(NamedTuple):
     """Times that records have to keep: spacing and duration, s; lead : zeros after the first one, see `Library`."""
 
     spacing: float
@@ -33,7 +33,7 @@ class Clock(NamedTuple):
     lead: int = 0
 
 
-def read_records(arguments: Sequence[str], inputs: Sequence[str], clock: Clock) -> list[Record]:
+def read_records(arguments: Sequence[str], inputs: Sequence[str], clock: RecordTimes) -> list[Record]:
     """The records of a command line.
 
     Parameters
@@ -57,7 +57,7 @@ def read_records(arguments: Sequence[str], inputs: Sequence[str], clock: Clock) 
     return records
 
 
-def on_spacing(samples: np.ndarray, clock: Clock) -> np.ndarray:
+def on_spacing(samples: np.ndarray, clock: RecordTimes) -> np.ndarray:
     """The values of a record at the times 0, Δ, 2Δ …, Δ being the spacing, as far as it goes.
 
     samples (k, 2), times and values, are joined by straight lines; their times must be whole multiples of the spacing,
@@ -94,7 +94,7 @@ def on_spacing(samples: np.ndarray, clock: Clock) -> np.ndarray:
     return found
 
 
-def _record(argument: str, inputs: Sequence[str], clock: Clock) -> Record:
+def _record(argument: str, inputs: Sequence[str], clock: RecordTimes) -> Record:
     """The record of one argument; raises CaseError for its mistakes."""
     paths = _paths(argument, inputs)
     values, files, problems = {}, {}, []

@@ -22,7 +22,7 @@ from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.exact.plane_wave import PlaneWave
+from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
 from dembound.accuracy.of_disks.near import wall_error
 from dembound.accuracy.of_disks.options import may_change_diameter, with_diameter
@@ -181,7 +181,7 @@ json.dump(
             wall_error(kinds.with_changes(made, {"hole": [hole]}), 0.5)
             for made, hole in ((hexagons, CAVE), (unsaid, CAVE), (hexagons, SHAFT))
         ],
-        "plane": [PlaneWave.of(each) is not None for each in rows],
+        "plane": [ExactPlaneWave.of(each) is not None for each in rows],
         "drawn": [[estimated(each), other_draw(each)] for each in (drawn, b)],
         "no draw": other_draw(unsaid),
         "charted": [changes for _, changes in islice(disk_choices(case(**DRAWN | {"packing": wide})), 2)],

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.exact.pochhammer import wavenumber
-from dembound.gauge.hopkinson.separation import FADED, Bar, moved, separated
+from dembound.gauge.hopkinson.separation import FADED, LongBar, moved, separated
 
 TIME = 1e-6 * np.arange(4000)
 SPEED, WAY = 5000.0, 0.5
@@ -27,23 +27,23 @@ def test_a_wave_arrives_later_and_smaller(decay, way):
     start = pulse(TIME - 200e-6)
     expected = np.exp(-decay * way) * pulse(TIME - 200e-6 - way / SPEED)
     # a pulse of 200 samples with continuous slope has (1/200)²/2 of its spectrum beyond the Nyquist frequency
-    np.testing.assert_allclose(moved(TIME, start, way, Bar(SPEED, decay)), expected, atol=2e-5)
+    np.testing.assert_allclose(moved(TIME, start, way, LongBar(SPEED, decay)), expected, atol=2e-5)
 
 
 def test_two_gauges_tell_to_and_fro():
     decay = 0.1
     right, left = passages(1.0, decay, 1.0), passages(1.0, decay, -1.0)
     other = passages(1.0 + WAY, decay, 1.0) + passages(1.0 + WAY, decay, -1.0)
-    found = separated(TIME, right + left, other, WAY, Bar(SPEED, decay))
+    found = separated(TIME, right + left, other, WAY, LongBar(SPEED, decay))
     # the end of the record, where waves still run, begins again with FADED of itself
     np.testing.assert_allclose(found[0], right, atol=1.5 * FADED)
     np.testing.assert_allclose(found[1], left, atol=1.5 * FADED)
     with pytest.raises(ValueError, match="must be above 0"):
-        separated(TIME, TIME, TIME, 0.0, Bar(SPEED))
+        separated(TIME, TIME, TIME, 0.0, LongBar(SPEED))
 
 
 def test_each_frequency_of_a_round_bar_has_its_own_delay():
-    bar, way = Bar(SPEED, 0.0, 0.01, 0.3), 2.0
+    bar, way = LongBar(SPEED, 0.0, 0.01, 0.3), 2.0
     frequency = 2.0 * np.pi * 60e3
     burst = np.exp(-(((TIME - 500e-6) / 100e-6) ** 2)) * np.cos(frequency * (TIME - 500e-6))
     after = moved(TIME, burst, way, bar)

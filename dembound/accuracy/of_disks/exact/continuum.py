@@ -16,7 +16,7 @@ from dembound.kinds import with_changes
 
 
 @dataclass(frozen=True)
-class Continuum(Exact[DiskCase]):
+class ExactContinuum(Exact[DiskCase]):
     """The exact motion of a problem of this folder, by the name of the problem.
 
     base : the case whose problem it is. Where rock goes on beyond a side of it, it does so for all choices: what a free
@@ -29,7 +29,7 @@ class Continuum(Exact[DiskCase]):
     until: float
 
     @classmethod
-    def of(cls, case: DiskCase) -> Continuum:
+    def of(cls, case: DiskCase) -> ExactContinuum:
         """The problem of a case; raises CaseError, with the reasons, if it is none."""
         problem = problem_of(build(case))
         return cls(case, problem.name, problem.sentence, min(problem.until.values(), default=math.inf))

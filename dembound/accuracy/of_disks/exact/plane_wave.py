@@ -15,7 +15,7 @@ from dembound.disks.scene import build, ground_of
 
 
 @dataclass(frozen=True)
-class PlaneWave(Exact[DiskCase]):
+class ExactPlaneWave(Exact[DiskCase]):
     """A plane wave that enters at one side of a block of disks and leaves at the opposite one.
 
     It runs with the homogenised speed of the packing of each choice; whatever a choice has on the opposite side, the
@@ -27,7 +27,7 @@ class PlaneWave(Exact[DiskCase]):
     sentence: str = "exact plane wave at the homogenised speed, leaving without reflection"
 
     @classmethod
-    def of(cls, case: DiskCase) -> PlaneWave | None:
+    def of(cls, case: DiskCase) -> ExactPlaneWave | None:
         """The solution of a case; None if it is another problem."""
         if case.hole or case.load or case.static or len(case.driving) != 1:
             return None

@@ -28,7 +28,7 @@ from dembound.errors import CaseError
 from dembound.exact.scattering import PlaneWave, scattered_motion
 from dembound.exact.solid import Solid
 from dembound.holes import Circle
-from dembound.outside.plane_waves import PlaneWave as GroundWave
+from dembound.outside.plane_waves import ElasticPlaneWave
 from dembound.waves import Wave
 
 
@@ -44,7 +44,7 @@ class ScatteringProblem(Problem):
     sentence: ClassVar[str] = "exact scattering by a cavity in a full space"
     solid: Solid
     hole: Circle
-    waves: tuple[GroundWave, ...]
+    waves: tuple[ElasticPlaneWave, ...]
     wave: Wave
     wave_name: str
     surface: float | None
@@ -99,7 +99,7 @@ class ScatteringProblem(Problem):
             for k, (name, place) in enumerate(self.places.items())
         }
 
-    def _about_the_hole(self, wave: GroundWave) -> PlaneWave:
+    def _about_the_hole(self, wave: ElasticPlaneWave) -> PlaneWave:
         """A plane wave of the ground as one about the hole's axis."""
         slowness, motion = np.array(wave.slowness), np.array(wave.motion)
         x, y = slowness / np.hypot(*slowness)

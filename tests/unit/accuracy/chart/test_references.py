@@ -9,8 +9,8 @@ import pytest
 from dembound.accuracy.chart.references import exact_of
 from dembound.accuracy.history import History
 from dembound.accuracy.of_bars.pulse import PulseInBar
-from dembound.accuracy.of_disks.exact.continuum import Continuum
-from dembound.accuracy.of_disks.exact.plane_wave import PlaneWave
+from dembound.accuracy.of_disks.exact.continuum import ExactContinuum
+from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import load, with_changes
@@ -62,7 +62,7 @@ def test_the_far_end_of_a_bar_reflects(spalling, end: str, echo: float) -> None:
 
 def test_a_plane_wave_that_leaves_has_one(bar) -> None:
     found = exact_of(bar(EVEN))
-    assert isinstance(found, PlaneWave)
+    assert isinstance(found, ExactPlaneWave)
     assert (found.side, found.motion) == ("left", "p")
     sides = {f"boundary.{side}": {"type": "periodic"} for side in ("bottom", "top")}
     wave = {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, "motion.held": []}
@@ -97,7 +97,7 @@ def test_waves_that_do_not_stay_plane_or_do_not_leave_have_none(bar, changes) ->
 )
 def test_problems_of_a_continuum_have_one(name, problem, until) -> None:
     found = exact_of(load(folder() / f"{name}.toml"))
-    assert isinstance(found, Continuum)
+    assert isinstance(found, ExactContinuum)
     assert (found.name, found.until) == (problem, until)
 
 

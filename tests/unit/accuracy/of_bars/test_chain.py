@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from estimated_bars import LAYER, scene
 
-from dembound.accuracy.of_bars.chain import Chain, Clock, Response
+from dembound.accuracy.of_bars.chain import Chain, Frequencies, Response
 from dembound.bar.scene import build_bar
 from dembound.exact.dispersion import Lattice
 from dembound.kinds import with_changes
@@ -16,11 +16,11 @@ STEP = 1e-6
 
 
 def test_a_clock_has_the_angles_of_central_differences() -> None:
-    clock = Clock.of(1j * np.array([1e5, 4e5]), STEP)
+    clock = Frequencies.of(1j * np.array([1e5, 4e5]), STEP)
 
     np.testing.assert_allclose(clock.change, 2j / STEP * np.sin([0.05, 0.2]), rtol=1e-12)
     np.testing.assert_allclose(clock.mean, np.cos([0.05, 0.2]), rtol=1e-12)
-    exact = Clock.of(clock.s, 0.0)
+    exact = Frequencies.of(clock.s, 0.0)
     np.testing.assert_array_equal(exact.change, clock.s)
     np.testing.assert_array_equal(exact.mean, 1.0)
 
@@ -33,7 +33,7 @@ def test_waves_run_as_on_the_infinite_row(name: str, horizon: int, step: float) 
     # the layer returns up to 1e-3 of them, see docs/bar_ends.md, 16 nodes are few for m = 8
     wavenumber = np.array([10.0, 30.0])
     omega = Lattice(horizon, 0.01, step, 2740.0).frequency(wavenumber)
-    case, clock = scene(name), Clock.of(1j * omega, step)
+    case, clock = scene(name), Frequencies.of(1j * omega, step)
     chain = Chain(build_bar(case), build_bar(case).layers, STEP)
     response = Response(chain, [0, 40, 50, 60])
 
@@ -57,7 +57,7 @@ def test_mobility_is_that_of_two_endless_halves(name: str, side: str) -> None:
     endless = replace(layer, layer=replace(layer.layer, nodes=200_000, reflection=1.0))
     chain = Chain(built, {side: endless}, STEP)
 
-    found = chain.mobility(side, Clock.of(s, STEP))
+    found = chain.mobility(side, Frequencies.of(s, STEP))
 
     impedance = 2620.0 * 2740.0 * np.sqrt(1.0 + 2.0 * case.bar.attenuation * 2740.0 / s)
     np.testing.assert_allclose(found.real, (0.5 / impedance).real, rtol=5e-4)

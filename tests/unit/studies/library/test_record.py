@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.studies.library import Clock, read_records
+from dembound.studies.library import RecordTimes, read_records
 from dembound.studies.library.record import on_spacing
 
-CLOCK = Clock(spacing=0.1, duration=1.0)
+CLOCK = RecordTimes(spacing=0.1, duration=1.0)
 
 
 def test_values_between_lines_are_on_straight_lines_and_begin_later_under_a_wave_at_an_angle():
