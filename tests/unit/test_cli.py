@@ -280,7 +280,9 @@ def test_a_run_tells_its_warnings_what_happened_and_is_named(dembound, written, 
     assert found["boundaries"]["right"]["beta_p"] == 0.5
     assert found["title"] == "soft end"
     assert "soft: warning: load.weight: is steady, and without [static] acts suddenly" in answer.err
-    assert answer.err.splitlines() == [f"soft: warning: {warning}" for warning in found["warnings"]]
+    # where kernels are compiled meanwhile, a line of progress may stand between the warnings
+    warned = [line for line in answer.err.splitlines() if "particle-steps/s" not in line]
+    assert warned == [f"soft: warning: {warning}" for warning in found["warnings"]]
     told = answer.out.splitlines()[-2]
     laws, cracks, energy = told.removeprefix("soft: ").split("; ")
     assert laws == f"elastic law to {found['laws'][1]['from']:.3g} s, then linearpbond"
