@@ -11,12 +11,13 @@ from dembound.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from dembound.api import (
+        Advice,
         Arrays,
+        Budget,
         Calibration,
         Case,
         CaseError,
         DemboundError,
-        Estimate,
         NameMissingError,
         PackingError,
         Progress,
@@ -35,12 +36,13 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "Advice",
     "Arrays",
+    "Budget",
     "Calibration",
     "Case",
     "CaseError",
     "DemboundError",
-    "Estimate",
     "NameMissingError",
     "PackingError",
     "Progress",

@@ -1,7 +1,7 @@
 """dembound from Python: cases made of tables, runs, and their results as arrays. See docs/python.md."""
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -12,8 +12,12 @@ import numpy as np
 import tomli_w
 
 from dembound import kinds
-from dembound.accuracy.budget import Estimate
+from dembound.accuracy.advise import BOUNDS
+from dembound.accuracy.advise import advise as find_advice
+from dembound.accuracy.budget import Budget
+from dembound.accuracy.cause import Truth
 from dembound.accuracy.estimate import estimate_if_asked, estimate_results
+from dembound.accuracy.proposal import Advice
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
@@ -26,12 +30,13 @@ from dembound.studies.calibration import Calibration
 from dembound.table import Table, as_toml
 
 __all__ = [
+    "Advice",
     "Arrays",
+    "Budget",
     "Calibration",
     "Case",
     "CaseError",
     "DemboundError",
-    "Estimate",
     "NameMissingError",
     "PackingError",
     "Progress",
@@ -120,28 +125,41 @@ def _estimated(case: Case, folder: Path) -> Results:
     return Results(folder)
 
 
-def estimate(
-    results: Path | str,
-    budget: float | None = None,
-    *,
-    second_seed: bool = False,
-    repeat: bool = False,
-    threads: int | None = None,
-) -> Estimate:
-    """Estimate the errors of a complete run, as ``dembound estimate`` does; see docs/estimates.md.
+def estimate(results: Path | str, *, repeat: bool = False, threads: int | None = None) -> Budget:
+    """Estimate the errors of a complete run, as ``dembound estimate`` does; see docs/errors.md.
 
     Parameters
     ----------
-    results : folder of the results, to which the estimate is added. budget : share of the run's work that may be spent;
-    by default 0.1, and that of less than a second in any case. second_seed : whether one more run with another random
-    packing is made. repeat : whether a run with cracks is made once more with 0.98 of its time step. threads : as for
-    `run`.
+    results : folder of the results, to which the estimate is added. repeat : whether a run with cracks is made once
+    more with 0.98 of its time step. threads : as for `run`.
 
-    Raises CaseError for a run with neither monitors nor more than ten cracks, or that is not complete, a second seed of
-    a packing without one, and a repetition of a run without cracks.
+    Raises CaseError for a run with neither monitors nor more than ten cracks, or that is not complete, and a repetition
+    of a run without cracks.
     """
     with _threads(threads):
-        return estimate_results(Path(results), budget, second_seed, repeat)
+        return estimate_results(Path(results), repeat)
+
+
+def advise(
+    case: Case,
+    bounds: Sequence[float] = BOUNDS,
+    *,
+    of: Truth | None = None,
+    keep: Sequence[str] = (),
+    seeds: int = 1,
+    threads: int | None = None,
+) -> Advice:
+    """How wrong a case is, and the cheapest choices for errors, as ``dembound advise`` does; see docs/errors.md.
+
+    Parameters
+    ----------
+    case : with monitors. bounds : errors, RMS over RMS. of : "disks" or "rock". keep : keys that are not changed.
+    seeds : random packings with which the case is run. threads : as for `run`.
+
+    Raises CaseError for cases without monitors, whose errors are not known, and for a bound or a key that is none.
+    """
+    with _threads(threads):
+        return find_advice(case, bounds, of, keep, seeds)
 
 
 def resume(

@@ -6,11 +6,12 @@ from pathlib import Path
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
 from dembound.machine import memory_here
+from dembound.motion.echoes import echoes
 from dembound.motion.kind import Plan
-from dembound.motion.proposals import proposals
 from dembound.motion.ram import has_in_words, in_words
 from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
+from dembound.results.estimates import split_in_words
 from dembound.running import plan, require_stages, space_in_words, space_warnings, warnings_before
 from dembound.words import Entries, percent
 
@@ -22,15 +23,13 @@ def check(case: Case, results: Path = Path("results")) -> tuple[dict[str, str], 
 
     results : folder in which the run would write its own, whose disk has to have the space.
     """
-    from dembound.accuracy.judges import judge_of
-
     planned = plan(case)
     require_stages(planned)
     facts = [
         *_run_facts(planned, results),
         *planned.kind.facts(planned.scene, planned.time_step),
-        *judge_of(case).proposals(planned.scene),
-        *proposals(planned),
+        *_errors(planned),
+        *echoes(planned),
     ]
     return dict(facts), [*warnings_before(planned), *space_warnings(planned, results)]
 
@@ -49,6 +48,19 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
     for name, reductions in (("reduced", scene.reduced), ("not reduced", planned.refused)):
         if reductions:
             yield name, "; ".join(reductions)
+
+
+def _errors(planned: Plan) -> Entries:
+    """What formulas say about the error of a run without its motion, and where the rest is found."""
+    from dembound.accuracy.judges import judge_of
+
+    case = planned.scene.case
+    if not case.monitor:
+        return
+    found = judge_of(case).quick(planned.scene).found
+    sizes = {cause.name: cause.largest for cause in found if cause.how != "unknown"}
+    known = f"{split_in_words(sizes)} by formula; " if sizes else ""
+    yield "errors", f"{known}the others, and cheaper cases: dembound advise"
 
 
 def _here() -> str:

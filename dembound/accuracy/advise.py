@@ -1,29 +1,50 @@
-"""The cheapest choice for a case of any kind."""
+"""How wrong a case of any kind is, and the cheapest choices for it that are less wrong."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
+from dataclasses import replace
 
-from dembound.accuracy.best import Best
+from dembound.accuracy.cause import Truth
 from dembound.accuracy.differences import value_at
 from dembound.accuracy.judges import judge_of
+from dembound.accuracy.proposal import Advice
 from dembound.casefile import Case
 from dembound.errors import CaseError
+from dembound.motion.clock import Clock
+
+BOUNDS = (0.1, 0.03, 0.01, 0.003)
+"""Errors for which the cheapest choices are found where none is asked for."""
 
 
-def choose(case: Case, bound: float, kept: Sequence[str] = ()) -> Best:
-    """The cheapest choice whose errors are within a bound at all monitors; without one that with the smallest error.
+def advise(
+    case: Case, bounds: Sequence[float] = BOUNDS, of: Truth | None = None, kept: Sequence[str] = (), seeds: int = 1
+) -> Advice:
+    """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
-    A bound is RMS over RMS, such as 0.01, of velocity and displacement, of bars of stress, too. kept : dotted keys
-    whose values remain as given, such as ``packing.radius`` or ``boundary``. Monitors that hardly move do not count.
+    bounds : RMS over RMS, such as 0.01, of velocity and displacement, of bars of stress, too, at all monitors that are
+    not quiet. of : whether the disks are the material, or a grid of the rock; None: the material where packings are
+    random or bonds may break. kept : dotted keys whose values remain as given, such as ``packing.radius`` or
+    ``boundary``. seeds : number of random packings with which the case is run to see how much depends on them.
 
     Raises CaseError for cases without monitors, without motion at them, or whose errors are not known, for a bound that
     is none and for unknown keys; the errors of building a scene and of running companions.
     """
-    if not 0.0 < bound < 1.0:
-        raise CaseError([f"--error: is {bound:g}, must be above 0 and below 1, such as 1% or 0.01"])
+    for bound in bounds:
+        if not 0.0 < bound < 1.0:
+            raise CaseError([f"--error: is {bound:g}, must be above 0 and below 1, such as 1% or 0.01"])
     if not case.monitor:
-        raise CaseError(["--error: needs a monitor, at which the error is bounded"], case.name)
+        raise CaseError(["advise: needs a monitor, at which errors are known; give a [[monitor]]"], case.name)
     for key in kept:
         value_at(case, key)
-    return judge_of(case).best(case, bound, kept)
+    judge = judge_of(case)
+    clock = Clock(time.process_time)
+    with clock.with_compiling(), clock.of("advise"):
+        found = judge.advise(case, bounds, of or judge.truth(case), kept)
+        if seeds > 1:
+            budget = found.given.budget
+            packing = judge.of_other_seeds(case, budget.motions, seeds)
+            given = replace(found.given, budget=replace(budget, causes=budget.causes + packing))
+            found = replace(found, given=given)
+    return replace(found, cpu_seconds=clock.seconds["advise"])

@@ -1,147 +1,178 @@
-"""The error of a run: what its sides, its grid and its time step add to the motion of its monitors."""
+"""The error of a motion: what each cause adds at every monitor, and all together, of these disks or of the rock."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.cause import QUANTITIES, SIDES, Cause, Causes
+from dembound.accuracy.cause import QUANTITIES, SIDES, Cause, Causes, Truth, share_of
 from dembound.accuracy.history import Motions, loud
 from dembound.accuracy.repeat import Repeat
-from dembound.results.estimates import in_words, split_in_words
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """The error of a run.
+class Share:
+    """An error, RMS over RMS.
+
+    value : expected; upper : with what causes may be larger, and with bounds. at_least : whether a cause is unknown.
+    """
+
+    value: float
+    upper: float
+    at_least: bool = False
+
+    @property
+    def is_known(self) -> bool:
+        """Whether anything is known."""
+        return math.isfinite(self.upper)
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The largest error of all monitors that are not quiet.
+
+    by : shares of its causes that are not zero.
+    """
+
+    share: Share
+    monitor: str = ""
+    quantity: str = ""
+    by: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The error of a motion.
 
     Attributes
     ----------
-    recorded : monitor -> what the run has recorded, up to the time from which on nothing is estimated.
+    motions : monitor -> motion, up to the time from which on nothing is known.
     causes : what contributes to the error.
+    of : the truth that applies where none is asked for.
     cpu_seconds : CPU time that it took, s. repeat : the run once more with a smaller time step, if that was asked for.
     """
 
-    recorded: Motions
+    motions: Motions
     causes: Causes
+    of: Truth = "rock"
     cpu_seconds: float = 0.0
     repeat: Repeat | None = None
 
-    def shares(self, monitor: str, quantity: str) -> dict[str, float]:
-        """RMS errors over the RMS of the recorded values, by cause; only those that are known."""
-        own = self.recorded[monitor]
-        found = {cause.name: cause.share(monitor, quantity, own) for cause in self.causes.found}
+    def shares(self, monitor: str, quantity: str, of: Truth = "rock") -> dict[str, float]:
+        """RMS errors over the RMS of the motion, by cause; only those that are known."""
+        own = self.motions[monitor]
+        found = {cause.name: cause.share(monitor, quantity, own) for cause in self.causes.found if cause.counts(of)}
         return {name: share for name, share in found.items() if math.isfinite(share)}
 
-    def total(self, monitor: str, quantity: str) -> float:
-        """RMS of all errors over that of the recorded values; nan if none is known.
+    def total(self, monitor: str, quantity: str, of: Truth | None = None) -> Share:
+        """The error by all causes; nan if none is known.
 
         Histories add up, as those of the grid and of the time step have opposite signs; where only the size of an error
-        is known, or it is one sample of a random error, squares do.
+        is known, or it is one sample of a random error, squares do. So do bounds, and what causes, those found alike
+        together, may be larger than their value; the upper value has these, too.
         """
-        own = self.recorded[monitor]
-        histories, sizes = self._errors(monitor, quantity)
-        if not histories and not sizes:
-            return math.nan
-        together = Cause("", "", {monitor: {quantity: sum(histories, np.zeros_like(own.values[quantity]))}})
-        return math.hypot(together.share(monitor, quantity, own), *sizes)
+        counted = [cause for cause in self.causes.found if cause.counts(of or self.of)]
+        known = [cause for cause in counted if math.isfinite(cause.share(monitor, quantity, self.motions[monitor]))]
+        if not known:
+            return Share(math.nan, math.nan)
+        alike: dict[str, list[Cause]] = {}
+        for cause in known:
+            alike.setdefault(cause.words, []).append(cause)
+        value = self._size([cause for cause in known if cause.how != "bound"], monitor, quantity)
+        more = [
+            (group[0].factor - (0.0 if group[0].how == "bound" else 1.0)) * self._size(group, monitor, quantity)
+            for group in alike.values()
+        ]
+        return Share(value, value + math.hypot(*more), any(cause.how == "unknown" for cause in counted))
 
-    def _errors(self, monitor: str, quantity: str) -> tuple[list[np.ndarray], list[float]]:
-        """The errors of all causes: histories (k, c), and where only they are known sizes."""
+    def _size(self, causes: Sequence[Cause], monitor: str, quantity: str) -> float:
+        """RMS of the sum of known errors over that of the motion."""
+        own = self.motions[monitor]
+        histories, sizes = self._split(causes, monitor, quantity)
+        return math.hypot(share_of(sum(histories, np.zeros_like(own.values[quantity])), quantity, own), *sizes)
+
+    def _split(self, causes: Sequence[Cause], monitor: str, quantity: str) -> tuple[list[np.ndarray], list[float]]:
+        """The known errors of some causes: histories (k, c), and where only they are known sizes."""
         histories, sizes = [], []
-        for cause in self.causes.found:
-            error = cause.errors.get(monitor, {}).get(quantity, math.nan)
-            if isinstance(error, float) or cause.is_sample:
-                sizes.append(cause.share(monitor, quantity, self.recorded[monitor]))
+        for cause in causes:
+            part = cause.parts.get(monitor, {}).get(quantity, math.nan)
+            if isinstance(part, float) or cause.is_sample:
+                sizes.append(cause.share(monitor, quantity, self.motions[monitor]))
             else:
-                histories.append(error)
+                histories.append(part)
         return histories, [size for size in sizes if math.isfinite(size)]
 
     def quantities(self, monitor: str) -> list[str]:
         """Quantities of a monitor that has any."""
-        return [name for name in QUANTITIES if name in self.recorded[monitor].values]
+        return [name for name in QUANTITIES if name in self.motions[monitor].values]
+
+    def largest(self, monitor: str, of: Truth | None = None) -> tuple[str, Share]:
+        """The quantity of a monitor with the largest error, and this; nan if nothing is known there."""
+        totals = {quantity: self.total(monitor, quantity, of) for quantity in self.quantities(monitor)}
+        return max(
+            ((q, share) for q, share in totals.items() if share.is_known),
+            key=lambda each: each[1].upper,
+            default=("", Share(math.nan, math.nan)),
+        )
+
+    def worst(self, of: Truth | None = None) -> Worst:
+        """The largest error of all quantities at monitors that are not quiet; none is 0."""
+        found = [
+            Worst(share, name, quantity)
+            for name in self.motions
+            for quantity in self.quantities(name)
+            if name in loud(self.motions, quantity) and (share := self.total(name, quantity, of)).is_known
+        ]
+        if not found:
+            return Worst(Share(0.0, 0.0))
+        worst = max(found, key=lambda each: each.share.upper)
+        shares = self.shares(worst.monitor, worst.quantity, of or self.of)
+        return Worst(worst.share, worst.monitor, worst.quantity, {c: each for c, each in shares.items() if each > 0.0})
 
     def correction(self, monitor: str, quantity: str) -> np.ndarray | None:
         """What the sides add (k, c), to be subtracted; None if it is not known without echoes."""
         cause = next((cause for cause in self.causes.found if cause.name == SIDES), None)
         if cause is None or not self.causes.echo_free:
             return None
-        error = cause.errors.get(monitor, {}).get(quantity)
-        return error if isinstance(error, np.ndarray) else None
+        part = cause.parts.get(monitor, {}).get(quantity)
+        return part if isinstance(part, np.ndarray) else None
 
     def band(self, monitor: str, quantity: str) -> np.ndarray:
-        """Half the width (k, c) of the band around the recorded values in which the exact ones are expected.
+        """Half the width (k, c) of the band around the motion in which the exact one is expected.
 
         The size of the sum of all errors at every time; of those of which only the size is known, this times the RMS.
         """
-        values = self.recorded[monitor].values[quantity]
-        histories, sizes = self._errors(monitor, quantity)
+        values = self.motions[monitor].values[quantity]
+        counted = [cause for cause in self.causes.found if cause.counts(self.of)]
+        histories, sizes = self._split(counted, monitor, quantity)
         usual = np.sqrt(np.mean(values**2, axis=0))
         return np.asarray(np.abs(sum(histories, np.zeros_like(values))) + sum(sizes) * usual)
 
     def summary(self) -> dict[str, Any]:
-        """Plain JSON values: shares by monitor, quantity and cause, and how they were found."""
-        monitors = {
-            name: {
-                quantity: {"total": self.total(name, quantity), **self.shares(name, quantity)}
-                for quantity in self.quantities(name)
-                if math.isfinite(self.total(name, quantity))
-            }
-            for name in self.recorded
-        }
-        how = {cause.name: cause.words for cause in self.causes.found}
+        """Plain JSON values: totals and shares by monitor, quantity and cause, and how they were found."""
+        known = [cause for cause in self.causes.found if cause.how != "unknown"]
         return {
-            "monitors": monitors,
-            "found": how,
-            "not_estimated": list(self.causes.missing),
+            "of": self.of,
+            "monitors": {name: dict(self._of_monitor(name)) for name in self.motions},
+            "causes": {
+                each.name: {"how": each.how, "words": each.words, "of_disks": each.of_disks, "factor": each.factor}
+                for each in known
+            },
+            "not_estimated": [*(f"{each.name}: {each.words}" for each in self.causes.unknown), *self.causes.limits],
             "notes": list(self.causes.notes),
             "repeat": None if self.repeat is None else self.repeat.summary(),
             "cost": self.causes.cost,
             "cpu_seconds": self.cpu_seconds,
         }
 
-    def lines(self) -> list[str]:
-        """A line for each monitor, then how the errors were found."""
-        found = []
-        without = ", in part" if self.causes.missing else ""
-        for name in self.recorded:
-            parts = [
-                f"{quantity} {in_words(self.total(name, quantity))} ({split_in_words(self.shares(name, quantity))})"
-                for quantity in self.quantities(name)
-                if math.isfinite(self.total(name, quantity))
-            ]
-            if parts:
-                found.append(f"error at {name}{without}: {'; '.join(parts)}")
-        return [*found, *self._how(), *self.causes.notes, *(f"not estimated: {line}" for line in self.causes.missing)]
-
-    def _how(self) -> list[str]:
-        """How the errors were found, causes found alike together."""
-        ways: dict[str, list[str]] = {}
-        for cause in self.causes.found:
-            ways.setdefault(cause.words, []).append(cause.name)
-        return [f"{' and '.join(names)} {words}" for words, names in ways.items()]
-
-
-@dataclass(frozen=True)
-class Expected:
-    """An expected error. worst : of all monitors that move, RMS over RMS; by : its causes at the worst monitor."""
-
-    worst: float
-    by: dict[str, float]
-
-
-def expected(causes: Sequence[Cause], recorded: Motions) -> Expected:
-    """The largest error of all recorded quantities at monitors that are not quiet, and its causes that are not zero."""
-    estimate = Estimate(recorded, Causes(list(causes)))
-    found = [
-        (total, estimate.shares(name, quantity))
-        for name in recorded
-        for quantity in estimate.quantities(name)
-        if name in loud(recorded, quantity) and np.isfinite(total := estimate.total(name, quantity))
-    ]
-    worst, by = max(found, key=lambda each: each[0], default=(0.0, {}))
-    return Expected(worst, {name: share for name, share in by.items() if share > 0.0})
+    def _of_monitor(self, name: str) -> Iterator[tuple[str, dict[str, Any]]]:
+        """The errors of each quantity of a monitor of which something is known."""
+        for quantity in self.quantities(name):
+            both = {of: self.total(name, quantity, of) for of in ("disks", "rock")}  # type: ignore[arg-type]
+            if both["rock"].is_known:
+                totals = {of: {"value": s.value, "upper": s.upper} for of, s in both.items() if s.is_known}
+                yield quantity, {"of": totals, "by": self.shares(name, quantity)}

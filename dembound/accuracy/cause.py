@@ -4,52 +4,88 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from dembound.accuracy.history import History
 
-SIDES, GRID, STEP, CONTINUUM = "sides", "grid", "time step", "continuum"
+SIDES, GRID, STEP, CONTINUUM, ENTRY, WALLS, NEAR = (
+    *("sides", "grid", "time step", "continuum", "entry of the wave", "walls of holes", "near loads"),
+)
 """Names of causes."""
 
 QUANTITIES = ("velocity", "displacement", "stress")
 """Quantities whose errors are estimated; stress of bars only."""
+
+How = Literal["measured", "companion", "formula", "bound", "unknown"]
+"""How an error is known: from the run itself, from companion runs, by a formula, its largest size only, or not at all.
+"""
+
+Truth = Literal["disks", "rock"]
+"""What an error is one of: of these disks, which are the material, so that only what is done to them is wrong; or of
+the rock, for which they are a grid."""
+
+Parts = Mapping[str, Mapping[str, np.ndarray | float]]
+"""Monitor -> quantity -> the part (k, c) of its motion that is due to a cause, or only its RMS over that of the motion.
+"""
 
 
 @dataclass(frozen=True)
 class Cause:
     """One cause of errors.
 
-    words : how its errors were found. errors : monitor -> quantity -> the part of the recorded values (k, c) that is
-    due to it, or, where only its size is known, a number: its RMS over that of the recorded values. is_sample : whether
-    they are a sample of a random error, of which only the RMS counts.
+    words : how its errors were found; of one that is not known why. parts : see `Parts`; of a bound they are at most
+    as large. of_disks : whether it is none where the disks are the material. factor : 95 % of true errors are at most
+    so many times as large. is_sample : whether they are a sample of a random error, of which only the RMS counts.
     """
 
     name: str
     words: str
-    errors: Mapping[str, Mapping[str, np.ndarray | float]]
+    parts: Parts
+    how: How = "formula"
+    of_disks: bool = False
+    factor: float = 1.0
     is_sample: bool = False
 
-    def share(self, monitor: str, quantity: str, recorded: History) -> float:
-        """RMS of its error over that of the recorded values, of the component with the largest; nan if not known."""
-        error = self.errors.get(monitor, {}).get(quantity, np.nan)
-        if isinstance(error, float):
-            return error
-        column = recorded.component(quantity)
-        size = float(np.linalg.norm(recorded.values[quantity][:, column]))
-        return float(np.linalg.norm(error[:, column])) / size if size > 0.0 else np.nan
+    @classmethod
+    def unknown(cls, name: str, words: str, of_disks: bool = False) -> Cause:
+        """A cause of which nothing is known."""
+        return cls(name, words, {}, "unknown", of_disks)
+
+    def counts(self, of: Truth) -> bool:
+        """Whether it is an error of this truth."""
+        return of == "rock" or not self.of_disks
+
+    @property
+    def largest(self) -> float:
+        """The largest of its sizes, for a cause of which only these are known."""
+        sizes = [size for each in self.parts.values() for size in each.values()]
+        return max((size for size in sizes if isinstance(size, float)), default=0.0)
+
+    def share(self, monitor: str, quantity: str, motion: History) -> float:
+        """RMS of its part over that of the motion, of the component with the largest; nan if not known."""
+        part = self.parts.get(monitor, {}).get(quantity, np.nan)
+        return part if isinstance(part, float) else share_of(part, quantity, motion)
+
+
+def share_of(part: np.ndarray, quantity: str, motion: History) -> float:
+    """RMS of a part (k, c) of a motion over that of the motion, of the component with the largest; nan at rest."""
+    column = motion.component(quantity)
+    size = float(np.linalg.norm(motion.values[quantity][:, column]))
+    return float(np.linalg.norm(part[:, column])) / size if size > 0.0 else np.nan
 
 
 @dataclass(frozen=True)
 class Causes:
     """Causes, and what is said about them.
 
-    missing : what is not estimated, and why, a line each. notes : what limits them, a line each. cost : work that was
-    spent, over that of the run. echo_free : whether what `SIDES` adds is known without echoes of the larger run.
+    limits : what of the motion is not covered, and why, a line each. notes : other lines. cost : work that was spent,
+    over that of the run. echo_free : whether what `SIDES` adds is known without echoes of the larger run.
     """
 
     found: Sequence[Cause]
-    missing: Sequence[str] = ()
+    limits: Sequence[str] = ()
     notes: Sequence[str] = ()
     cost: float = 0.0
     echo_free: bool = False
@@ -58,8 +94,13 @@ class Causes:
         """The causes of both, and what is said about both."""
         return Causes(
             [*self.found, *other.found],
-            [*self.missing, *other.missing],
+            [*self.limits, *other.limits],
             [*self.notes, *other.notes],
             self.cost + other.cost,
             self.echo_free or other.echo_free,
         )
+
+    @property
+    def unknown(self) -> list[Cause]:
+        """Those of which nothing is known."""
+        return [cause for cause in self.found if cause.how == "unknown"]

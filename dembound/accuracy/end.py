@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.accuracy.best import Best
-from dembound.accuracy.budget import expected
-from dembound.accuracy.cause import Cause
+from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.history import Motions
+from dembound.accuracy.proposal import Proposal
 from dembound.casefile import Case
 from dembound.errors import DemboundError
 from dembound.kinds import with_changes
@@ -43,25 +42,17 @@ class EarlierEnd:
     lost: Cause
 
 
-def ended_earlier(
-    best: Best,
-    recorded: Motions,
-    motion: Motions,
-    causes: Sequence[Cause],
-    kept: Sequence[str],
-) -> Best:
+def ended_earlier(best: Proposal, given: Case, bound: float, motion: Motions, kept: Sequence[str]) -> Proposal:
     """A choice that keeps its bound with the earliest end with which it still does; itself without one.
 
-    recorded : motion beside which errors are measured. motion : what its monitors are expected to record. causes : of
-    its error. kept : keys that do not change.
+    given : the case that it is a choice for. motion : what its monitors are expected to record. kept : keys that do not
+    change.
     """
-    for end in earlier_ends(best.case, motion, best.bound, kept) if best.holds else []:
-        error = expected([*causes, end.lost], recorded)
-        last = end.share * best.given.run.duration
-        words = f"{best.words}, until the monitors are silent after about {last:.3g} s"
-        cost = end.share * best.cost
-        found = replace(best, choice=Choice.of(best.given, end.case, words), error=error.worst, by=error.by, cost=cost)
-        if found.holds:
+    for end in earlier_ends(best.case, motion, bound, kept) if best.holds(bound) else []:
+        words = f"{best.choice.name}, until the monitors are silent after about {end.share * given.run.duration:.3g} s"
+        budget = replace(best.budget, causes=best.budget.causes + Causes([end.lost]))
+        found = Proposal(Choice.of(given, end.case, words), end.share * best.cost, budget)
+        if found.holds(bound):
             return found
     return best
 
@@ -109,4 +100,4 @@ def _lost(motion: Motions, end: float) -> Cause:
             quantity: np.where(late[:, None], (values[last] if quantity == "displacement" else 0.0) - values, 0.0)
             for quantity, values in own.values.items()
         }
-    return Cause(END, "by the motion after the monitors are silent", errors)
+    return Cause(END, "by the motion after the monitors are silent", errors, "measured")

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.budget import Estimate
+from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Causes
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.judges import judge_of
@@ -37,33 +37,28 @@ LEAST_SAMPLES = 8
 """Fewest samples of a history whose error is estimated."""
 
 
-def estimate_results(
-    folder: Path, budget: float | None = None, second_seed: bool = False, repeat: bool = False
-) -> Estimate:
+def estimate_results(folder: Path, repeat: bool = False) -> Budget:
     """Estimate the error of a complete run; writes ``estimate.h5`` and the entry ``error_estimate`` of its summary.
 
     Parameters
     ----------
-    folder : of the results. budget : share of the run's work that may be spent; None: see `causes_of`. second_seed :
-    whether a second run with another random packing is made, to find how much depends on it. repeat : whether a run
-    with cracks is repeated with a smaller time step, to find how much of them is one draw of many.
+    folder : of the results. repeat : whether a run with cracks is repeated with a smaller time step, to find how much
+    of them is one draw of many.
 
-    Raises CaseError for a run that is not complete, that has neither monitors nor many cracks, a budget that is none, a
-    second seed of a packing that has none, or a repetition without cracks, and RecordError for a record that cannot be
-    read.
+    Raises CaseError for a run that is not complete, that has neither monitors nor many cracks, or a repetition without
+    cracks, and RecordError for a record that cannot be read.
     """
     clock = Clock(time.process_time)
     with clock.with_compiling(), clock.of("estimate"):
-        found, summary = _estimated(folder, budget, second_seed, repeat)
+        found, summary = _estimated(folder, repeat)
     found = replace(found, cpu_seconds=clock.seconds["estimate"])
     _write(found, folder / FILE)
     write_json(folder / "summary.json", summary | {KEY: found.summary()})
     return found
 
 
-def _estimated(folder: Path, budget: float | None, second_seed: bool, repeat: bool) -> tuple[Estimate, dict[str, Any]]:
-    """The estimate, and the summary of the run."""
-    require_budget(budget)
+def _estimated(folder: Path, repeat: bool) -> tuple[Budget, dict[str, Any]]:
+    """The errors, and the summary of the run."""
     record = folder / "run.h5"
     with open_record(record) as file:
         require_run(file)
@@ -71,49 +66,31 @@ def _estimated(folder: Path, budget: float | None, second_seed: bool, repeat: bo
     case, cracked = _until(recorded_case(record), summary), Cracked.of(record)
     recorded, lack = _recorded(record, cracked.first)
     one_draw = list(cracked.one_draw())
-    if lack and (second_seed or not (repeat or one_draw)):
+    if lack and not (repeat or one_draw):
         raise CaseError([f"{record}: {lack}"])
-    work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
     again = repeated(case, record, cracked) if repeat else None
     said = Causes([], [], one_draw) if again is None else Causes([], [], again.lines(), again.cost)
-    causes = Causes([], [lack]) if lack else _causes(case, recorded, cracked.first, summary, work, budget, second_seed)
-    return Estimate(Named(recorded, "monitor"), causes + said, repeat=again), summary
+    causes = Causes([], [lack]) if lack else _causes(case, recorded, cracked.first, summary)
+    return Budget(Named(recorded, "monitor"), causes + said, judge_of(case).truth(case), repeat=again), summary
 
 
-def _causes(
-    case: Case,
-    recorded: Motions,
-    until: float,
-    summary: Mapping[str, Any],
-    work: float,
-    budget: float | None,
-    second_seed: bool,
-) -> Causes:
-    """The causes of the error of a run up to its first break, at `until` (s); work : of the run."""
+def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, Any]) -> Causes:
+    """The causes of the error of a run up to its first break, at `until` (s)."""
     broken = [] if case.run.duration < until else [_broken(until)]
     case = replace(case, run=case.run.model_copy(update={"duration": min(case.run.duration, until)}))
-    causes = causes_of(case, recorded, summary["time_step"], work, budget)
-    if second_seed:
-        causes += judge_of(case).of_another_seed(case, recorded, work)
+    work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
+    causes = causes_of(case, recorded, summary["time_step"], work)
     causes += Causes([], broken, list(judge_of(case).notes(case, summary)))
-    return causes + Causes([], list(_at_rest(Estimate(recorded, causes))))
+    return causes + Causes([], list(_at_rest(Budget(recorded, causes))))
 
 
-def causes_of(case: Case, recorded: Motions, time_step: float, work: float, budget: float | None = None) -> Causes:
+def causes_of(case: Case, recorded: Motions, time_step: float, work: float) -> Causes:
     """The causes of the error of a run.
 
     case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step (s),
-    work (in the unit of its kind) : of the run. budget : share of that work that may be spent; None: `BUDGET`, and
-    `SHORT` in any case.
+    work (in the unit of its kind) : of the run, of which companions may take a tenth, and `SHORT` in any case.
     """
-    most = max(SHORT, BUDGET * work) if budget is None else budget * work
-    return judge_of(case).causes(case, recorded, time_step, work, most)
-
-
-def require_budget(budget: float | None) -> None:
-    """Raise CaseError for a share of work that is none."""
-    if budget is not None and not 0.0 < budget < np.inf:
-        raise CaseError([f"--budget: is {budget:g}, must be above 0"])
+    return judge_of(case).causes(case, recorded, time_step, work, max(SHORT, BUDGET * work))
 
 
 def estimate_if_asked(case: Case, folder: Path) -> str:
@@ -126,16 +103,16 @@ def estimate_if_asked(case: Case, folder: Path) -> str:
             found = estimate_results(folder)
         except DemboundError as error:
             return f"errors are not estimated: {'; '.join(str(error).splitlines())}"
-        if not found.recorded:
-            return f"errors are not estimated: {'; '.join(found.causes.missing)}"
+        if not found.motions:
+            return f"errors are not estimated: {'; '.join(found.causes.limits)}"
     return ""
 
 
-def _at_rest(found: Estimate) -> Iterator[str]:
+def _at_rest(found: Budget) -> Iterator[str]:
     """Monitors of which nothing is known, unless it is already said why."""
-    said = {line.split(":")[0] for line in found.causes.missing}
-    for name in found.recorded if found.causes.found else ():
-        if name not in said and not any(math.isfinite(found.total(name, each)) for each in found.quantities(name)):
+    said = {line.split(":")[0] for line in found.causes.limits}
+    for name in found.motions if found.causes.found else ():
+        if name not in said and not found.largest(name)[1].is_known:
             yield f"{name}: does not move"
 
 
@@ -190,13 +167,13 @@ def _too_little(samples: Sequence[int], until: float) -> str:
     return f"has {most} samples of its monitors (output.history_interval); {needed}"
 
 
-def _write(found: Estimate, path: Path) -> None:
+def _write(found: Budget, path: Path) -> None:
     """Write the histories of errors, those without that of the sides where it is known, and the cracks of a repeat."""
     import h5py
 
     with replacing(path) as part, h5py.File(part, "w") as file:
         file.create_group("histories")
-        for name, recorded in found.recorded.items():
+        for name, recorded in found.motions.items():
             group = file.create_group(f"histories/{name}")
             write(group, "time", recorded.time, "s")
             for quantity in found.quantities(name):
@@ -207,13 +184,13 @@ def _write(found: Estimate, path: Path) -> None:
             write(group, "position", found.repeat.other.places, "m")
 
 
-def _write_quantity(group: Any, found: Estimate, name: str, quantity: str) -> None:
+def _write_quantity(group: Any, found: Budget, name: str, quantity: str) -> None:
     """The errors of a quantity by cause, its band, and the corrected history."""
-    recorded, unit = found.recorded[name], UNITS[quantity]
+    recorded, unit = found.motions[name], UNITS[quantity]
     inner = group.create_group(quantity)
-    describe(inner, {"total": found.total(name, quantity)})
+    describe(inner, {"total": found.total(name, quantity).value})
     for cause in found.causes.found:
-        error = cause.errors.get(name, {}).get(quantity)
+        error = cause.parts.get(name, {}).get(quantity)
         if isinstance(error, np.ndarray):
             write(inner, f"error of {cause.name}", error, unit)
         elif error is not None:

@@ -6,18 +6,17 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Generic, TypeVar
 
-from dembound.accuracy.best import Best
-from dembound.accuracy.cause import Causes
+from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.moved_sides import Extended
+from dembound.accuracy.proposal import Advice
 from dembound.accuracy.reference import Exact, FinerRun
 from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.motion.scene import Scene
 from dembound.results.histories import Quantity
-from dembound.words import Entries
 
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)
@@ -45,11 +44,15 @@ class Judge(ABC, Generic[C, S]):
         (s), work (in the unit of its kind) : of the run. most : work that may be spent.
         """
 
-    def of_another_seed(self, case: C, recorded: Motions, work: float) -> Causes:
-        """What the seed of a random packing adds to the motion of its monitors, from one more run of the same length.
+    def truth(self, case: C) -> Truth:
+        """What the errors of a case are those of where this is not said; by default of the rock."""
+        return "rock"
 
-        case : to the end of the run. work : of the run. Raises CaseError for a case without a seed, and the errors of
-        runs.
+    def of_other_seeds(self, case: C, motions: Motions, seeds: int) -> Causes:
+        """What the seed of a random packing adds to the motion of its monitors, from runs with several seeds.
+
+        motions : by monitor, at the times at which it is found. Raises CaseError for a case without a seed, and the
+        errors of runs.
         """
         raise no_seed(case)
 
@@ -58,8 +61,8 @@ class Judge(ABC, Generic[C, S]):
         yield from ()
 
     @abstractmethod
-    def best(self, case: C, bound: float, kept: Sequence[str]) -> Best:
-        """The cheapest choice that keeps an error bound, or the one with the smallest error; kept : keys not changed.
+    def advise(self, case: C, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
+        """The errors of a case, and the cheapest choices for several bounds; kept : keys not changed.
 
         Raises CaseError for cases whose errors are not known, that do not move at their monitors, and where no choice
         keeps those values; the errors of building a scene and of runs.
@@ -93,12 +96,12 @@ class Judge(ABC, Generic[C, S]):
         """What errors of some cases beside a run of one of them include besides errors, a line each."""
         return ()
 
-    def proposals(self, scene: S) -> Entries:
-        """Lines for `dembound check` about cheaper cases; by default none."""
-        yield from ()
+    def quick(self, scene: S) -> Causes:
+        """Causes of the error of a scene that are known without its motion, the others as unknown; by default none."""
+        return Causes([])
 
 
 def no_seed(case: Case) -> CaseError:
     """The error of a case without a random packing that is to be run with another seed."""
     reason = "the case has no random packing, so that nothing depends on a seed"
-    return CaseError([f"--second-seed: {reason}"], case.name)
+    return CaseError([f"--seeds: {reason}"], case.name)

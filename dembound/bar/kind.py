@@ -6,8 +6,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from dembound.bar.facts import bar_facts
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
@@ -82,18 +80,9 @@ class Bars(Kind[BarCase, BarScene]):
         """The fastest waves at any stage of its method."""
         return front_of_bar(scene, time_step)
 
-    def has_coda(self, scene: BarScene) -> bool:
-        """Whether waves leave a coda: the bar may break."""
-        return bool(np.isfinite(scene.case.bar.least_strength))
-
     def storage(self, scene: BarScene) -> Storage:
         """Bytes on disk of the results of a bar, from its nodes and the lengths of its bonds."""
         return storage_of(scene)
-
-    def unit(self, scene: BarScene) -> tuple[float, float]:
-        """The spacing of its nodes."""
-        finest = min(part.spacing for part in scene.rod.ranges)
-        return finest, finest
 
     def facts(self, scene: BarScene, time_step: float) -> Entries:
         """The bar, its method and what acts on it."""

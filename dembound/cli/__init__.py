@@ -4,6 +4,7 @@ Each command imports what it calls when it is called, so that help and completio
 """
 
 from dembound.cli import (  # each registers its commands with the application
+    advise,
     boundary,
     calibration,
     cases,
@@ -25,6 +26,7 @@ from dembound.cli import (  # each registers its commands with the application
 from dembound.cli.app import app, main
 
 __all__ = [
+    "advise",
     "app",
     "boundary",
     "calibration",

@@ -154,6 +154,18 @@ def changed(case: Case, changes: list[str] | None, name: str | None) -> Case:
     return replace(case, name=name)
 
 
+def text_for(target: Path, path: Path, case: Case, changes: Sequence[str] | None) -> str:
+    """The text of a case file with the changes of ``--set``, for a file in the folder of another one.
+
+    case : that of the file, changed.
+    """
+    from dembound.casefile import to_toml
+    from dembound.casefile.edit import edited
+
+    text = edited(path.read_bytes().decode("utf-8-sig"), settings_of(changes))
+    return to_toml(replace(case, text=text), target.parent)
+
+
 def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -> DiskCase:
     """Read a case for a command that accepts only disks."""
     from dembound.casefile.disks import DiskCase

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -20,7 +19,7 @@ from dembound.cli.app import (
     app,
     load_disks,
     prepare_computing,
-    settings_of,
+    text_for,
     writable,
 )
 from dembound.cli.console import out
@@ -105,7 +104,7 @@ def calibrate_sides(
     plain = loaded.name.removesuffix(CALIBRATED)
     folder = output / f"{plain}_calibration"
     target = calibrated or case.with_name(f"{plain}{CALIBRATED}.toml")
-    text = _text_for(target, case, loaded, changes)
+    text = text_for(target, case, loaded, changes)
     _require_no_other(target, text, _factors(loaded, boundary, wave))
     if boundary is None:
         found = calibrate_all(loaded, report=_print_pass_of_side, **options)
@@ -125,18 +124,6 @@ def calibrate_sides(
     with replacing(target) as part:
         part.write_bytes(edited(text, changes_of(found)).encode())
     out.print(f"wrote {target}")
-
-
-def _text_for(target: Path, path: Path, case: DiskCase, changes: list[str] | None) -> str:
-    """The text of a case file with the changes of ``--set``, for a file in the folder of another one.
-
-    case : that of the file, changed.
-    """
-    from dembound.casefile import to_toml
-    from dembound.casefile.edit import edited
-
-    text = edited(path.read_bytes().decode("utf-8-sig"), settings_of(changes))
-    return to_toml(replace(case, text=text), target.parent)
 
 
 def _factors(case: DiskCase, boundary: Side | None, wave: WaveType | None) -> list[str]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.accuracy import Error, Keep, bound_of, chosen, name_within
+from dembound.cli.advise import Error, Keep, bound_of, chosen, name_within
 from dembound.cli.app import (
     Cases,
     Name,
@@ -25,7 +25,7 @@ from dembound.cli.app import (
     prepare_computing,
 )
 from dembound.cli.console import compact_table, err, out
-from dembound.cli.estimate import Budget, print_estimate
+from dembound.cli.estimate import print_estimate
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN
@@ -37,21 +37,13 @@ if TYPE_CHECKING:
 
 
 @app.command("check", rich_help_panel="Cases")
-def check_cases(
-    cases: Cases, changes: Settings = None, threads: Threads = None, error: Error = None, keep: Keep = None
-) -> None:
-    """Print the facts of a run: particles, bonds, time step, memory, time, resolution. Writes nothing.
-
-    With --error it prints the cheapest choice that is as accurate, see docs/error_bound.md, and the facts of its run.
-    """
+def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None) -> None:
+    """Print the facts of a run: particles, bonds, time step, memory, time, resolution. Writes nothing."""
     from dembound.check import check
     from dembound.cli.progress import print_warning
 
-    bound = bound_of(error, keep)
     prepare_computing(threads)
     for case in [load_case(path, changes) for path in cases]:
-        if bound is not None:
-            case = chosen(case, bound, keep, changes)
         facts, warnings = check(case)
         table = compact_table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
         for name, value in facts.items():
@@ -70,7 +62,6 @@ def run(
     name: Name = None,
     threads: Threads = None,
     estimate: Annotated[bool, typer.Option("--estimate", help="Estimate the errors of each run afterwards.")] = False,
-    budget: Budget = None,
     error: Error = None,
     keep: Keep = None,
 ) -> None:
@@ -78,25 +69,22 @@ def run(
 
     All case files are read before the first is run, so a mistake in the last one is found at once.
 
-    With --error each is run with the cheapest choice that is as accurate; see docs/error_bound.md.
+    With --error each is run with the cheapest choice that is as accurate, as dembound advise finds it.
 
     Its results are then in NAME_1pct, for an error of 0.3 % in NAME_0_3pct, unless --name is given.
     """
-    from dembound.accuracy.estimate import require_budget
     from dembound.results.folder import Folder
     from dembound.running import preflight
     from dembound.running.recorded import require_replaceable
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
-    bound = bound_of(error, keep)
+    bound = bound_of(error)
+    if keep and bound is None:
+        raise CaseError(["--keep: needs --error, without which nothing is changed"])
     prepare_computing(threads)
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
         raise CaseError(["--name: names the results of one case, there are several here"])
-    is_estimated = estimate or bound is not None or any(case.output.estimate for case in loaded)
-    if budget is not None and not is_estimated:
-        raise CaseError(["--budget: is for estimates; give --estimate, too"])
-    require_budget(budget)
     if estimate and (silent := [case.name for case in loaded if not case.monitor]):
         needs = "has no monitor whose error could be estimated; give a [[monitor]]"
         raise CaseError([f"--estimate: {name} {needs}" for name in silent])
@@ -116,7 +104,7 @@ def run(
     for number, case in enumerate(loaded):
         if number > 0:
             gc.collect()  # the arrays of the run before, whose objects refer to each other
-        _run(case, output, spent, estimated=estimate or bound is not None, budget=budget)
+        _run(case, output, spent, estimated=estimate or bound is not None)
         spent = {}  # counted for the first case only
 
 
@@ -190,11 +178,10 @@ def _run(
     begun_for: float | None = None,
     *,
     estimated: bool = False,
-    budget: float | None = None,
 ) -> None:
     """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s.
 
-    estimated : whether its errors are estimated though the case does not ask for it; budget : for that.
+    estimated : whether its errors are estimated though the case does not ask for it.
     """
     from dembound.results.folder import Folder
     from dembound.running import run_case
@@ -202,7 +189,7 @@ def _run(
     folder = Folder(output, case.name)
     _print_results(_watched(folder, partial(run_case, case, output, seconds=spent, begun_for=begun_for)))
     if estimated or case.output.estimate:
-        print_estimate(folder.final, budget)
+        print_estimate(folder.final)
 
 
 def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:

@@ -105,14 +105,6 @@ class Disks(Kind[DiskCase, DiskScene]):
         """The front of the fastest waves of the packing."""
         return front_of(scene.ground, scene.case.run.safety)
 
-    def has_coda(self, scene: DiskScene) -> bool:
-        """Whether waves leave a coda: bricks are random, or contacts may open."""
-        return scene.has_history or not scene.case.packing.is_lattice
-
-    def has_static_stage(self, scene: DiskScene) -> bool:
-        """Whether the case has a static stage."""
-        return scene.case.static is not None
-
     def storage(self, scene: DiskScene) -> Storage:
         """Bytes on disk of the results of a scene, from the numbers of its disks and contacts."""
         return storage_of(scene)
@@ -128,10 +120,6 @@ class Disks(Kind[DiskCase, DiskScene]):
     def stages_from(self, case: DiskCase) -> Path | None:
         """The folder given by ``static.from``."""
         return None if case.static is None or case.static.from_ is None else Path(case.static.from_)
-
-    def unit(self, scene: DiskScene) -> tuple[float, float]:
-        """Width and height (m) of a brick, of which a scene is tiled."""
-        return scene.case.packing.brick_size
 
     def facts(self, scene: DiskScene, time_step: float) -> Entries:
         """Packing, law, loads and boundaries."""

@@ -183,14 +183,6 @@ class Kind(ABC, Generic[C, S]):
         """The fastest waves of a scene that is stepped by time_step (s)."""
 
     @abstractmethod
-    def has_coda(self, scene: S) -> bool:
-        """Whether motion lasts longer than its waves take: scattered by the packing, or of what breaks or opens."""
-
-    def has_static_stage(self, scene: S) -> bool:
-        """Whether a stage before the run loads the scene, by default not."""
-        return False
-
-    @abstractmethod
     def storage(self, scene: S) -> Storage:
         """Bytes on disk of what is written of a scene."""
 
@@ -205,10 +197,6 @@ class Kind(ABC, Generic[C, S]):
     def stages_from(self, case: C) -> Path | None:
         """The folder of results whose stages a case uses; by default none."""
         return None
-
-    @abstractmethod
-    def unit(self, scene: S) -> tuple[float, float]:
-        """Lengths (m) along x and y by which a scene can be longer or shorter."""
 
     @abstractmethod
     def facts(self, scene: S, time_step: float) -> Entries:

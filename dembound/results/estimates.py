@@ -18,6 +18,9 @@ FILE = "estimate.h5"
 KEY = "error_estimate"
 """Entry of the summary."""
 
+NAMES = {"disks": "these disks", "rock": "the rock"}
+"""What errors may be those of."""
+
 LEAST = 1e-3
 """Smallest error that is given as a number."""
 
@@ -69,10 +72,15 @@ def split_in_words(shares: Mapping[str, float]) -> str:
 def entries(estimate: Mapping[str, Any]) -> Entries:
     """The entry of a summary as names and texts: errors at each monitor, how they were found, and what is missing."""
     for monitor, quantities in estimate["monitors"].items():
-        for quantity, shares in quantities.items():
-            causes = {name: share for name, share in shares.items() if name != "total"}
-            yield f"{monitor}, {quantity}", f"{in_words(shares['total'])} ({split_in_words(causes)})"
-    yield from estimate["found"].items()
+        for quantity, found in quantities.items():
+            totals = ", ".join(f"of {NAMES[of]} {_between(each)}" for of, each in found["of"].items())
+            yield f"{monitor}, {quantity}", f"{totals} ({split_in_words(found['by'])})"
+    yield from ((name, f"{cause['how']}, {cause['words']}") for name, cause in estimate["causes"].items())
     for name, lines in (("notes", estimate["notes"]), ("not estimated", estimate["not_estimated"])):
         if lines:
             yield name, "; ".join(lines)
+
+
+def _between(share: Mapping[str, float]) -> str:
+    """An error, and how large it may be."""
+    return f"{in_words(share['value'])}, at most {percent(share['upper'])}"

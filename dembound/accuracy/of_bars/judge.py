@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
-from dembound.accuracy.best import Best
-from dembound.accuracy.cause import Causes
+from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import Judge
@@ -16,7 +15,8 @@ from dembound.accuracy.of_bars.chart_choices import bar_choices
 from dembound.accuracy.of_bars.extended import extended_bar
 from dembound.accuracy.of_bars.finer import Finer, finer
 from dembound.accuracy.of_bars.pulse import PulseInBar
-from dembound.accuracy.of_bars.search import best_of_bar
+from dembound.accuracy.of_bars.search import advice_for_bar
+from dembound.accuracy.proposal import Advice
 from dembound.accuracy.runner import Run
 from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.bar.scene import BarScene
@@ -35,9 +35,9 @@ class BarJudge(Judge[BarCase, BarScene]):
         """Ends, nodes and steps, from the waves of the linear bar."""
         return causes_of_bar(case, recorded, time_step)
 
-    def best(self, case: BarCase, bound: float, kept: Sequence[str]) -> Best:
+    def advise(self, case: BarCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
         """The cheapest nodes, steps and absorbing ends."""
-        return best_of_bar(case, bound, kept)
+        return advice_for_bar(case, bounds, kept)
 
     def extended(self, case: BarCase, most: int) -> Extended:
         """The bar with more spacings beyond ends that are neither loaded nor driven."""

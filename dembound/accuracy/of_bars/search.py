@@ -15,25 +15,21 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.best import Best
-from dembound.accuracy.budget import expected
-from dembound.accuracy.cause import Cause
+from dembound.accuracy.budget import Budget
+from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History, Motions
-from dembound.accuracy.of_bars.causes import QUIET, difference, largest_motion, not_linear, split
+from dembound.accuracy.of_bars.causes import FACTOR, QUIET, difference, largest_motion, not_linear, split
 from dembound.accuracy.of_bars.exact import ExactMotion
 from dembound.accuracy.of_bars.floors import Floors, first_echo, is_regular
 from dembound.accuracy.of_bars.motions import BarMotions
 from dembound.accuracy.of_bars.options import BarOption, bar_options, may_break
 from dembound.accuracy.of_bars.window import Window
+from dembound.accuracy.proposal import Advice, Proposal
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
-
-SAFETY = 1.05
-"""Expected errors are below the bound by this factor: they differ from true ones by up to 3 %
-(tests/unit/accuracy/of_bars/test_causes.py)."""
 
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: an eighth of the spacing."""
@@ -45,26 +41,28 @@ ALONG = "; its nodes and method remain, as it may break, and the error is that b
 """What is said of a bar that may break."""
 
 
-def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Best:
-    """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
+def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str]) -> Advice:
+    """The errors of a bar, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
-    Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
-    keeps those values; the errors of building a scene.
+    kept : keys that do not change. Raises CaseError for a bar whose errors are not known, one that does not move at its
+    monitors, and where no choice keeps those values; the errors of building a scene.
     """
     if refused := not_linear(case):
-        raise CaseError([f"--error: nothing is known of {line}" for line in refused], case.name)
+        raise CaseError([f"advise: nothing is known of {line}" for line in refused], case.name)
     own = given_motion(case)
     if not own.moves:
-        raise CaseError(["--error: nothing moves at the monitors"], case.name)
+        raise CaseError(["advise: nothing moves at the monitors"], case.name)
     motions = affordable_motions(own, kept)
-    if not motions:
-        raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
-    best, tried = cheapest(motions, bound)
-    words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
-    choice = Choice.of(case, best.choice.case(case), words)
-    costs = best.choice.cost, own.choice.cost
-    found = Best(case, choice, best.error, best.by, bound, *costs, tried, SAFETY)
-    return found if may_break(case) else ended_earlier(found, best.recorded, best.recorded, best.causes, kept)
+    if bounds and not motions:
+        raise CaseError(["advise: no choice keeps the values of --keep and --set"], case.name)
+    best, tried = {}, 0
+    for bound in bounds:
+        motion, count = cheapest(motions, bound)
+        tried += count
+        words = f"{motion.choice.words}{ALONG if may_break(case) else ''}"
+        found = Proposal(Choice.of(case, motion.choice.case(case), words), motion.choice.cost, motion.budget)
+        best[bound] = found if may_break(case) else ended_earlier(found, case, bound, motion.recorded, kept)
+    return Advice(Proposal(Choice("the case as it is", {}, case), own.choice.cost, own.budget), best, tried)
 
 
 def given_motion(case: BarCase) -> Motion:
@@ -86,12 +84,12 @@ def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
     """
     floors, found, left = Floors(), list[Motion](), list[Motion]()
     for motion in motions:
-        if SAFETY * floors.of(motion.choice) > bound:
+        if FACTOR * floors.of(motion.choice) > bound:
             left.append(motion)
             continue
         motion.add_to(floors)
         found.append(motion)
-        if SAFETY * motion.error <= bound:
+        if motion.budget.worst().share.upper <= bound:
             return motion, len(found)
     best = min(found, key=lambda each: each.error)
     for motion in reversed(left):  # finer nodes first
@@ -134,7 +132,7 @@ class Motion:
                 )
                 for name, each in own.items()
             }
-        return expected([difference("all", own, exact, recorded)], recorded).worst
+        return Budget(recorded, Causes([difference("all", own, exact, recorded)])).worst().share.value
 
     @property
     def _surely_counted(self) -> dict[str, History]:
@@ -145,10 +143,10 @@ class Motion:
             for name, own in self.recorded.items()
         }
 
-    @property
-    def by(self) -> dict[str, float]:
-        """Shares of the error by cause at the worst monitor; some have opposite signs, as those of grid and steps."""
-        return expected(self.causes, self.recorded).by
+    @cached_property
+    def budget(self) -> Budget:
+        """Errors by cause; some have opposite signs, as those of grid and steps."""
+        return Budget(self.recorded, Causes(self.causes))
 
     @cached_property
     def causes(self) -> list[Cause]:

@@ -14,7 +14,7 @@ from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
 from dembound.accuracy.of_disks.pair import Pair, pair_of, ratios, sides_of_pair
-from dembound.accuracy.of_disks.places import middle_of_loads, middles_of_loads, patch_around, weights_at
+from dembound.accuracy.of_disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
 from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
@@ -26,6 +26,9 @@ from dembound.errors import CaseError
 
 QUANTITIES = ("velocity", "displacement")
 """Quantities whose errors are bounded."""
+
+LEEWAY = 1.5
+"""Work of the cheapest pair over what may be spent, from which on an estimate runs none."""
 
 LESS = 0.9
 """Step of all companions over that of the pair, so that it is stable with the springs and half cells of any sides."""
@@ -63,6 +66,11 @@ class Companions:
         if self.pair is not None:
             return LESS * self.pair.step
         return LESS * choose_step(self._lattice)[0]
+
+    def require_affordable(self) -> None:
+        """Raise CaseError if even the cheapest pair takes much more than may be spent."""
+        if self.pair is not None and (times := self.pair.work / self.most) > LEEWAY:
+            raise CaseError([f"companions would take {times:.2g} times the work that may be spent on them"])
 
     @property
     def far(self) -> Motions:
@@ -112,29 +120,44 @@ class Companions:
         """Bricks of the companion's disks beyond each side that may move, with which nothing returns."""
         return needed_by(build(self._own))
 
+    @property
+    def echo_free(self) -> bool:
+        """Whether nothing returns in the run with far sides."""
+        return self.pair is None or self.pair.echo_free
+
+    @property
+    def far_size(self) -> str:
+        """Width and height of the scene with far sides, in words."""
+        size = self._lattice.case.size if self.pair is None else self.pair.size
+        return "{:.4g} m × {:.4g} m".format(*size)
+
+    @property
+    def words(self) -> str:
+        """How errors are found with them."""
+        ratio = self.diameter / self.scene.ground.brick.mean_diameter
+        return f"from companions with particles {ratio:.3g} times as large, {self.far_size}"
+
     def recorded(self, scene: DiskScene) -> dict[str, History]:
         """The far companion's motion at the places of the monitors in a scene, seen from the loads."""
         time = next(iter(self.far.values())).time
         motion = self._motion(self.far, self._places(scene))
         return {name: History(scene.monitored[name], time, values) for name, values in motion.items()}
 
-    def moved(self, scene: DiskScene) -> list[dict[str, dict[str, np.ndarray]]]:
-        """How that motion differs at the places of a scene's monitors from that at those given, (k, 2).
+    def moved(self, scene: DiskScene) -> dict[str, dict[str, np.ndarray | float]]:
+        """How that motion differs from that at the places asked for, (k, 2), by monitor and quantity.
 
-        By monitor and quantity, seen from each load in turn, as loads may be elsewhere, too; else from the ground.
+        Monitors and loads have the nearest disks. Of several loads, of whose motion only the sum is known, the one by
+        which the motion differs most counts.
         """
-        both = (middles_of_loads(each) for each in (scene, self.scene))
-        loads = [there - given for (there, _), (given, _) in zip(*both, strict=True)] or [np.zeros(2)]
-        given = self._motion(self.far, self._places(self.scene))
-        found = []
-        for load in loads:
-            places = {
-                name: place + scene.monitored[name] - self.scene.monitored[name] - load
-                for name, place in self._places(self.scene).items()
-            }
-            motion = self._motion(self.far, places)
-            found.append({name: {q: motion[name][q] - given[name][q] for q in QUANTITIES} for name in given})
-        return found
+        there = self._places(scene)
+        asked = {monitor.name: monitor.position - scene.monitored[monitor.name] for monitor in self.case.monitor}
+        loads = [each.middle - each.asked for each in places_of_loads(scene)] or [np.zeros(2)]
+        own = self._motion(self.far, there)
+        each = [self._motion(self.far, {name: there[name] + asked[name] + load for name in there}) for load in loads]
+        return {
+            name: {q: max((own[name][q] - other[name][q] for other in each), key=np.linalg.norm) for q in QUANTITIES}
+            for name in own
+        }
 
     def _places(self, scene: DiskScene) -> dict[str, np.ndarray]:
         """Where (2,) m in the lattice of the companion the monitors of a scene are, seen from the middle of loads."""

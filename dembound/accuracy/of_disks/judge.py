@@ -5,26 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
-from dembound.accuracy.best import Best
-from dembound.accuracy.cause import Causes
+from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import Judge
 from dembound.accuracy.moved_sides import Extended
-from dembound.accuracy.of_disks.boxes import box_facts
-from dembound.accuracy.of_disks.causes import causes_of_disks
+from dembound.accuracy.of_disks.causes import causes_of_run, quick_causes
 from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.exact.continuum import ExactContinuum
 from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.extended import extended_disks
-from dembound.accuracy.of_disks.search import best_of_disks
+from dembound.accuracy.of_disks.search import advice_for_disks
 from dembound.accuracy.of_disks.seeds import cause_of_packing
+from dembound.accuracy.proposal import Advice
 from dembound.accuracy.reference import Exact
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts.breaks import BREAK_TIME, BREAK_X, BREAK_Y
 from dembound.disks.scene import DiskScene
-from dembound.words import Entries
 
 REALISATIONS = (
     "choices differ in their random packing, and every packing is another realisation of the rock: errors beside a run "
@@ -40,11 +38,16 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def causes(self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
         """Sides, by companions; dispersion, steps, continuum and walls, by formulas."""
-        return causes_of_disks(case, recorded, time_step, work, most)
+        return causes_of_run(case, recorded, time_step, work, most)
 
-    def of_another_seed(self, case: DiskCase, recorded: Motions, work: float) -> Causes:
-        """The difference from a run with the next seed; see `Judge.of_another_seed`."""
-        return cause_of_packing(case, recorded, work)
+    def truth(self, case: DiskCase) -> Truth:
+        """These disks where the packing is random or bonds may break, else the rock."""
+        is_grid = case.packing.is_lattice and not LAWS[case.material.law].has_history
+        return "rock" if is_grid else "disks"
+
+    def of_other_seeds(self, case: DiskCase, motions: Motions, seeds: int) -> Causes:
+        """The scatter of runs with several seeds; see `Judge.of_other_seeds`."""
+        return cause_of_packing(case, motions, seeds)
 
     def notes(self, case: DiskCase, summary: Mapping[str, Any]) -> Iterator[str]:
         """How near the motion came to the limit of the elastic law."""
@@ -58,9 +61,9 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         else:
             yield f"the elastic law holds up to {limit['factor']:.3g} times these waves, then {limit['limit']}"
 
-    def best(self, case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
+    def advise(self, case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
         """The cheapest disks, sides and boxes in a continuum."""
-        return best_of_disks(case, bound, kept)
+        return advice_for_disks(case, bounds, of, kept)
 
     def extended(self, case: DiskCase, most: int) -> Extended:
         """The scene with more bricks beyond its sides."""
@@ -92,6 +95,6 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
             return ()
         return (REALISATIONS,)
 
-    def proposals(self, scene: DiskScene) -> Entries:
-        """The smallest box of disks with a continuum round it, if it saves much."""
-        return box_facts(scene)
+    def quick(self, scene: DiskScene) -> Causes:
+        """The continuum and walls by formula."""
+        return quick_causes(scene)

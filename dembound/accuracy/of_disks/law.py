@@ -20,11 +20,12 @@ from functools import partial
 
 import numpy as np
 
-from dembound.accuracy.cause import Cause
+from dembound.accuracy.cause import Cause, share_of
 from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.differences import keeps
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.formulas import USUAL
 from dembound.accuracy.of_disks.pair import ratios
 from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step
@@ -86,9 +87,9 @@ class ElasticTwin:
             path = max((_way(each, own.place, scene.case.size) for each in sources), default=0.0)
             delay = partial(np.full_like, fill_value=slower * path / s)
             parts = error_of_delay(own.time, own.values["velocity"], delay)
-            late = Cause("", "", {name: dict(zip(("velocity", "displacement"), parts, strict=True))})
-            errors[name] = {quantity: near + late.share(name, quantity, own) for quantity in late.errors[name]}
-        return [Cause("law", "by the stress at rest, which does not turn with the disks", errors)]
+            late = dict(zip(("velocity", "displacement"), parts, strict=True))
+            errors[name] = {quantity: near + share_of(part, quantity, own) for quantity, part in late.items()}
+        return [Cause("law", "by the stress at rest, which does not turn with the disks", errors, factor=USUAL)]
 
     @property
     def words(self) -> str:

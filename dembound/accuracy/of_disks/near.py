@@ -20,6 +20,10 @@ NEAR, CURVED = 0.08, 0.6
 a force in rock within a factor of 1.6 at r of 4 to 14 disks, for k of 0.08 to 0.28 per disk (docs/error_bound.md)."""
 
 
+NEAR_FACTOR = 1.6
+"""Factor within which true errors near a force were of the size that these constants give."""
+
+
 def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
     """The error at one monitor by quantity, RMS over RMS of its larger component; 0 without forces in places.
 

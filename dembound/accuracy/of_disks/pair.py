@@ -1,26 +1,21 @@
-"""A pair of runs with larger particles, with the sides of the case and with sides so far away that nothing returns."""
+"""Two scenes with larger particles, with the sides of the case and with sides so far away that nothing returns."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
-from dembound.accuracy.history import History
 from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import Coarser, coarser, largest_diameter
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
-from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.errors import CaseError
 from dembound.outside import choice
 
 RATIOS = (3.0, 4.0, 5.0, 6.0)
@@ -32,17 +27,14 @@ SHARE, PER_WAVE = 0.1, 7.0
 SMALLER = (4.0, 2.0)
 """Width and height of the larger scene, over those of the case, where one without echoes cannot be afforded."""
 
-LEEWAY = 1.5
-"""Work of the cheapest pair over what may be spent, from which on none is run."""
-
 
 @dataclass(frozen=True)
 class Pair:
-    """Two scenes with larger particles that differ in their sides, and their runs.
+    """Two scenes with larger particles that differ in their sides.
 
     given : the case with larger particles; ratio : their diameter over that of the case. smaller, larger : with the
     sides of the case, and with far ones. bricks : that the larger scene has more beyond its sides; echo_free : whether
-    nothing returns from there. runs : of `scenes`, once they are made.
+    nothing returns from there.
     """
 
     given: Coarser
@@ -51,7 +43,6 @@ class Pair:
     larger: DiskScene
     bricks: Mapping[str, int]
     echo_free: bool
-    runs: tuple[Run, ...] = ()
 
     @cached_property
     def scenes(self) -> list[DiskScene]:
@@ -70,35 +61,16 @@ class Pair:
         return self.larger.case.packing.extent
 
     @property
-    def work(self) -> int:
-        """Particle-steps of all runs."""
-        return sum(run.work for run in self.runs)
-
-    def difference(self, recorded: History, monitor: str, quantity: str) -> np.ndarray:
-        """What the sides add to a recorded quantity (k, 2): own less far, at the times of the record."""
-        first = self.runs[0].motions[monitor]
-        own, far, *whole = (run.motions[monitor].values[quantity][:, :2] for run in self.runs)
-        values = own - far
-        for each in whole:
-            values += self.given.weight * (each - own)
-        return History(first.place, first.time, {quantity: values}).at(recorded.time).values[quantity]
-
-
-def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float, runner: Runner) -> Pair:
-    """The pair of a case that costs at most so many particle-steps, if this is possible, else the cheapest one; run.
-
-    scene, time_step (s) : of the case. Raises CaseError if no side can move, or even the cheapest pair costs too much,
-    and the errors of runs.
-    """
-    pair = pair_of(case, scene, time_step, most)
-    if (times := sum(map(_work, pair.scenes)) / most) > LEEWAY:
-        raise CaseError([f"a pair of runs would take {times:.2g} times the work that may be spent (--budget)"])
-    step = pair.step
-    return replace(pair, runs=tuple(runner.run(at_step(each.case, step)) for each in pair.scenes))
+    def work(self) -> float:
+        """Particle-steps of both runs, and of a third one where it is needed."""
+        return sum(map(_work, self.scenes))
 
 
 def pair_of(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
-    """The pair of `run_pair` before its runs."""
+    """The pair of a case that costs at most so many particle-steps, if this is possible, else the cheapest one.
+
+    scene, time_step (s) : of the case. Raises CaseError if no side can move.
+    """
     for ratio in ratios(case, scene):
         given = coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter)
         pair = _with_far_sides(given, ratio, most)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from dembound.casefile.disks.load import Load
@@ -47,31 +49,52 @@ def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
     return np.outer(x, y).ravel()
 
 
+class LoadPlace(NamedTuple):
+    """Where a load starts waves: the middle of its disks by force, and that asked for, both (2,) m; its force, N."""
+
+    middle: np.ndarray
+    asked: np.ndarray
+    force: float
+
+
 def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
     """The middle (2,) m of the places where loads start waves, by force; None if waves enter through sides."""
-    found = middles_of_loads(scene)
-    return np.average([place for place, _ in found], axis=0, weights=[size for _, size in found]) if found else None
+    found = places_of_loads(scene)
+    return (
+        np.average([each.middle for each in found], axis=0, weights=[each.force for each in found]) if found else None
+    )
 
 
-def middles_of_loads(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
-    """The middle (2,) m of each load that starts waves, and its force (N); none if they enter through sides.
+def places_of_loads(scene: DiskScene) -> list[LoadPlace]:
+    """The places of the loads that start waves; none if they enter through sides.
 
     A load without a wave starts them by its sudden beginning, but not if a static stage comes before.
     """
     case = scene.case
     if case.driving and not any(load.wave for load in case.load):
         return []
-    found: list[tuple[np.ndarray, float]] = []
+    found: list[LoadPlace] = []
     for load in case.load:
         if load.wave is None and case.static is not None:
             continue
         if load.pressure is not None:
             left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)
             middle = np.array([0.5 * (left + right), 0.5 * (bottom + top)])
-            found.append((middle, abs(load.pressure) * (right - left + top - bottom)))
+            found.append(LoadPlace(middle, middle, abs(load.pressure) * (right - left + top - bottom)))
         elif not load.is_everywhere:
-            found.append(middle_of_forces(load, scene))
+            middle, force = middle_of_forces(load, scene)
+            found.append(LoadPlace(middle, _asked(load, scene), force))
     return found
+
+
+def _asked(load: Load, scene: DiskScene) -> np.ndarray:
+    """The place (2,) m of a force, or the middle of the part of its region that is in the scene."""
+    if load.position is not None:
+        return np.array(load.position)
+    assert load.region is not None
+    left, bottom, right, top = scene.case.packing.box
+    corners = np.clip(np.reshape(load.region, (2, 2)), (left, bottom), (right, top))
+    return np.asarray(corners.mean(axis=0))
 
 
 def middle_of_forces(load: Load, scene: DiskScene) -> tuple[np.ndarray, float]:

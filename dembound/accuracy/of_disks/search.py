@@ -7,6 +7,7 @@ companions of larger disks, the rest by formulas.
 from __future__ import annotations
 
 import heapq
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,14 +15,13 @@ from itertools import count
 
 import numpy as np
 
-from dembound.accuracy.best import Best
-from dembound.accuracy.budget import Expected, expected
-from dembound.accuracy.cause import SIDES, Cause
-from dembound.accuracy.choice import Choice
+from dembound.accuracy.budget import Budget
+from dembound.accuracy.cause import SIDES, STEP, Causes, Truth
+from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
-from dembound.accuracy.history import History, Motions
+from dembound.accuracy.history import History
+from dembound.accuracy.of_disks.causes import causes_of_choice, of_ground
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.expected import of_ground, of_sides
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
 from dembound.accuracy.of_disks.options import (
     FACTORS,
@@ -31,7 +31,7 @@ from dembound.accuracy.of_disks.options import (
     may_change_diameter,
     with_diameter,
 )
-from dembound.accuracy.of_disks.pair import sides_of_pair
+from dembound.accuracy.proposal import Advice, Proposal
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
@@ -40,72 +40,48 @@ from dembound.motion.kind import Plan
 from dembound.motion.silence import monitored
 from dembound.running import plan
 
-SAFETY = 1.4
-"""Expected errors are below the bound by this factor: above 0.2 % true ones are at most 1.18 times these, below it they
-were up to 2.2 times (docs/error_bound.md)."""
-
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
 
 
-def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
-    """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
+def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
+    """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
-    Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
-    the companions.
+    of : the truth that errors are those of; kept : keys that do not change. Raises CaseError for cases without waves
+    and where no choice keeps those values; the errors of building and running the companions.
     """
     _require_known(case)
     planned: Plan[DiskScene] = plan(case)
     most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
-    runner = Runner()
-    twin = elastic_twin(case, planned, most, kept, runner)
-    if twin is None:
-        return _best(case, planned, bound, kept, most, runner)
-    found = _best(twin.case, twin.planned, bound, kept, most, runner, twin)
-    own_cost = found.own_cost * planned.steps / twin.planned.steps  # steps of the given law cost as much: nothing opens
-    choice = Choice.of(case, found.case, f"{twin.words}; {found.words}")
-    found = replace(found, given=case, choice=choice, own_cost=own_cost)
-    if found.holds or twin.stress == 0.0:
-        return found
-    other = _best(case, planned, bound, kept, most, runner)
-    other = replace(other, cost=other.cost * own_cost / other.own_cost, own_cost=own_cost)
-    return min(found, other, key=lambda each: each.error)
-
-
-def _best(
-    case: DiskCase,
-    planned: Plan[DiskScene],
-    bound: float,
-    kept: Sequence[str],
-    most: float,
-    runner: Runner,
-    twin: ElasticTwin | None = None,
-) -> Best:
-    """The best choice under the law of a case, planned; twin : the same, if it is not that of the given case."""
-    companions = Companions(case, planned.scene, planned.time_step, most, runner)
+    companions = Companions(case, planned.scene, planned.time_step, most, Runner())
     moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
     if not _is_reached(planned) or not any(map(np.any, moved)):
-        raise CaseError(["--error: nothing moves at the monitors"], case.name)
-    search = _Search(companions, bound, kept, cost_of(planned), twin)
-    best = search.best()
-    words, error, cost = best.option.words, best.error, best.option.cost
-    breaks = companions.first_break
-    if breaks < case.run.duration:
-        words += f"; the error is that before bonds break, after about {breaks:.3g} s"
-    choice = Choice.of(case, best.option.case, words)
-    found = Best(case, choice, error.worst, error.by, bound, cost, search.own_cost, search.tried, SAFETY)
-    if breaks < case.run.duration:
-        return found
-    return ended_earlier(found, best.recorded, best.motion, best.causes, kept)
+        raise CaseError(["advise: nothing moves at the monitors"], case.name)
+    searches = [_Search(companions, of, kept, cost_of(planned))]
+    if bounds and (twin := elastic_twin(case, planned, most, kept, companions.runner)) is not None:
+        own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
+        searches.insert(0, _Search(own, of, kept, cost_of(twin.planned), twin))
+    best = {bound: _best(case, searches, bound) for bound in sorted(bounds, reverse=True)}
+    return Advice(searches[-1].given(), best, sum(search.tried for search in searches))
+
+
+def _best(given: DiskCase, searches: Sequence[_Search], bound: float) -> Proposal:
+    """The best choice of several searches, the second one only where the first finds none."""
+    found = []
+    for search in searches:
+        found.append(search.proposal(given, bound))
+        if found[-1].holds(bound) or (search.twin is not None and search.twin.stress == 0.0):
+            break
+    return min(found, key=lambda each: (not each.holds(bound), each.budget.worst().share.upper))
 
 
 def _require_known(case: DiskCase) -> None:
     """Raise CaseError where errors, or the body itself, depend on what is not known for other disks and sides."""
     problems = []
     if case.static is not None and case.static.from_ is not None:
-        problems.append("static.from: is the body of the given disks and sides; must be left out with --error")
+        problems.append("static.from: is the body of the given disks and sides; must be left out for advice")
     if not case.driving and case.incident is None:
-        reason = "starts waves everywhere, so that their delay by the disks is not known; --error needs a place"
+        reason = "starts waves everywhere, so that their delay by the disks is not known; advice needs a place"
         problems += [
             f"load.{load.name}: {reason}" for load in case.load if load.is_everywhere and load.wave is not None
         ]
@@ -125,24 +101,24 @@ def _is_reached(planned: Plan[DiskScene]) -> bool:
 
 @dataclass(frozen=True)
 class _Found:
-    """A choice with its error; recorded : the motion without it, by monitor; causes : of the error."""
+    """A choice with its error; budget : beside the motion without it."""
 
     option: DiskOption
-    recorded: Motions
-    causes: list[Cause]
+    budget: Budget
 
     @cached_property
-    def error(self) -> Expected:
-        """The error of all causes."""
-        return expected(self.causes, self.recorded)
+    def upper(self) -> float:
+        """The largest error that it may have; infinite where a cause is not known."""
+        share = self.budget.worst().share
+        return math.inf if share.at_least else share.upper
 
     @property
     def motion(self) -> dict[str, History]:
         """The motion with what the sides add to it."""
-        sides = [cause.errors for cause in self.causes if cause.name == SIDES]
+        sides = [cause.parts for cause in self.budget.causes.found if cause.name == SIDES]
         return {
-            name: replace(own, values={q: own.values[q] + sum(errors[name][q] for errors in sides) for q in own.values})
-            for name, own in self.recorded.items()
+            name: replace(own, values={q: own.values[q] + sum(parts[name][q] for parts in sides) for q in own.values})
+            for name, own in self.budget.motions.items()
         }
 
 
@@ -155,13 +131,33 @@ class _Search:
     """
 
     companions: Companions
-    bound: float
+    of: Truth
     kept: Sequence[str]
     own_cost: float
-    twin: ElasticTwin | None
+    twin: ElasticTwin | None = None
+    bound: float = 0.0
     tried: int = 0
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
     of_disks: dict[float, float] = field(default_factory=dict)
+    found: dict[str, list[_Found]] = field(default_factory=dict)
+
+    def given(self) -> Proposal:
+        """The case as it is."""
+        scene, step = self.companions.scene, self.companions.time_step
+        causes = causes_of_choice(self.companions, scene, step, 0.0)
+        budget = Budget(self.companions.recorded(scene), causes, self.of)
+        return Proposal(Choice("the case as it is", {}, self.companions.case), self.own_cost, budget)
+
+    def proposal(self, given: DiskCase, bound: float) -> Proposal:
+        """The best choice for a bound; given : the case that it is a choice for."""
+        self.bound = bound
+        best = self.best()
+        words = best.option.words if self.twin is None else f"{self.twin.words}; {best.option.words}"
+        breaks = self.companions.first_break
+        if breaks < given.run.duration:
+            words += f"; the error is that before bonds break, after about {breaks:.3g} s"
+        found = Proposal(Choice.of(given, best.option.case, words), best.option.cost, best.budget)
+        return found if breaks < given.run.duration else ended_earlier(found, given, bound, best.motion, self.kept)
 
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
@@ -172,7 +168,7 @@ class _Search:
                 left.append(option)
                 continue
             found += self._with_error(option)
-            if found and self._keeps(found[-1].error.worst):
+            if found and self._keeps(found[-1].upper):
                 return found[-1]
         return self._most_accurate(found, left)
 
@@ -187,20 +183,20 @@ class _Search:
                 left += [each for each in self._of(factor) if each.cost <= COSTLIEST * self.own_cost]
         while left:
             left.sort(key=self._alone)
-            if found and self._alone(left[0]) >= min(each.error.worst for each in found):
+            if found and self._alone(left[0]) >= min(each.upper for each in found):
                 break
             found += self._with_error(left.pop(0))
         if not found:
-            raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
-        return min(found, key=lambda each: each.error.worst)
+            raise CaseError(["advise: no choice keeps the values of --keep and --set"], self.companions.case.name)
+        return min(found, key=lambda each: each.upper)
 
     def _alone(self, option: DiskOption) -> float:
         """The larger one of the errors that sides and disks of a choice are known to have alone."""
         return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(option.factor, 0.0))
 
     def _keeps(self, error: float) -> bool:
-        """Whether an error is within the bound, with its reserve."""
-        return SAFETY * error <= self.bound
+        """Whether an error is within the bound."""
+        return error <= self.bound
 
     def _by_cost(self) -> Iterator[DiskOption]:
         """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
@@ -238,24 +234,32 @@ class _Search:
         plain = self._with_diameter(factor)
         if plain is None:
             return False
-        disks, _ = of_ground(self.companions, plain.scene, plain.time_step)
-        self.of_disks[factor] = expected(disks, self.companions.recorded(plain.scene)).worst
+        found = of_ground(self.companions, plain.scene, plain.time_step)
+        disks = Causes([cause for cause in found if cause.of_disks or cause.name == STEP])
+        self.of_disks[factor] = Budget(self.companions.recorded(plain.scene), disks, self.of).worst().share.upper
         return self._keeps(self.of_disks[factor])
 
     def _with_error(self, option: DiskOption) -> list[_Found]:
         """A choice with its error; nothing if a companion of it cannot run."""
-        scene, step = option.scene, option.planned.time_step
-        recorded = self.companions.recorded(scene)
+        if (known := self.found.get(key := digest(option.case))) is not None:
+            return known
         self.tried += 1
+        found = self.found[key] = self._found(option)
+        return found
+
+    def _found(self, option: DiskOption) -> list[_Found]:
+        """A choice with its error, if its companions can run."""
+        scene = option.scene
+        motions = self.companions.recorded(scene)
         try:
-            disks, others = of_ground(self.companions, scene, step)
-            sides = [of_sides(self.companions, scene, step, option.wider)] if sides_of_pair(scene.case) else []
+            causes = causes_of_choice(self.companions, scene, option.planned.time_step, option.wider)
         except DemboundError:
             return []
-        alone = expected(sides, recorded).worst
+        sides = Causes([cause for cause in causes.found if cause.name == SIDES])
+        alone = Budget(motions, sides, self.of).worst().share.upper
         self.of_sides[_sides(option)] = max(alone, self.of_sides.get(_sides(option), 0.0))
-        law = [] if self.twin is None else self.twin.causes(scene, recorded)
-        return [_Found(option, recorded, [*disks, *others, *sides, *law])]
+        law = [] if self.twin is None else self.twin.causes(scene, motions)
+        return [_Found(option, Budget(motions, causes + Causes(law), self.of))]
 
 
 def _sides(option: DiskOption) -> tuple[str, float]:

@@ -1,12 +1,9 @@
-"""How much the motion depends on the seed of a random packing: a second run, with another one.
-
-Two packings of the same recipe are two samples of the same rock. If the motion of each differs from the mean of all by
-errors of the same size, independent of each other, their difference is √2 times as large as either.
-"""
+"""How much the motion depends on the seed of a random packing, of which every one is another sample of the rock."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -24,28 +21,33 @@ PACKING = "packing"
 MOTIONS: tuple[Quantity, ...] = ("velocity", "displacement")
 
 
-def cause_of_packing(case: DiskCase, recorded: Motions, work: float) -> Causes:
-    """What the seed of a random packing adds to the motion of its monitors, from one more run as long as the case's.
+def cause_of_packing(case: DiskCase, motions: Motions, seeds: int) -> Causes:
+    """What the seed of a random packing adds to the motion of its monitors, from runs with several seeds.
 
-    case : to the end of the run. work (particle-steps) : of the run. Raises CaseError for a packing without a seed, and
-    the errors of runs.
+    The motion of one less the mean of all, times √(n/(n − 1)), has the size of an independent error of each. motions :
+    by monitor, at the times at which it is found. Raises CaseError for a packing without a seed, and the errors of
+    runs.
     """
-    packing = case.packing.reseeded(1)
-    if packing is None and not case.packing.is_lattice:
-        raise CaseError([f'--second-seed: packing.pattern = "{case.packing.pattern}" has no other seed'], case.name)
-    if packing is None:
-        raise no_seed(case)
-    ended = {"until": type(case.run).model_fields["until"].default, "checkpoint": 0.0}
-    other = replace(case, packing=packing, run=case.run.model_copy(update=ended))
-    run = Runner().run(other)
-    errors: dict[str, dict[str, np.ndarray | float]] = {}
-    for name, own in recorded.items():
-        other_motion = run.motions[name].at(own.time)
-        errors[name] = {
-            quantity: (own.values[quantity] - other_motion.values[quantity][:, :2]) / math.sqrt(2.0)
+    runs = [Runner().run(each) for each in _reseeded(case, seeds)]
+    parts: dict[str, dict[str, np.ndarray | float]] = {}
+    for name, own in motions.items():
+        there = [run.motions[name].at(own.time) for run in runs]
+        parts[name] = {
+            quantity: math.sqrt(seeds / (seeds - 1)) * (each[0] - np.mean(each, axis=0))
             for quantity in MOTIONS
+            for each in [[motion.values[quantity][:, :2] for motion in there]]
         }
-    given = case.packing.given()
-    seed = ", ".join(f"{key} {value}" for key, value in packing.given().items() if given.get(key) != value)
-    words = f"from a run with the {seed}: the difference over √2"
-    return Causes([Cause(PACKING, words, errors, is_sample=True)], cost=run.work / work)
+    words = f"from runs with {seeds} seeds: how each differs from their mean"
+    return Causes([Cause(PACKING, words, parts, "measured", of_disks=True, is_sample=True)])
+
+
+def _reseeded(case: DiskCase, seeds: int) -> Iterator[DiskCase]:
+    """The case with several seeds, its own first, run to its end."""
+    ended = {"until": type(case.run).model_fields["until"].default, "checkpoint": 0.0}
+    for k in range(seeds):
+        packing = case.packing.reseeded(k)
+        if packing is None and not case.packing.is_lattice:
+            raise CaseError([f'--seeds: packing.pattern = "{case.packing.pattern}" has no other seed'], case.name)
+        if packing is None:
+            raise no_seed(case)
+        yield replace(case, packing=packing, run=case.run.model_copy(update=ended))

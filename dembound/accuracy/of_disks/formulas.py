@@ -1,0 +1,239 @@
+"""Causes of the error of disks that are known without runs: by formulas, from the motion at the monitors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.accuracy.cause import CONTINUUM, GRID, NEAR, STEP, WALLS, Cause
+from dembound.accuracy.delays import error_of_delay
+from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
+from dembound.accuracy.of_disks.near import NEAR_FACTOR, errors_near_loads, wall_error
+from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, delay_of
+from dembound.boundaries import Motion, axis_of_motion, normal_axis
+from dembound.boundaries.sides import OPPOSITE
+from dembound.disks.reports.continuum_facts import expected_errors
+from dembound.disks.scene import DiskScene
+from dembound.disks.sources import sources_of
+from dembound.motion.paths import Source
+
+MOTIONS = ("velocity", "displacement")
+"""Quantities of disks."""
+
+USUAL = 1.4
+"""Factor of formulas whose errors were at most 1.39 times as large in 100 scenes (docs/errors.md)."""
+
+
+@dataclass(frozen=True)
+class Formulas:
+    """The formulas of one scene, which runs at a time step (s)."""
+
+    scene: DiskScene
+    time_step: float
+
+    def causes(self, motions: Motions) -> list[Cause]:
+        """All causes but sides that absorb and let no waves in; motions : by monitor."""
+        return [
+            *self.of_waves_in(motions),
+            *self._delays(motions),
+            *self._walls(motions),
+            *self._near(motions),
+            *self._edges(motions),
+        ]
+
+    def without_motion(self, names: Sequence[str]) -> list[Cause]:
+        """Those of them that do not depend on the motion, at monitors of these names."""
+        return [*self._continuum(names), *self._walls(names)]
+
+    def of_waves_in(self, motions: Motions) -> Iterator[Cause]:
+        """A continuum, and sides with dashpots that waves enter through."""
+        yield from self._continuum(motions)
+        for side, waves in self.scene.case.driving.items():
+            table = self.scene.case.side(side)
+            if table.is_artificial and not table.absorbs:
+                reason = f'"{table.type}" has no dashpots, by which its reflection would be known'
+                yield Cause.unknown(f"{side} side", reason)
+            if table.factors:
+                shares = reflected(self.scene, side, self.time_step)
+                parts = {name: self._returned(own, side, waves, shares) for name, own in motions.items()}
+                words = "by the reflection of dashpots at normal incidence"
+                yield Cause(f"{side} side", words, parts, factor=USUAL)
+
+    def _continuum(self, names: Iterable[str]) -> Iterator[Cause]:
+        """The continuum beyond sides."""
+        if self.scene.outside is None:
+            return
+        if (sizes := expected_errors(self.scene)) is None:
+            reason = "its elements are judged by the highest frequency of waves, and a wave that jumps has none"
+            yield Cause.unknown(CONTINUUM, reason)
+            return
+        parts = {name: dict(zip(MOTIONS, sizes, strict=True)) for name in names}
+        yield Cause(CONTINUUM, "by the formulas of its elements, layers and ties", parts, factor=USUAL)
+
+    def _walls(self, names: Iterable[str]) -> Iterator[Cause]:
+        """Walls of holes, which are made of disks."""
+        case = self.scene.case
+        if not case.hole:
+            return
+        size = wall_error(case, self.scene.ground.brick.mean_diameter)
+        parts = {name: dict.fromkeys(MOTIONS, size) for name in names}
+        words = "by the disks along the radius of the smallest hole"
+        yield Cause(WALLS, words, parts, of_disks=True, factor=USUAL)
+
+    def _near(self, motions: Motions) -> Iterator[Cause]:
+        """Disks near forces."""
+        sizes = {name: errors_near_loads(self.scene, own) for name, own in motions.items()}
+        if any(size for each in sizes.values() for size in each.values()):
+            yield Cause(NEAR, "by its measured size", sizes, of_disks=True, factor=NEAR_FACTOR)
+
+    def _edges(self, motions: Motions) -> Iterator[Cause]:
+        """Monitors at absorbing sides of random packings, or at uneven ones, of whose disks nothing is known."""
+        case = self.scene.case
+        packing, box = case.packing, case.packing.box
+        reach = 2.0 * self.scene.ground.brick.mean_diameter
+        edges = {side: box[k] for k, side in enumerate(("left", "bottom", "right", "top"))}
+        at = [
+            name
+            for name, own in motions.items()
+            for side, table in case.boundary.items()
+            if not (packing.is_lattice and side in packing.regular_sides)
+            and table.factors
+            and abs(own.place[normal_axis(side)] - edges[side]) < reach
+        ]
+        if at:
+            names = " and ".join(dict.fromkeys(at))
+            edge = "an uneven edge" if packing.is_lattice else "the edge of a random packing"
+            yield Cause.unknown(
+                "edge", f"how single disks at {edge} move otherwise than those around, at {names}", True
+            )
+
+    def _returned(
+        self, own: History, side: str, waves: Mapping[Motion, str], shares: Mapping[Motion, Reflected]
+    ) -> dict[str, np.ndarray | float]:
+        """What a driven side keeps back of its waves, and sends back of what returns to it.
+
+        A side that reflects R lets 1 − R of its wave in. What is sent back is the motion again, after the way to the
+        far side, if that is a free surface or another one that sends back everything; else nothing comes back that
+        counts.
+        """
+        axis, far = normal_axis(side), self.scene.case.side(OPPOSITE[side])
+        errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
+        for motion in waves:
+            column = axis_of_motion(side, motion)
+            speed = self.scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
+            if motion not in shares or not math.isfinite(speed):
+                continue
+            later = own.time - 2.0 * self.scene.case.size[axis] / speed
+            sent = reflected_motion(own, column, shares[motion])
+            for quantity, values in sent.items():
+                back = 0.0 if far.is_artificial else np.interp(later, own.time, values, left=0.0)
+                errors[quantity][:, column] = back - values
+        return dict(errors)
+
+    def _delays(self, motions: Motions) -> Iterator[Cause]:
+        """The dispersion of the packing, and of the time step."""
+        if not any(self._ways(own) for own in motions.values()):
+            yield Cause.unknown("grid and time step", "waves start everywhere")
+            return
+        words = "by the dispersion of plane waves on the way from where waves start"
+        whole, grid = (
+            {name: self._delayed(own, step) for name, own in motions.items()} for step in (self.time_step, 0.0)
+        )
+        yield Cause(GRID, words, grid, of_disks=True, factor=USUAL)
+        steps = {
+            name: {quantity: each - grid[name][quantity] for quantity, each in errors.items()}
+            for name, errors in whole.items()
+        }
+        yield Cause(STEP, words, steps, factor=USUAL)
+
+    def _delayed(self, own: History, step: float) -> dict[str, np.ndarray]:
+        """What dispersion adds with steps of this length (s)."""
+        errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
+        for way in self._ways(own):
+            if not math.isfinite(way.path * way.speed):
+                continue
+            delay = delay_of(self.scene.ground, way.motion, way.directions, way.path, way.speed, step)
+            parts = error_of_delay(own.time, (own.values["velocity"] @ way.moves)[:, None], delay)
+            for quantity, part in zip(MOTIONS, parts, strict=True):
+                errors[quantity] += part * way.moves
+        return errors
+
+    @cached_property
+    def _sources(self) -> list[Source]:
+        """Where waves start."""
+        return sources_of(self.scene.case, self.scene.ground)
+
+    def _ways(self, own: History) -> list[_Way]:
+        """The ways of P and S waves to a monitor: from a driven side, or from the nearest load or hole.
+
+        A wave at an angle comes through a continuum, which delays it less: its way is the longer side of the disks.
+        None where waves start everywhere.
+        """
+        sources, ground = self._sources, self.scene.ground
+        driving = list(self.scene.case.driving)
+        if driving and not any(load.wave for load in self.scene.case.load):
+            axis = normal_axis(driving[0])
+            path = max(float(each.distance(own.place[None])[0]) for each in sources if not each.is_local)
+            if not self.scene.case.side(OPPOSITE[driving[0]]).is_artificial:
+                path = self.scene.case.size[axis]  # the mean of the ways there, and back from the other side
+            return _both_ways(np.eye(2)[axis], path, ground.wave_speeds(axis), [AXES[axis]])
+        if self.scene.case.incident is not None:
+            extent = self.scene.case.packing.extent
+            return _both_ways(np.eye(2)[1], max(extent), ground.wave_speeds(1), [AXES[0], DIAGONAL])
+        local = [each for each in sources if np.isfinite(each.box).all()]
+        places = [np.clip(own.place, each.box[:2], each.box[2:]) for each in local]
+        rays = [own.place - place for place in places]
+        if not rays:
+            return []
+        ray = min(rays, key=lambda each: float(np.hypot(*each)))
+        path, axis = float(np.hypot(*ray)), int(np.argmax(np.abs(ray)))
+        along = ray / path if path > 0.0 and not {0, 1} & set(ground.held) else np.eye(2)[axis]
+        return _both_ways(along, path, ground.wave_speeds(axis), [AXES[0], DIAGONAL])
+
+
+@dataclass(frozen=True)
+class _Way:
+    """The way of a kind of waves.
+
+    motion : of the waves. moves : (2,) unit vector along which they move disks. path : m. speed : m/s, of long waves.
+    directions : in which they may run.
+    """
+
+    motion: Motion
+    moves: np.ndarray
+    path: float
+    speed: float
+    directions: Sequence[Direction]
+
+
+def _both_ways(
+    along: np.ndarray, path: float, speeds: tuple[float, float], directions: Sequence[Direction]
+) -> list[_Way]:
+    """The ways of P and S waves, of these speeds (m/s), along a unit vector."""
+    across = np.array([-along[1], along[0]])
+    p, s = speeds
+    return [_Way("p", along, path, p, directions), _Way("s", across, path, s, directions)]
+
+
+def reflected_motion(own: History, column: int, share: Reflected) -> dict[str, np.ndarray]:
+    """Velocity and displacement (k,) that a side reflects of a recorded motion along x or y (column 0 or 1).
+
+    In phase R/(1 − R) of the motion, as 1 − R of it has come in; what is out of phase has the shape of a mass's force,
+    the acceleration, and no lasting displacement.
+    """
+    velocity, displacement = (own.values[quantity][:, column] for quantity in MOTIONS)
+    acceleration = np.gradient(velocity, own.time)
+    size = float(np.linalg.norm(acceleration))
+    lag = -share.out_of_phase * float(np.linalg.norm(velocity)) / size if size > 0.0 else 0.0
+    in_phase = (
+        share.dashpots / (1.0 - share.dashpots) if share.dashpots < 1.0 else 0.0
+    )  # without dashpots none comes in
+    return {
+        "velocity": in_phase * velocity + lag * acceleration,
+        "displacement": in_phase * displacement + lag * velocity,
+    }

@@ -1,0 +1,112 @@
+"""A budget of errors as a table in the terminal: a row for every cause, a column for every monitor."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator, Sequence
+
+from dembound.accuracy.budget import Budget, Share
+from dembound.accuracy.cause import Cause, Truth
+from dembound.results.estimates import in_words
+from dembound.words import percent
+
+WIDTH, CELL = 80, 7
+"""Most characters in a line, and the least in a cell."""
+
+WHAT = "errors: RMS over RMS, of the quantity with the largest error at each monitor"
+"""What the numbers are."""
+
+TITLES: dict[Truth, str] = {"disks": "of these disks", "rock": "of the rock"}
+"""Names of the totals."""
+
+MUCH = 3.0
+"""Upper value over the value from which on only the upper one is given."""
+
+
+def lines_of(budget: Budget) -> list[str]:
+    """The table, what its numbers are, how they were found, and what is not known."""
+    if not any(budget.largest(name, "rock")[1].is_known for name in budget.motions):
+        return _wrapped(_sentences(budget))
+    return [WHAT, *_table(budget), *_wrapped(_sentences(budget))]
+
+
+def _table(budget: Budget) -> list[str]:
+    """The table."""
+    causes = list(budget.causes.found)
+    titles = ["how wrong is it", *(f"  {cause.name}" for cause in causes), *TITLES.values()]
+    first = max(map(len, titles))
+    ordered = sorted(budget.motions, key=lambda name: -_key(budget.largest(name)[1]))
+    shown = _fitting(ordered, WIDTH - first - len("  at most 100 %"))
+    names = [name for name in budget.motions if name in shown]
+    rows = [_row(titles[0], names, "known by", first, names)]
+    for of in ("disks", "rock"):
+        own = [cause for cause in causes if cause.of_disks == (of == "rock")]
+        rows += [_row(f"  {each.name}", list(_cells(budget, each, names)), each.how, first, names) for each in own]
+        if any(cause.of_disks for cause in causes) or of == "rock":
+            totals = [budget.largest(name, of)[1] for name in names]
+            rows.append(_row(TITLES[of], [_total(each) for each in totals], _at_most(totals), first, names))
+    left = [budget.largest(name)[1] for name in ordered[len(shown) :]]
+    return [*rows, *([f"and {len(left)} more monitors, {_at_most(left)}"] if left else [])]
+
+
+def _key(share: Share) -> float:
+    return share.upper if share.is_known else -1.0
+
+
+def _fitting(names: Sequence[str], width: int) -> list[str]:
+    """The first names whose columns fit into a width, at least one."""
+    found: list[str] = []
+    used = 0
+    for name in names:
+        used += 2 + max(CELL, len(name))
+        if found and used > width:
+            break
+        found.append(name)
+    return found
+
+
+def _row(title: str, cells: Sequence[str], last: str, first: int, names: Sequence[str]) -> str:
+    """A line of the table."""
+    wide = (f"{cell:>{max(CELL, len(name))}}" for cell, name in zip(cells, names, strict=True))
+    return "  ".join([f"{title:<{first}}", *wide, last]).rstrip()
+
+
+def _cells(budget: Budget, cause: Cause, names: Sequence[str]) -> Iterator[str]:
+    """The share of a cause at every monitor, of the quantity with the largest error."""
+    for name in names:
+        share = cause.share(name, budget.largest(name)[0], budget.motions[name])
+        text = in_words(share) if math.isfinite(share) else "-"
+        yield "?" if cause.how == "unknown" else f"<= {percent(share)}" if cause.how == "bound" else text
+
+
+def _total(share: Share) -> str:
+    """A total: what is expected, or what is known of it."""
+    if not share.is_known:
+        return "-"
+    if share.at_least:
+        return f">= {percent(share.value)}"
+    return f"<= {percent(share.upper)}" if share.upper > MUCH * share.value else in_words(share.value)
+
+
+def _at_most(totals: Sequence[Share]) -> str:
+    """Up to how much the largest of several totals may be."""
+    known = [share for share in totals if share.is_known]
+    if any(share.at_least for share in known):
+        return "at least"
+    return f"at most {percent(max(share.upper for share in known))}" if known else ""
+
+
+def _sentences(budget: Budget) -> Iterator[str]:
+    """How the errors were found, causes found alike together, then notes, and what is not known."""
+    ways: dict[str, list[str]] = {}
+    for cause in budget.causes.found:
+        ways.setdefault(cause.words, []).append(cause.name)
+    yield from (f"{' and '.join(names)}: {words}" for words, names in ways.items())
+    yield from budget.causes.notes
+    yield from (f"not estimated: {line}" for line in budget.causes.limits)
+
+
+def _wrapped(lines: Iterator[str]) -> list[str]:
+    """Lines of at most `WIDTH` characters."""
+    return [part for line in lines for part in textwrap.wrap(line, WIDTH, subsequent_indent="  ")]

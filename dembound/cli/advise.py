@@ -1,0 +1,212 @@
+"""The command advise, and the option --error of run: the cheapest choice that is accurate enough."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from decimal import Decimal
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from dembound.cli.app import Cases, Settings, Threads, app, load_case, prepare_computing, text_for
+from dembound.cli.console import out
+from dembound.errors import CaseError, NotAccurateError
+from dembound.words import percent
+
+if TYPE_CHECKING:
+    from dembound.accuracy.proposal import Advice, Proposal
+    from dembound.casefile import Case
+
+WIDTH = 80
+"""Most characters in a line of the tables."""
+
+
+class Truth(StrEnum):
+    """What errors are those of."""
+
+    disks = "disks"
+    rock = "rock"
+
+
+Error = Annotated[
+    str | None,
+    typer.Option(
+        "--error",
+        metavar="ERROR",
+        help="Largest error of velocity and displacement at all monitors, RMS over RMS, such as 1% or 0.01. "
+        "Sides, their distance, the box of disks, the diameter of a lattice, elements beyond it, the law where nothing "
+        "opens, of a bar spacing, time step and absorbing ends, and an end once monitors are silent are chosen as "
+        "cheaply as this allows; waves, stiffness, loads, holes and monitors remain.",
+    ),
+]
+Keep = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--keep",
+        metavar="KEY",
+        help="A key or table that is not changed, e.g. packing.radius or boundary. May be repeated; keys given by "
+        "--set are not changed either.",
+    ),
+]
+Of = Annotated[
+    Truth | None,
+    typer.Option(
+        "--of",
+        help="Errors of these disks, which then are the material, or of the rock, for which they are a grid; by "
+        "default of the disks where the packing is random or bonds may break.",
+    ),
+]
+Seeds = Annotated[
+    int,
+    typer.Option(
+        min=1, help="Random packings with which the case is run, to see how much depends on them.", metavar="N"
+    ),
+]
+
+
+@app.command("advise", rich_help_panel="Cases")
+def advise_cases(
+    cases: Cases,
+    error: Error = None,
+    of: Of = None,
+    keep: Keep = None,
+    seeds: Seeds = 1,
+    changes: Settings = None,
+    threads: Threads = None,
+) -> None:
+    """Print how wrong a case is and why, and the cheapest cases for errors of 10, 3, 1 and 0.3 %.
+
+    With --error it writes the cheapest case for this error, CASE_1pct.toml beside CASE.toml: the same text, comments
+    included, with the keys that differ. A file that is there already is not replaced.
+
+    Nothing is run but small scenes with larger disks; see docs/errors.md.
+    """
+    from dembound.accuracy.advise import BOUNDS, advise
+
+    bound = bound_of(error)
+    targets = [] if bound is None else [path.with_name(f"{name_within(path.stem, bound)}.toml") for path in cases]
+    if there := [target for target in targets if target.exists()]:
+        raise CaseError([f"{target}: exists already; remove or rename it" for target in there])
+    prepare_computing(threads)
+    bounds = BOUNDS if bound is None else (bound,)
+    kept = _kept(keep, changes)
+    missed = []
+    for number, path in enumerate(cases):
+        case = load_case(path, changes)
+        found = advise(case, bounds, None if of is None else of.value, kept, seeds)
+        for line in lines_of(case, found):
+            out.print(line, markup=False, soft_wrap=True)
+        if bound is None:
+            out.print(f"write one: dembound advise {path} --error 3%", markup=False, soft_wrap=True)
+        elif not found.best[bound].holds(bound):
+            missed.append(_missed(case, found, bound))
+        elif found.best[bound].choice.changes:
+            _write(
+                found.best[bound].case, text_for(targets[number], path, case, changes), found, bound, targets[number]
+            )
+    if missed:
+        raise NotAccurateError("\n".join(missed))
+
+
+def bound_of(error: str | None) -> float | None:
+    """The bound that ``--error`` gives, None without it; raises CaseError for a text that is no share from 0 to 1."""
+    if error is None:
+        return None
+    text = error.strip()
+    try:
+        bound = 0.01 * float(text[:-1]) if text.endswith("%") else float(text)
+    except ValueError:
+        bound = 0.0
+    if not 0.0 < bound < 1.0:
+        raise CaseError([f"--error: is {error}, must be above 0 and below 1, such as 1% or 0.01"])
+    return bound
+
+
+def name_within(name: str, bound: float) -> str:
+    """The name of a case within an error bound, and of its results: ``bar_1pct``, ``bar_0_3pct``."""
+    number = f"{Decimal(f'{100.0 * bound:.6g}'):f}"
+    return f"{name}_{number.replace('.', '_')}pct"
+
+
+def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequence[str] | None) -> Case:
+    """The case with the cheapest choice that keeps an error bound, which is printed.
+
+    keep : as of the option; changes : those of ``--set``, whose keys are kept, too.
+
+    Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `advise`.
+    """
+    from dembound.accuracy.advise import advise
+
+    found = advise(case, (bound,), kept=_kept(keep, changes))
+    best = found.best[bound]
+    if not best.holds(bound):
+        raise NotAccurateError(_missed(case, found, bound))
+    for line in [*_lines(best), *(best.choice.toml or ["the case as it is"])]:
+        out.print(f"{case.name}: {line}", markup=False, soft_wrap=True)
+    return best.case
+
+
+def _kept(keep: Sequence[str] | None, changes: Sequence[str] | None) -> list[str]:
+    """Keys that are not changed."""
+    return [*(keep or ()), *(text.partition("=")[0].strip() for text in changes or ())]
+
+
+def lines_of(case: Case, found: Advice) -> Iterator[str]:
+    """The errors of a case, and the cheapest choices for it, in lines of at most 80 characters."""
+    from dembound.accuracy.table import lines_of as table_of
+    from dembound.results.estimates import in_words
+
+    yield f"{case.name}: steps of about {found.given.cost:.2g} s; advice took {found.cpu_seconds:.2g} s of CPU time"
+    yield from table_of(found.given.budget)
+    yield ""
+    yield "cheapest case   error  at most     time   what changes"
+    for bound, best in found.best.items():
+        share = best.budget.worst().share
+        numbers = f"{in_words(share.value):>8} {in_words(share.upper):>8}  {best.cost:>6.2g} s   "
+        words = best.choice.name if best.choice.changes else "nothing"
+        if not best.holds(bound):
+            words = f"none keeps it, least: {words}"
+        first = f"{percent(bound, 3):>12}  {numbers}"
+        yield from textwrap.wrap(words, WIDTH, initial_indent=first, subsequent_indent=" " * 8)
+
+
+def _lines(best: Proposal) -> list[str]:
+    """The choice in words, with its error and cost."""
+    from dembound.results.estimates import in_words, split_in_words
+
+    worst = best.budget.worst()
+    return [
+        f"{best.choice.name}; expected error {in_words(worst.share.value)}, at most {in_words(worst.share.upper)} "
+        f"({split_in_words(worst.by)}), steps of about {best.cost:.2g} s"
+    ]
+
+
+def _missed(case: Case, found: Advice, bound: float) -> str:
+    """That no choice keeps a bound, and the best one."""
+    best = found.best[bound]
+    said = f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_lines(best)[0]}"
+    return "\n".join([said, *best.choice.toml])
+
+
+def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> None:
+    """Write the text of a case with the changes of the best choice, after reading and planning it."""
+    from dembound.accuracy.choice import digest
+    from dembound.casefile.edit import edited
+    from dembound.results.replacing import replacing
+    from dembound.running import plan
+    from dembound.schemas import loads
+
+    choice = found.best[bound].choice
+    text = edited(text, choice.changes)
+    again = loads(text, target.parent, target.stem)
+    if digest(again) != digest(case):
+        raise RuntimeError(f"{target}: the text is not that of the choice")
+    plan(again)
+    with replacing(target) as part:
+        part.write_bytes(text.encode())
+    for line in choice.toml:
+        out.print(f"  {line}", markup=False, soft_wrap=True)
+    out.print(f"wrote {target}", markup=False, soft_wrap=True)
