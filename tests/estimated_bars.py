@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from small_cases import Tables, small
 
-from dembound.accuracy.budget import Estimate
+from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Causes
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_bars.causes import causes_of_bar
@@ -192,9 +192,9 @@ def rows(name: str) -> Iterator[Row]:
     """Total errors of a scene at all monitors."""
     case = scene(name)
     recorded, causes = estimated(case)
-    found = Estimate(recorded, causes)
+    found = Budget(recorded, causes)
     for monitor, each in recorded.items():
         true = exact(case, each)
         for quantity, values in each.values.items():
             error = np.linalg.norm(values[:, 0] - true[quantity]) / np.linalg.norm(values[:, 0])
-            yield Row(name, monitor, quantity, found.total(monitor, quantity), float(error))
+            yield Row(name, monitor, quantity, found.total(monitor, quantity).value, float(error))

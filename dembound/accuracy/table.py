@@ -85,7 +85,7 @@ def _total(share: Share) -> str:
     if not share.is_known:
         return "-"
     if share.at_least:
-        return f">= {percent(share.value)}"
+        return f">= {percent(share.value)}" if share.value > 0.0 else "?"
     return f"<= {percent(share.upper)}" if share.upper > MUCH * share.value else in_words(share.value)
 
 

@@ -23,7 +23,7 @@ from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.json_schema import json_schema
 from dembound.errors import CONTROL, CaseError, DemboundError
-from dembound.motion.proposals import proposals
+from dembound.motion.echoes import echoes
 from dembound.running import plan, warnings_before
 from dembound.starting import names, starting_point
 
@@ -272,9 +272,8 @@ def answered(data: Mapping[str, Any], folder: Path) -> bool:
             case = kinds.loads(tomli_w.dumps(data), folder)
             if is_small(case):
                 planned = plan(case)
-                facts = dict([*planned.kind.facts(planned.scene, planned.time_step), *proposals(planned)])
-                tables = facts.pop("its tables", "")  # of a smaller box, lines of a case
-                texts = [*warnings_before(planned), *facts.values(), *tables.split("\n")]
+                facts = dict([*planned.kind.facts(planned.scene, planned.time_step), *echoes(planned)])
+                texts = [*warnings_before(planned), *facts.values()]
                 assert not any(CONTROL.search(text) for text in texts)
         except DemboundError as error:
             lines = error.problems if isinstance(error, CaseError) else [str(error)]

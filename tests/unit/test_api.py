@@ -139,7 +139,7 @@ def test_runs_are_estimated_if_their_case_asks_for_it_and_warn_as_python_does(tm
     assert "middle" in found.summary["error_estimate"]["monitors"]
     longer = dembound.resume(found.folder, until=0.006)
     assert "middle" in longer.summary["error_estimate"]["monitors"]
-    assert dembound.estimate(found.folder, 10.0).total("middle", "velocity") > 0.0
+    assert dembound.estimate(found.folder).total("middle", "velocity").value > 0.0
 
 
 def test_one_side_or_all_are_calibrated() -> None:

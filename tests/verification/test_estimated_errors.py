@@ -1,4 +1,4 @@
-"""Estimated errors of artificial sides are those beside the same disks without an end.
+"""Budgetd errors of artificial sides are those beside the same disks without an end.
 
 Lamb's problem, half of it, 20 m × 20 m of a lattice beside viscous and viscoelastic sides. The truth is the difference
 of the run to the same disks with sides so far away that nothing returns within it; the estimate comes from two or three
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from small_cases import Tables, small
 
-from dembound.accuracy.budget import Estimate
+from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import SIDES
 from dembound.accuracy.estimate import causes_of
 from dembound.accuracy.extended import extended
@@ -50,8 +50,9 @@ def test_estimated_errors_are_the_true_ones(side: Tables) -> None:
         )
         for name, gauge in run.motions.items()
     }
-    found = Estimate(recorded, causes_of(case, recorded, run.time_step, run.work))
-    assert not found.causes.missing
+    found = Budget(recorded, causes_of(case, recorded, run.time_step, run.work))
+    assert not found.causes.unknown
+    assert not found.causes.limits
     for name, own in recorded.items():
         for quantity, values in own.values.items():
             column = own.component(quantity)

@@ -14,7 +14,6 @@ from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.disks.scene import build
 from dembound.kinds import with_changes
-from dembound.motion.proposals import proposals
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
 
@@ -80,22 +79,6 @@ def test_waves_of_rotation_that_outrun_p_waves(lab):
     wave = {**SPLINE, "period": 0.002}
     case = lab.case("A", (10.0, 10.0), material=stiff, wave=wave, load=[load], boundary=far, duration=0.04)
     assert_nothing_returns(monitored(case, [5.25, 4.0]))
-
-
-def test_the_smaller_scene_that_is_proposed_has_no_echo(lamb):
-    case = with_step(monitored(lamb("A", (40.0, 40.0), "viscous"), [3.25, 40.0], [5.25, 34.25]))
-    found = dict(proposals(plan(case)))["smaller scene"]
-    wide, high = (float(text.split(" m instead of")[0]) for text in found.split("; "))
-    assert wide < 36.0
-    assert high < 36.0
-    places = [[x, y - 40.0 + high] for x, y in (monitor.position for monitor in case.monitor)]
-    moved = {f"monitor.{k}.position": place for k, place in enumerate(places, start=1)}
-    small = with_changes(case, {"packing.size": [wide, high], "load.1.position": [0.25, high], **moved})
-    until = float(found.split("before ")[1].split(" s")[0])
-    assert until > 0.02
-    own, full = (velocities(each, until) for each in (small, for_run_of(case, 0.05)))
-
-    assert np.abs(own - full).max() < ALIKE * np.abs(full).max()
 
 
 def test_waves_scattered_by_a_hole_beside_a_free_field(lab):

@@ -30,7 +30,7 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
     """
     scene = build(case)
     found = Causes(Formulas(scene, time_step).causes(recorded))
-    if not (moved := sides_of_pair(case)):
+    if not (moved := sides_of_pair(case)) or not case.monitor:
         return found
     if case.ground.size is not None or case.incident is not None:
         reason = f"of {' and '.join(moved)}: beside a continuum no companions are run"
@@ -41,7 +41,8 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
         cause = of_sides(companions, scene, time_step, 0.0)
     except DemboundError as error:
         return found + Causes([Cause.unknown(SIDES, "; ".join(str(error).splitlines()))])
-    parts = {name: _at_times(cause.parts[name], companions.far[name], own) for name, own in recorded.items()}
+    times = next(iter(companions.far.values())).time
+    parts = {name: _at_times(cause.parts[name], times, own) for name, own in recorded.items() if name in cause.parts}
     spent = companions.runner.work / work
     words = f"{cause.words}, {in_words(spent)} of the work of this run"
     sides = replace(cause, words=words, parts=parts)
@@ -81,12 +82,12 @@ def of_sides(companions: Companions, scene: DiskScene, time_step: float, wider: 
 
 
 def _at_times(
-    parts: Mapping[str, np.ndarray | float], companion: History, recorded: History
+    parts: Mapping[str, np.ndarray | float], times: np.ndarray, recorded: History
 ) -> dict[str, np.ndarray | float]:
-    """Parts at the times of a companion at those of the record; none after its end."""
+    """Parts at times (k,) s of a companion at those of the record; none after its end."""
     values = {quantity: np.asarray(parts[quantity]) for quantity in QUANTITIES}
-    found = History(recorded.place, companion.time, values).at(recorded.time).values
-    over = recorded.time > companion.time[-1]
+    found = History(recorded.place, times, values).at(recorded.time).values
+    over = recorded.time > times[-1]
     return {quantity: np.where(over[:, None], 0.0, each) for quantity, each in found.items()}
 
 

@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from advised import advised
 from small_cases import PUSHED, small
 
-from dembound.accuracy.advise import choose
-from dembound.accuracy.best import Best
-from dembound.accuracy.budget import Estimate
+from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import END, LEAST_SAVED, earlier_ends, ended_earlier
 from dembound.accuracy.history import History
+from dembound.accuracy.proposal import Proposal
 from dembound.accuracy.runner import measure
 from dembound.running import Progress
 
@@ -49,14 +49,14 @@ def test_a_run_ends_when_the_wave_has_passed_and_nothing_can_return() -> None:
     assert end.case.run.duration == 0.4
     # the last that is above 1e-3 of a cosine's peak comes 0.02 of its length before its end
     assert end.share == pytest.approx((PASSED + ECHO) / 0.4, abs=0.002)
-    assert all(not np.any(each) for values in end.lost.errors.values() for each in values.values())
+    assert all(not np.any(each) for values in end.lost.parts.values() for each in values.values())
 
 
 def test_what_comes_later_is_an_error() -> None:
     """0.4 mm/s over the last 0.1 s: below 1e-3 of 0.5 m/s, so that the run would end before; 40 µm are lost."""
     motion = passing(4e-4)
     (end,) = earlier_ends(small(BAR), motion, 0.01, [])
-    lost = end.lost.errors["back"]
+    lost = end.lost.parts["back"]
     late = motion["back"].time >= 0.3
     np.testing.assert_array_equal(np.asarray(lost["velocity"])[:, 0], np.where(late, -4e-4, 0.0))
     assert np.asarray(lost["displacement"])[-1, 0] == pytest.approx(-4e-5, rel=1e-2)
@@ -74,15 +74,14 @@ def test_what_comes_later_is_an_error() -> None:
 def test_a_choice_keeps_its_bound_with_the_end() -> None:
     """40 µm are lost, 0.5 % of the final displacement of 7.5 mm, so that only larger bounds allow it."""
     case, motion = small(BAR), passing(4e-4)
-    other = Cause("other", "", {name: {"velocity": 0.005, "displacement": 0.005} for name in motion})
-    choice = Best(case, Choice("as it is", {}, case), 0.005, {"other": 0.005}, 0.02, 1.0, 1.0, 1, 1.4)
-    ended = ended_earlier(choice, motion, motion, [other], [])
-    assert ended.holds
+    other = Cause("other", "", {name: {"velocity": 0.005, "displacement": 0.005} for name in motion}, factor=1.4)
+    choice = Proposal(Choice("as it is", {}, case), 1.0, Budget(motion, Causes([other])))
+    ended = ended_earlier(choice, case, 0.02, motion, [])
+    assert ended.holds(0.02)
     assert ended.cost == pytest.approx((PASSED + ECHO) / 0.4, abs=0.01)
-    assert ended.by[END] > 0.0
-    assert "until the monitors are silent after about 0.1" in ended.words
-    nearly = replace(choice, bound=1.4 * 0.005 * (1.0 + 1e-6))
-    assert ended_earlier(nearly, motion, motion, [other], []) == nearly
+    assert ended.budget.worst().by[END] > 0.0
+    assert "until the monitors are silent after about 0.1" in ended.choice.name
+    assert ended_earlier(choice, case, 1.4 * 0.005 * (1.0 + 1e-6), motion, []) is choice
 
 
 def test_sides_add_nothing_to_what_is_not_recorded() -> None:
@@ -96,14 +95,14 @@ def test_sides_add_nothing_to_what_is_not_recorded() -> None:
         for name, each in true.items()
     }
     (end,) = earlier_ends(case, own, 0.01, [])
-    both = Estimate(true, Causes([Cause("sides", "", sent), end.lost]))  # type: ignore[arg-type]
+    both = Budget(true, Causes([Cause("sides", "", sent), end.lost]))  # type: ignore[arg-type]
     lost = true["back"].values["velocity"][true["back"].time >= 0.3]
     share = float(np.linalg.norm(lost) / np.linalg.norm(true["back"].values["velocity"]))
-    assert both.total("back", "velocity") == pytest.approx(share, rel=1e-9)
+    assert both.total("back", "velocity").value == pytest.approx(share, rel=1e-9)
 
 
 def test_the_run_of_a_choice_ends_when_it_is_expected_to() -> None:
-    choice = choose(small(BAR), 0.01)
+    choice = advised(small(BAR), 0.01, ["packing.radius"])
     assert choice.holds
     assert choice.case.run.until == "silent"
     gauges = measure(choice.case, Progress())[0].motions

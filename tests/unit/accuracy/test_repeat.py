@@ -143,8 +143,6 @@ def test_many_cracks_need_no_monitor_but_a_repeat_needs_cracks(torn, tmp_path) -
     assert found.repeat.changes == {}
     assert found.summary()["not_estimated"] == ["has no monitor whose error could be estimated"]
     assert estimate_results(folder).summary()["not_estimated"] == found.summary()["not_estimated"]
-    with pytest.raises(CaseError, match="has no monitor"):
-        estimate_results(folder, second_seed=True)
     folder = run_case(small(PUSHED, "whole", {"output.pictures": False, "run.duration": 0.002}), tmp_path)
     with pytest.raises(CaseError, match="has no broken bonds"):
         estimate_results(folder, repeat=True)

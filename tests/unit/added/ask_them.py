@@ -14,7 +14,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     import dembound.kinds as kinds
 
-from dembound.accuracy.cause import Cause
+from dembound.accuracy.cause import share_of
 from dembound.accuracy.estimate import causes_of
 from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History
@@ -92,7 +92,8 @@ def estimated(made: Any) -> dict[str, Any]:
     shares = {
         cause.name: {name: cause.share(name, "velocity", own) for name, own in motions.items()} for cause in found.found
     }
-    return {"causes": shares, "missing": list(found.missing)}
+    known = {name: each for name, each in shares.items() if name not in [cause.name for cause in found.unknown]}
+    return {"causes": known, "unknown": [f"{cause.name}: {cause.words}" for cause in found.unknown]}
 
 
 def of_far_sides(made: Any) -> dict[str, float]:
@@ -102,7 +103,7 @@ def of_far_sides(made: Any) -> dict[str, float]:
     added = {
         name: own[name].values["velocity"] - far[name].at(each.time).values["velocity"] for name, each in own.items()
     }
-    return {name: Cause("", "", {name: {"velocity": added[name]}}).share(name, "velocity", own[name]) for name in own}
+    return {name: share_of(added[name], "velocity", own[name]) for name in own}
 
 
 def held(made: Any) -> list[list[float]]:
@@ -117,9 +118,9 @@ def held(made: Any) -> list[list[float]]:
 
 def other_draw(made: Any) -> dict[str, Any]:
     """How the motion of another packing was found, and its share; or why not."""
-    motions, work = run(made)
+    motions, _ = run(made)
     try:
-        (cause,) = judge_of(made).of_another_seed(made, motions, work).found
+        (cause,) = judge_of(made).of_other_seeds(made, motions, 2).found
     except CaseError as error:
         return {"refused": list(error.problems)}
     return {"words": cause.words, "share": cause.share("middle", "velocity", motions["middle"])}

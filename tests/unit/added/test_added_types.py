@@ -150,7 +150,7 @@ def test_a_side_with_springs_of_its_own_is_estimated_as_one_of_this_package(aske
     quilt, known = asked["sides"]["quilt"], asked["sides"]["viscoelastic"]
     assert asked["calibrated"]["quilt"] == asked["calibrated"]["viscoelastic"]
     np.testing.assert_allclose(asked["held"]["quilt"][1], asked["held"]["quilt"][0], rtol=1e-12)
-    assert quilt["missing"] == known["missing"] == []
+    assert quilt["unknown"] == known["unknown"] == []
     assert quilt["causes"].keys() == known["causes"].keys() == {"left side", "grid", "time step", "sides"}
     for cause, errors in known["causes"].items():
         assert quilt["causes"][cause]["middle"] == pytest.approx(errors["middle"], rel=1e-9), cause
@@ -164,14 +164,14 @@ def test_springs_that_do_not_say_how_stiff_they_are_on_other_disks_are_refused(a
         'boundary.right.type: "mattress" has springs, which are not known for disks of another size; a type with '
         "springs needs the method equal_springs()"
     )
-    assert asked["sides"]["mattress"]["missing"] == [f"sides: {line}"]
+    assert asked["sides"]["mattress"]["unknown"] == [f"sides: {line}"]
     assert "sides" not in asked["sides"]["mattress"]["causes"]
     assert asked["calibrated"]["mattress"] == asked["calibrated"]["viscoelastic"]
 
 
 def test_a_side_that_lets_waves_in_without_dashpots_is_not_estimated(asked) -> None:
     line = 'left side: "whisper" has no dashpots, by which its reflection would be known'
-    assert asked["whisper"]["missing"] == [line]
+    assert asked["whisper"]["unknown"] == [line]
 
 
 def test_the_sides_of_another_lattice_are_estimated_from_square_companions(asked) -> None:
@@ -183,8 +183,8 @@ def test_the_sides_of_another_lattice_are_estimated_from_square_companions(asked
     for monitor, added in asked["far sides"].items():
         assert found[monitor] == pytest.approx(added, rel=0.15), monitor
     # rows along the top, every second disk along the right side
-    uneven = "how single disks at an uneven edge move otherwise than those around, at right"
-    assert asked["hexagonal"]["missing"] == [uneven]
+    uneven = "edge: how single disks at an uneven edge move otherwise than those around, at right"
+    assert asked["hexagonal"]["unknown"] == [uneven]
 
 
 def test_a_lattice_only_stands_for_the_ground_and_other_packings_are_the_ground(asked) -> None:
@@ -193,9 +193,9 @@ def test_a_lattice_only_stands_for_the_ground_and_other_packings_are_the_ground(
     assert radius == 0.125
     assert graded is None  # under a law by which smaller disks make a softer ground
     assert not may_not
-    said = "how single disks at the edge of a random packing move otherwise than those around, at right and top"
-    assert asked["unsaid"]["missing"] == [said]
-    assert asked["no draw"]["refused"] == ['--second-seed: packing.pattern = "unsaid" has no other seed']
+    said = "edge: how single disks at the edge of a random packing move otherwise than those around, at right and top"
+    assert asked["unsaid"]["unknown"] == [said]
+    assert asked["no draw"]["refused"] == ['--seeds: packing.pattern = "unsaid" has no other seed']
 
 
 def test_walls_in_a_lattice_without_planes_between_disks_are_half_a_disk_off(asked) -> None:
@@ -214,9 +214,7 @@ def test_a_random_packing_has_the_errors_and_draws_of_one_of_this_package(asked)
     (drawn, draw), (known, seed) = asked["drawn"]
     assert drawn == known
     assert draw["share"] == seed["share"] > 0.0
-    assert (draw["words"], seed["words"]) == tuple(
-        f"from a run with the {name} 2: the difference over √2" for name in ("draw", "seed")
-    )
+    assert draw["words"] == seed["words"] == "from runs with 2 seeds: how each differs from their mean"
 
 
 def test_sizes_of_disks_are_charted_by_their_meaning(asked) -> None:

@@ -189,8 +189,8 @@ def test_an_estimate_some_snapshots_and_an_exact_motion_beside_the_run(two, push
     monkeypatch.setattr(page_module, "MOST_FRAMES", 2)
     record = copied(pushed_runs[0], tmp_path / "estimated")
     summary = json.loads((record.parent / "summary.json").read_text())
-    shares = {"total": 0.0123, "sides": 0.0123}
-    estimate = {"monitors": {"front": {"velocity": shares}}, "found": {}, "notes": [], "not_estimated": []}
+    shares = {"of": {"rock": {"value": 0.0123, "upper": 0.02}}, "by": {"sides": 0.0123}}
+    estimate = {"monitors": {"front": {"velocity": shares}}, "causes": {}, "notes": [], "not_estimated": []}
     (record.parent / "summary.json").write_text(json.dumps(summary | {"error_estimate": estimate}))
     exact, said = tmp_path / "exact.h5", []
     with h5py.File(record) as run, h5py.File(exact, "w") as file:
@@ -200,7 +200,7 @@ def test_an_estimate_some_snapshots_and_an_exact_motion_beside_the_run(two, push
     write_report([record, exact], tmp_path / "page.html", said.append)
     page = Page(tmp_path / "page.html")
     assert said == []
-    assert page.row("front, velocity")[0] == "1.2 % (sides 1.2 %)"
+    assert page.row("front, velocity")[0] == "of the rock 1.2 %, at most 2 % (sides 1.2 %)"
     assert "Estimated errors" in page.said("h3")
     assert "Estimated errors" not in two.said("h3")
     assert page.live()["frames-0"]["captions"] == [f"t = {times[index]:.4g} s" for index in (0, 2)]

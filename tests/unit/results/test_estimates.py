@@ -29,14 +29,16 @@ def test_bands_are_read_where_there_are_some(tmp_path):
 
 def test_entries_of_a_summary_as_texts():
     estimate = {
-        "monitors": {"a": {"velocity": {"total": 0.05, "grid": 0.03, "sides": 0.04}}},
-        "found": {"sides": "from a pair"},
+        "monitors": {
+            "a": {"velocity": {"of": {"rock": {"value": 0.05, "upper": 0.07}}, "by": {"grid": 0.03, "sides": 0.04}}}
+        },
+        "causes": {"sides": {"how": "companion", "words": "from a pair"}},
         "notes": ["a note"],
         "not_estimated": ["a gap"],
     }
     assert dict(entries(estimate)) == {
-        "a, velocity": "5 % (sides 4 %, grid 3 %)",
-        "sides": "from a pair",
+        "a, velocity": "of the rock 5 %, at most 7 % (sides 4 %, grid 3 %)",
+        "sides": "companion, from a pair",
         "notes": "a note",
         "not estimated": "a gap",
     }

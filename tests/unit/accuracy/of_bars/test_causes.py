@@ -7,7 +7,7 @@ import pytest
 from estimated_bars import RICKER, SCENES, estimated, exact, recorded_of, rows, scene
 from small_cases import SPALLING, small
 
-from dembound.accuracy.budget import Estimate
+from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import SIDES, STEP, Cause, Causes
 from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History
@@ -26,7 +26,7 @@ EXTENDED = [
 
 def share(causes: Causes, cause: str, monitor: str, quantity: str) -> np.ndarray:
     (found,) = [each for each in causes.found if each.name == cause]
-    return found.errors[monitor][quantity][:, 0]
+    return found.parts[monitor][quantity][:, 0]
 
 
 @pytest.mark.parametrize("name", sorted(SCENES))
@@ -52,9 +52,9 @@ def test_a_bar_and_its_mirror_image_have_the_same_errors() -> None:
         "monitor.near.position": 0.8,
         "monitor.far.position": 0.2,
     }
-    own, image = (Estimate(*estimated(each)) for each in (case, with_changes(case, mirrored)))
+    own, image = (Budget(*estimated(each)) for each in (case, with_changes(case, mirrored)))
 
-    for monitor in own.recorded:
+    for monitor in own.motions:
         for quantity in own.quantities(monitor):
             assert image.shares(monitor, quantity) == pytest.approx(own.shares(monitor, quantity), rel=1e-6)
 
@@ -67,11 +67,11 @@ def test_a_load_that_stays(name: str) -> None:
     case = with_changes(scene(name), {"wave.pulse": {"type": "constant", "amplitude": 1.0}})
     recorded, causes = estimated(case)
 
-    assert not causes.missing
+    assert not causes.limits
     for monitor, own in recorded.items():
         true, values = exact(case, own)["velocity"], own.values["velocity"][:, 0]
         error = np.linalg.norm(values - true) / np.linalg.norm(values)
-        assert Estimate(recorded, causes).total(monitor, "velocity") == pytest.approx(error, rel=0.1)
+        assert Budget(recorded, causes).total(monitor, "velocity").value == pytest.approx(error, rel=0.1)
 
 
 @pytest.mark.parametrize("name", EXTENDED)
@@ -116,12 +116,12 @@ def test_nothing_is_said_about_a_bar_that_has_broken_but_about_the_time_before()
     known = causes_of_bar(case, before, plan(case).time_step)
 
     assert not causes.found
-    assert "gauge: its record differs by" in causes.missing[0]
-    assert not known.missing
+    assert "gauge: its record differs by" in causes.limits[0]
+    assert not known.limits
     true = exact(with_changes(case, {"wave.pulse": case.wave["hit"].given()}), before["gauge"])["velocity"]
     values = before["gauge"].values["velocity"][:, 0]
     error = np.linalg.norm(values - true) / np.linalg.norm(values)
-    assert Estimate(before, known).total("gauge", "velocity") == pytest.approx(error, rel=0.03)
+    assert Budget(before, known).total("gauge", "velocity").value == pytest.approx(error, rel=0.03)
 
 
 def _until(recorded: History, time: float) -> History:
@@ -137,13 +137,13 @@ def test_a_record_of_another_bar_is_noticed() -> None:
 
     found = causes_of_bar(case, recorded, step)
 
-    assert [line.split(":")[0] for line in found.missing] == ["far"]  # 5 % of 10 % is more than a third of the error
-    assert "differs by 4.8 %" in found.missing[0]
-    assert set(found.found[0].errors) == {"near"}
+    assert [line.split(":")[0] for line in found.limits] == ["far"]  # 5 % of 10 % is more than a third of the error
+    assert "differs by 4.8 %" in found.limits[0]
+    assert set(found.found[0].parts) == {"near"}
 
     recorded, causes = estimated(with_changes(scene("finite differences, ν = 0.9"), {"run.duration": 1.2e-4}))
-    assert causes.missing == ["far: hardly moves"]  # which no wave has reached
-    assert set(causes.found[0].errors) == {"near"}
+    assert causes.limits == ["far: hardly moves"]  # which no wave has reached
+    assert set(causes.found[0].parts) == {"near"}
     assert "far" in recorded
 
 
@@ -161,20 +161,20 @@ def test_what_is_not_estimated(changes: dict[str, object], line: str) -> None:
 
     found = causes_of_bar(with_changes(case, changes), recorded, 1e-6)
 
-    assert (list(found.found), found.missing) == ([], [line])
+    assert (list(found.found), found.limits) == ([], [line])
 
 
 def test_histories_of_errors_add_up_and_sizes_do_not() -> None:
     values = np.array([[3.0, 0.0], [4.0, 0.0]])
     recorded = {"here": History(np.zeros(2), np.arange(2.0), {"velocity": values})}
 
-    def found(*errors: np.ndarray | float) -> Estimate:
-        return Estimate(recorded, Causes([Cause(str(k), "", {"here": {"velocity": e}}) for k, e in enumerate(errors)]))
+    def found(*errors: np.ndarray | float) -> Budget:
+        return Budget(recorded, Causes([Cause(str(k), "", {"here": {"velocity": e}}) for k, e in enumerate(errors)]))
 
-    assert found(0.3 * values, -0.2 * values).total("here", "velocity") == pytest.approx(0.1)
-    assert found(0.3, 0.4).total("here", "velocity") == pytest.approx(0.5)
-    assert found(0.5 * values, -0.2 * values, 0.4).total("here", "velocity") == pytest.approx(0.5)
-    assert np.isnan(found().total("here", "velocity"))
+    assert found(0.3 * values, -0.2 * values).total("here", "velocity").value == pytest.approx(0.1)
+    assert found(0.3, 0.4).total("here", "velocity").value == pytest.approx(0.5)
+    assert found(0.5 * values, -0.2 * values, 0.4).total("here", "velocity").value == pytest.approx(0.5)
+    assert np.isnan(found().total("here", "velocity").value)
     np.testing.assert_allclose(
         found(0.3 * values, -0.2 * values, 0.2).band("here", "velocity")[:, 0],
         [0.3 + 0.2 * 12.5**0.5, 0.4 + 0.2 * 12.5**0.5],

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from advised import advised
 from small_cases import PUSHED, small
 
-from dembound.accuracy.advise import choose
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner, measure
@@ -164,7 +164,7 @@ def test_the_stress_at_rest_that_turns_with_the_disks_is_counted() -> None:
     for quantity in ("velocity", "displacement"):
         difference = own.values[quantity] - other.values[quantity]
         true = float(np.linalg.norm(difference) / np.linalg.norm(own.values[quantity]))
-        expected = cause.errors["beside"][quantity]
+        expected = cause.parts["beside"][quantity]
         assert isinstance(expected, float)
         assert 0.3 < true / expected < 1.0
     assert ElasticTwin(twin.case, twin.planned, 2.0, 0.5, 0.0).causes(scene, {"beside": own}) == []  # type: ignore[arg-type]
@@ -193,11 +193,11 @@ def test_what_turns_is_the_given_stress_and_the_weight() -> None:
 def test_the_given_law_is_chosen_where_what_turns_is_too_much() -> None:
     """Under 10 MPa the elastic law has an error of 1.3 p/ρc_p² = 0.5 % or more; costs are those while nothing opens."""
     case = confined({"static.stress": [-1e7, -1e7, 0.0], "run.duration": 0.02})
-    found = choose(case, 0.003, ["boundary", "packing.radius"])
+    found = advised(case, 0.003, ["boundary", "packing.radius"])
     assert isinstance(found.case, DiskCase)
     assert found.case.material.law == "linearpbond"
     assert found.case.static is not None
-    other = choose(case, 0.5, ["boundary", "packing.radius"])
+    other = advised(case, 0.5, ["boundary", "packing.radius"])
     assert isinstance(other.case, DiskCase)
     assert other.case.material.law == "elastic"
     assert other.holds

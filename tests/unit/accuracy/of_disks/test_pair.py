@@ -1,19 +1,14 @@
-"""The pair of runs: which sides move, the sign of their difference, and echoes."""
+"""The pair of scenes: how large its disks are, which sides move, and echoes."""
 
-import numpy as np
 import pytest
 from small_cases import Tables, small
 
-from dembound.accuracy.history import History
 from dembound.accuracy.of_disks import pair as pairs
-from dembound.accuracy.of_disks.coarser import Coarser
-from dembound.accuracy.of_disks.pair import Pair, run_pair
-from dembound.accuracy.runner import Run, Runner
+from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.pair import pair_of
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
-
-TIME = np.linspace(0.0, 1.0, 41)
 
 SCENE: Tables = {
     "packing": {"pattern": "A", "size": [12.0, 6.0], "radius": 0.125},
@@ -28,40 +23,13 @@ SCENE: Tables = {
 """A lattice of 48 × 24 disks, with a load and a monitor nearer to its right side."""
 
 
-def gauge(x: float, y: float) -> History:
-    """Motion at a constant velocity (m/s) along x and y, with a rotation that must not count."""
-    motion = np.outer(TIME, [x, y, 9.0])
-    return History.of(np.zeros(2), TIME, motion, np.tile([x, y, 9.0], (len(TIME), 1)))
-
-
-def run_with(*motions: History, weight: float = 0.0) -> Pair:
-    """A pair of the runs with these motions at monitor a; its scenes do not matter."""
-    scene = build(small(SCENE))
-    runs = tuple(Run(motions={"a": motion}) for motion in motions)
-    return Pair(Coarser(scene.case, weight), 3.0, scene, scene, {}, True, runs)
-
-
-def test_the_difference_is_own_less_far_at_the_times_of_the_record():
-    pair = run_with(gauge(3.0, 1.0), gauge(1.0, 2.0))
-    times = np.array([0.0, 0.33, 0.78])
-    recorded = History(np.zeros(2), times, {})
-    np.testing.assert_allclose(pair.difference(recorded, "a", "velocity"), np.tile([2.0, -1.0], (3, 1)))
-    np.testing.assert_allclose(pair.difference(recorded, "a", "displacement"), np.outer(times, [2.0, -1.0]), atol=1e-12)
-
-
-def test_whole_cells_add_their_part_with_their_weight():
-    pair = run_with(gauge(3.0, 1.0), gauge(1.0, 2.0), gauge(7.0, 1.0), weight=0.25)
-    found = pair.difference(History(np.zeros(2), TIME[:2], {}), "a", "velocity")
-    np.testing.assert_allclose(found, np.tile([3.0, -1.0], (2, 1)))
-
-
 @pytest.fixture(scope="module")
 def scene():
     return build(small(SCENE))
 
 
 def test_a_pair_that_can_be_afforded_has_the_smallest_disks_and_no_echoes(scene):
-    pair = run_pair(scene.case, scene, choose_step(scene)[0], 1e9, Runner())
+    pair = pair_of(scene.case, scene, choose_step(scene)[0], 1e9)
     assert pair.ratio == pairs.RATIOS[0]
     assert pair.echo_free
     assert pair.size[1] == pytest.approx(6.0, rel=0.1)  # free sides stay
@@ -71,7 +39,7 @@ def test_a_pair_that_can_be_afforded_has_the_smallest_disks_and_no_echoes(scene)
 
 
 def test_a_budget_that_is_too_small_leaves_echoes_and_the_largest_disks(scene):
-    pair = pairs.pair_of(scene.case, scene, choose_step(scene)[0], 1.0)
+    pair = pair_of(scene.case, scene, choose_step(scene)[0], 1.0)
     assert not pair.echo_free
     assert pair.ratio == max(pairs.ratios(scene.case, scene))
     assert pair.larger.size[0] == pytest.approx(12.0 + 2 * (pairs.SMALLER[-1] - 1.0) * 12.0, rel=0.1)  # at each side
@@ -88,8 +56,8 @@ def test_disks_stay_small_enough_for_waves_and_holes(scene):
 
 
 def test_pairs_that_cannot_be_run_are_refused(scene):
-    with pytest.raises(CaseError, match=r"a pair of runs would take .* times the work that may be spent"):
-        run_pair(scene.case, scene, choose_step(scene)[0], 1.0, Runner())
+    with pytest.raises(CaseError, match=r"companions would take .* times the work that may be spent"):
+        Companions(scene.case, scene, choose_step(scene)[0], 1.0).require_affordable()
     case = small(SCENE, changes={"boundary": {"left": {"type": "viscous_input", "wave_p": "pulse"}}, "load": []})
     with pytest.raises(CaseError, match="lets motion in"):
-        run_pair(case, build(case), 1e-5, 1e9, Runner())
+        pair_of(case, build(case), 1e-5, 1e9)

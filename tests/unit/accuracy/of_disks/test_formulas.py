@@ -1,0 +1,124 @@
+"""Causes of errors of disks: driven sides, delays, a continuum, and what is not estimated."""
+
+import numpy as np
+import pytest
+from small_cases import GRAINS, SURROUNDED, Tables, small
+
+from dembound.accuracy.cause import GRID, STEP
+from dembound.accuracy.history import History
+from dembound.accuracy.of_disks.causes import causes_of_run
+from dembound.accuracy.of_disks.formulas import Formulas, reflected_motion
+from dembound.accuracy.of_disks.matched_sides import Reflected
+from dembound.disks.reports.continuum_facts import expected_errors
+from dembound.disks.scene import build
+
+HEIGHT, SPEED, PERIOD = 20.0, 1000.0, 0.02
+TIME = np.linspace(0.0, 0.08, 401)
+PLACE = np.array([2.25, 8.25])
+
+LAYER: Tables = {
+    "packing": {"pattern": "A", "size": [5.0, HEIGHT], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": SPEED},
+    "boundary": {
+        "bottom": {"type": "viscous_input", "wave_p": "pulse", "beta_p": 0.6, "half_mass": True},
+        "left": {"type": "periodic"},
+        "right": {"type": "periodic"},
+    },
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": PERIOD}},
+    "monitor": [{"name": "middle", "position": PLACE.tolist()}],
+    "run": {"duration": 0.08},
+}
+"""A layer that a P wave enters from below, through dashpots that are too soft; its top is free."""
+
+
+def pulse(t):
+    return np.where((t > 0.0) & (t < PERIOD), 0.5 * (1.0 - np.cos(2.0 * np.pi * t / PERIOD)), 0.0)
+
+
+def recorded(velocity):
+    """A record along y, as long as the run."""
+    step = TIME[1] - TIME[0]
+    motion = np.stack([np.zeros_like(TIME), velocity], axis=1)
+    displacement = step * (np.cumsum(motion, axis=0) - 0.5 * motion)
+    return {"middle": History(PLACE, TIME, {"velocity": motion, "displacement": displacement})}
+
+
+def cause(tables, name, record, step=1e-4):
+    found = Formulas(build(small(tables)), step).causes(record)
+    return next(each for each in found if each.name == name).parts["middle"]
+
+
+def test_a_driven_side_keeps_a_part_of_its_wave_and_sends_back_what_returns():
+    # R = (1 − 0.6)/(1 + 0.6) = 0.25 of a wave is reflected, so that 0.75 of it comes in, of which the error is a
+    # third; what comes down again is reflected after 2H/c = 40 ms. Half cells reflect tan²(qD/4), below 1e-3, more.
+    up = pulse(TIME - 0.01)
+    error = cause(LAYER, "bottom side", recorded(up))
+    np.testing.assert_allclose(error["velocity"][:, 1], (pulse(TIME - 0.05) - up) / 3.0, atol=5e-3)
+    np.testing.assert_array_equal(error["velocity"][:, 0], 0.0)
+    # nothing comes back from an absorbing far side
+    tables = LAYER | {"boundary": LAYER["boundary"] | {"top": {"type": "viscous"}}}
+    error = cause(tables, "bottom side", recorded(up))
+    np.testing.assert_allclose(error["velocity"][:, 1], -up / 3.0, atol=5e-3)
+
+
+def test_reflection_out_of_phase_leaves_no_displacement():
+    record = recorded(pulse(TIME))["middle"]
+    found = reflected_motion(record, 1, Reflected(0.1, 0.0))
+    acceleration = np.gradient(pulse(TIME), TIME)
+    assert np.linalg.norm(found["velocity"]) == pytest.approx(0.1 * np.linalg.norm(pulse(TIME)))
+    assert float(found["velocity"] @ acceleration) < 0.0  # a mass too much: late, as −τ dv/dt
+    assert abs(found["displacement"][-1]) < 1e-12
+    sent = reflected_motion(record, 1, Reflected(1.0, 1.0))  # without dashpots nothing comes in
+    assert all((values == 0.0).all() for values in sent.values())
+
+
+def test_waves_are_late_by_the_mean_of_their_ways_and_larger_steps_make_them_earlier():
+    # c(q) = c(1 − (qD)²/24) on the way H, so that ω comes late by τ = (H/c)(ωD/c)²/24: the error −τ dv/dt is
+    # (H/c)(D/c)²/24 d³v/dt³. Next terms are smaller by (qD)², 2 % of the third derivative of this pulse.
+    bell = np.exp(-(((TIME - 0.04) / 0.006) ** 2))
+    third = np.gradient(np.gradient(np.gradient(bell, TIME), TIME), TIME)
+    error = cause(LAYER, GRID, recorded(bell))["velocity"][:, 1]
+    expected = HEIGHT / SPEED * (0.5 / SPEED) ** 2 / 24.0 * third
+    np.testing.assert_allclose(error, expected, atol=0.03 * np.abs(expected).max())
+    # cΔt/D = 0.8, so that steps take back 0.64 of what the grid adds
+    record = recorded(np.exp(-(((TIME - 0.04) / 0.006) ** 2)))
+    grid, step = (cause(LAYER, name, record, 4e-4)["velocity"][:, 1] for name in (GRID, STEP))
+    np.testing.assert_allclose(step, -0.64 * grid, atol=0.03 * np.abs(grid).max())
+
+
+def test_single_disks_at_the_edge_of_a_random_packing_are_named():
+    times = np.linspace(0.0, 0.03, 31)
+    motion = {quantity: np.zeros((31, 2)) for quantity in ("velocity", "displacement")}
+    at = {"edge": (7.8, 2.0), "inside": (4.0, 2.0), "free": (4.0, 3.9)}
+    record = {name: History(np.array(place), times, motion) for name, place in at.items()}
+    found = causes_of_run(small(GRAINS, changes={"monitor": []}), record, 1e-4, 1e6, 1e6)
+    (edge,) = [cause for cause in found.unknown if "single disks" in cause.words]
+    assert edge.words.endswith("at edge")
+    assert edge.of_disks
+    assert not causes_of_run(small(LAYER), recorded(pulse(TIME)), 1e-4, 1e6, 1e6).unknown
+
+
+def test_displacements_beside_a_continuum_have_smaller_errors_than_velocities():
+    tables = LAYER | {
+        "material": LAYER["material"] | {"fric": 0.5},
+        "packing": LAYER["packing"] | {"size": [10.0, 10.0]},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        "load": [{"name": "hammer", "force": [0.0, 1.0], "position": [5.25, 9.75], "wave": "pulse"}],
+    }
+    velocity, displacement = expected_errors(build(small(tables)))
+    assert 0.0 < displacement < velocity < 0.1
+    assert expected_errors(build(small(LAYER))) is None
+
+
+def test_what_waves_that_start_everywhere_or_jump_do_is_not_estimated():
+    pulled = LAYER | {
+        "boundary": {side: LAYER["boundary"][side] for side in ("left", "right")},
+        "load": [{"name": "shake", "acceleration": [0.0, 1.0], "wave": "pulse"}],
+    }
+    found = causes_of_run(small(pulled), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert not {GRID, STEP} & {each.name for each in found.found}
+    assert ("grid and time step", "waves start everywhere") in [(each.name, each.words) for each in found.unknown]
+    jumping = SURROUNDED | {"wave": {"push": {"type": "constant", "amplitude": 1.0}}}
+    jumping["load"] = [{"name": "push", "force": [0.0, -1.0], "position": [6.0, 6.0], "wave": "push"}]
+    found = causes_of_run(small(jumping), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert [each.how for each in found.found if each.name == "continuum"] == ["unknown"]

@@ -1,0 +1,76 @@
+"""The command advise, and the options --error and --keep of run."""
+
+import json
+
+import pytest
+from unit.accuracy.test_advise import BAR, small
+
+from dembound.cli.advise import bound_of, name_within
+from dembound.errors import CaseError
+
+
+@pytest.fixture
+def case(tmp_path):
+    """A bar whose dashpots return a quarter of the wave."""
+    path = tmp_path / "bar.toml"
+    path.write_text(small(BAR).text, encoding="utf-8")
+    return path
+
+
+def test_bounds_are_shares_or_per_cent_and_names_have_them() -> None:
+    assert bound_of(None) is None
+    for text, bound, name in (
+        *(("1%", 0.01, "bar_1pct"), ("0.01", 0.01, "bar_1pct"), (" 2.5 %", 0.025, "bar_2_5pct")),
+        *(("0.003", 0.003, "bar_0_3pct"), ("12.5 %", 0.125, "bar_12_5pct"), ("1e-6", 1e-6, "bar_0_0001pct")),
+        ("10%", 0.1, "bar_10pct"),
+    ):
+        assert bound_of(text) == pytest.approx(bound)
+        assert name_within("bar", bound_of(text)) == name
+    for text in ("0", "1", "100%", "-1%", "nan", "small", "1%%", "%", ""):
+        with pytest.raises(CaseError, match=r"^--error: is "):
+            bound_of(text)
+
+
+def test_keep_without_error_is_refused(dembound, case) -> None:
+    answer = dembound("run", case, "--keep", "packing")
+    assert (answer.code, answer.err) == (2, "--keep: needs --error, without which nothing is changed\n")
+
+
+def test_a_run_has_the_chosen_case_and_its_estimate(dembound, case, tmp_path) -> None:
+    answer = dembound("run", case, "--error", "5%", "--keep", "packing", "--set", "output.pictures=false")
+    assert answer.code == 0
+    assert "bar_5pct: boundary.right" in answer.out
+    assert "half_mass = true" in answer.out
+    assert [path.name for path in (tmp_path / "results").iterdir()] == ["bar_5pct"]  # beside a run of the case itself
+    summary = json.loads((tmp_path / "results/bar_5pct/summary.json").read_text())
+    found = [each["velocity"]["of"]["rock"]["value"] for each in summary["error_estimate"]["monitors"].values()]
+    assert 0.0 < max(found) < 0.05
+
+
+def test_a_case_is_written_with_the_lines_that_differ(dembound, case) -> None:
+    case.write_text(f"# my bar\n{case.read_text()}")
+    answer = dembound("advise", case, "--error", "5%", "--keep", "packing")
+    assert answer.code == 0, answer.err
+    assert "of the rock" in answer.out
+    assert max(map(len, answer.out.split("  boundary.right")[0].splitlines())) <= 80
+    written = case.with_name("bar_5pct.toml")
+    assert answer.out.endswith(f"wrote {written}\n")
+    before, after = (path.read_text().splitlines() for path in (case, written))
+    assert after[0] == "# my bar"
+    new = [line for line in after if line not in before]
+    assert any("viscous" in line or "half_mass" in line or "outside" in line for line in new)
+    assert len(new) <= 4
+    assert dembound("run", written, "--set", "output.pictures=false").code == 0
+    answer = dembound("advise", case, "--error", "5%")
+    assert answer.code == 2
+    assert answer.err == f"{written}: exists already; remove or rename it\n"
+
+
+def test_a_bound_that_nothing_holds_ends_with_the_best(dembound, case, tmp_path) -> None:
+    keep = ("--error", "1%", "--keep", "packing", "--set", "boundary.right.beta_p=0.6")
+    for command in ("run", "advise"):
+        answer = dembound(command, case, *keep)
+        assert answer.code == 3
+        assert "bar: no choice keeps 1 %; the best of" in answer.err.replace("bar_1pct", "bar")
+    assert not (tmp_path / "results").exists()
+    assert not case.with_name("bar_1pct.toml").exists()
