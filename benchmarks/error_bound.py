@@ -1,4 +1,4 @@
-"""How often the choice of `dembound run --error` is as accurate as asked for: small scenes beside enlarged, finer ones.
+"""How often the choice of `dembound advise` is as accurate as asked for: small scenes beside enlarged, finer ones.
 
     python benchmarks/error_bound.py [NAME...]           # scenes whose names contain one of these; all by default
     python benchmarks/error_bound.py --every [NAME...]   # what choices cost beside the cheapest ones that keep a bound
@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 import sys
-import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -23,8 +22,7 @@ import numpy as np
 import tomli_w
 from error_bound_scenes import scenes
 
-from dembound.accuracy.advise import choose
-from dembound.accuracy.best import Best
+from dembound.accuracy.advise import advise
 from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History, Motions, loud
 from dembound.accuracy.of_disks.companions import Companions
@@ -127,16 +125,16 @@ def every(names: list[str]) -> None:
     print("| scene | bound | choice, s | cheapest, s | ratio | choice | cheapest | its error |")
     print("|---|---|---|---|---|---|---|---|")
     for name, case in cases(names):
-        truth = Truth(case)
-        for bound in BOUNDS:
-            choice = choose(case, bound)
-            tried = every_choice(case, bound, choice.cost if choice.holds else COSTLIEST * choice.own_cost)
+        truth, found = Truth(case), advise(case, BOUNDS)
+        for bound, choice in found.best.items():
+            holds = choice.holds(bound)
+            tried = every_choice(case, bound, choice.cost if holds else COSTLIEST * found.given.cost)
             best = next((each for each in tried if truth.of(each.case) <= bound), None)
-            cells = [f"{choice.cost:.2g}", "", "", choice.words] if choice.holds else ["", "", "", "none"]
+            cells = [f"{choice.cost:.2g}", "", "", choice.choice.name] if holds else ["", "", "", "none"]
             if best is not None:
                 cells[1] = f"{best.cost:.2g}"
                 cells += [best.words, f"{100 * truth.of(best.case):.2g} %"]
-                if choice.holds:
+                if holds:
                     ratios.append(choice.cost / best.cost)
                     cells[2] = f"{ratios[-1]:.2g}"
             print(f"| {name} | {100 * bound:g} % | {' | '.join(cells)} |", flush=True)
@@ -155,38 +153,49 @@ def cases(names: list[str]) -> Iterator[tuple[str, DiskCase]]:
 
 def main(names: list[str]) -> None:
     """Print a line for each scene and bound, the spread of errors by bound, and the share of those that keep it."""
-    found: dict[float, list[tuple[Best, float]]] = {bound: [] for bound in BOUNDS}
-    print("| scene | bound | chosen | expected | true | true/expected | steps, s | of the case, s | search, s |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    found: dict[float, list[Line]] = {bound: [] for bound in BOUNDS}
+    print(
+        "| scene | bound | chosen | expected | at most | true | true/expected | steps, s | of the case, s | search, s |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for name, case in cases(names):
-        truth = Truth(case)
-        for bound in BOUNDS:
-            began = time.process_time()
-            choice = choose(case, bound)
-            spent = time.process_time() - began
-            assert isinstance(choice.case, DiskCase)
-            error = truth.of(choice.case)
-            found[bound].append((choice, error))
-            words = choice.words if choice.holds else f"none; {choice.words}"
+        truth, advice = Truth(case), advise(case, BOUNDS)
+        for bound, best in advice.best.items():
+            assert isinstance(best.case, DiskCase)
+            share, true = best.budget.worst().share, truth.of(best.case)
+            found[bound].append(Line(best.holds(bound), share.value, share.upper, true, best.cost / advice.given.cost))
+            words = best.choice.name if best.holds(bound) else f"none; {best.choice.name}"
             print(
-                f"| {name} | {100 * bound:g} % | {words} | {100 * choice.error:.2g} % | {100 * error:.2g} % | "
-                f"{error / max(choice.error, 1e-9):.2f} | {choice.cost:.2g} | {choice.own_cost:.2g} | {spent:.1f} |",
+                f"| {name} | {100 * bound:g} % | {words} | {100 * share.value:.2g} % | {100 * share.upper:.2g} % | "
+                f"{100 * true:.2g} % | {true / max(share.value, 1e-9):.2f} | {best.cost:.2g} | {advice.given.cost:.2g} | "
+                f"{advice.cpu_seconds:.1f} |",
                 flush=True,
             )
     by_bound(found)
 
 
-def by_bound(found: Mapping[float, list[tuple[Best, float]]]) -> None:
+@dataclass(frozen=True)
+class Line:
+    """A choice for one bound: its expected, largest and true error, and its cost over that of the case."""
+
+    holds: bool
+    expected: float
+    upper: float
+    true: float
+    cost: float
+
+
+def by_bound(found: Mapping[float, list[Line]]) -> None:
     """Print a line for each bound: choices that were expected to keep it, those that do, and how errors scatter."""
     print("\n| bound | choices | within it | true over expected error | cost over that of the case |")
     print("|---|---|---|---|---|")
     for bound, each in found.items():
-        held = [(choice, error) for choice, error in each if choice.holds]
+        held = [line for line in each if line.holds]
         if not held:
             continue
-        within = sum(error <= bound for _, error in held)
-        ratios = [error / choice.error for choice, error in held]
-        cost = np.median([choice.cost / choice.own_cost for choice, _ in held])
+        within = sum(line.true <= bound for line in held)
+        ratios = [line.true / line.expected for line in held]
+        cost = np.median([line.cost for line in held])
         scatter = f"{min(ratios):.2f}, {np.median(ratios):.2f}, {max(ratios):.2f}"
         print(f"| {100 * bound:g} % | {len(held)} of {len(each)} | {within} | {scatter} | {cost:.2g} |")
 

@@ -14,7 +14,6 @@ which `MARGIN` has to cover, and for coarser ones, which only matter where no ch
 from __future__ import annotations
 
 import sys
-import time
 
 import numpy as np
 from timing import ROOT
@@ -23,7 +22,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from estimated_bars import SCENES, exact, recorded_of, scene
 
-from dembound.accuracy.advise import choose
+from dembound.accuracy.advise import advise
 from dembound.accuracy.history import History, loud
 from dembound.accuracy.of_bars.floors import MARGIN, Floors
 from dembound.accuracy.of_bars.search import SAFETY, Motion, affordable_motions, cheapest, given_motion
@@ -105,17 +104,16 @@ def main(names: list[str]) -> None:
     for name in names or NAMES:
         case = scene(name)
         for bound in BOUNDS:
-            began = time.process_time()
-            choice = choose(case, bound)
-            spent = time.process_time() - began
-            assert isinstance(choice.case, BarCase)
-            error = true_error(case, choice.case)
-            if choice.holds:
+            advice = advise(case, (bound,))
+            best = advice.best[bound]
+            assert isinstance(best.case, BarCase)
+            error, expected = true_error(case, best.case), best.budget.worst().share.value
+            if best.holds(bound):
                 kept.append(error <= bound)
-            words = choice.words if choice.holds else f"none; {choice.words}"
+            words = best.choice.name if best.holds(bound) else f"none; {best.choice.name}"
             print(
-                f"| {name} | {100 * bound:g} % | {words} | {100 * choice.error:.3g} % | {100 * error:.3g} % | "
-                f"{1e3 * choice.cost:.2g} | {1e3 * choice.own_cost:.2g} | {choice.tried} | {spent:.1f} |",
+                f"| {name} | {100 * bound:g} % | {words} | {100 * expected:.3g} % | {100 * error:.3g} % | "
+                f"{1e3 * best.cost:.2g} | {1e3 * advice.given.cost:.2g} | {advice.tried} | {advice.cpu_seconds:.1f} |",
                 flush=True,
             )
     print(f"\n{sum(kept)} of {len(kept)} choices that were expected to keep their bound do so")

@@ -96,7 +96,7 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
     """Rows of the table of one scene, and what its estimate says that it has not estimated."""
     import tomli_w
 
-    from dembound.accuracy.budget import Estimate
+    from dembound.accuracy.budget import Budget
     from dembound.accuracy.estimate import causes_of
     from dembound.accuracy.history import History
     from dembound.accuracy.runner import measure
@@ -115,22 +115,25 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
     }
     causes = causes_of(case, recorded, run.time_step, run.work)
     if scene.reference == "extended":  # which has the same grid, step, and sides through which waves enter
-        alike = ("grid", "time step", *(f"{side} side" for side in case.driving))
+        alike = ("time step", *(f"{side} side" for side in case.driving))
         causes = replace(causes, found=[cause for cause in causes.found if cause.name not in alike])
-    found = Estimate(recorded, causes)
+    found = Budget(recorded, causes, "rock" if scene.reference in ("finer", "layer") else "disks")
     wanted = reference_of(scene, case, recorded)
     rows = [_row(scene, found, name, quantity, wanted[name][quantity]) for name in wanted for quantity in wanted[name]]
-    return [row | {"stepping": stepping} for row in rows], list(causes.missing)
+    return [row | {"stepping": stepping} for row in rows], [
+        f"{each.name}: {each.words}" for each in causes.unknown
+    ] + list(causes.limits)
 
 
 def _row(scene: Scene, found: Any, monitor: str, quantity: str, wanted: np.ndarray) -> dict[str, Any]:
     """One row."""
-    own = found.recorded[monitor]
+    own = found.motions[monitor]
     column = own.component(quantity)
     values, wanted = own.values[quantity][:, column], wanted[:, column]
     size = float(np.linalg.norm(values))
     truth = float(np.linalg.norm(values - wanted)) / size
-    estimate = found.total(monitor, quantity)
+    total = found.total(monitor, quantity)
+    estimate = total.value
     row = {
         "scene": scene.name,
         "family": scene.family,
@@ -139,6 +142,7 @@ def _row(scene: Scene, found: Any, monitor: str, quantity: str, wanted: np.ndarr
         "truth": truth,
         "peak": float(np.abs(values - wanted).max() / np.abs(values).max()),
         "estimate": estimate,
+        "upper": total.upper,
         "ratio": estimate / truth if truth > 0.0 else np.nan,
         "cost": found.causes.cost,
         "how": {cause.name: cause.words for cause in found.causes.found},
@@ -146,7 +150,7 @@ def _row(scene: Scene, found: Any, monitor: str, quantity: str, wanted: np.ndarr
         "echo_free": found.causes.echo_free,
     }
     sides = next((cause for cause in found.causes.found if cause.name == "sides"), None)
-    error = sides.errors.get(monitor, {}).get(quantity) if sides else None
+    error = sides.parts.get(monitor, {}).get(quantity) if sides else None
     if isinstance(error, np.ndarray):
         row["corrected"] = float(np.linalg.norm(values - error[:, column] - wanted)) / size
         row["gained"] = truth / row["corrected"]

@@ -120,7 +120,7 @@ def choices() -> Iterator[tuple[str, Callable[[], Found]]]:
     """What is chosen for each bound in the scenes of the benchmark of choices."""
     from error_bound_scenes import scenes
 
-    from dembound.accuracy.advise import choose
+    from dembound.accuracy.advise import advise
     from dembound.kinds import loads
 
     for name, tables in scenes():
@@ -128,9 +128,9 @@ def choices() -> Iterator[tuple[str, Callable[[], Found]]]:
         yield (
             name,
             lambda case=case: {
-                f"{bound:g}": f"{'' if found.holds else 'none; '}{found.words}, {found.error:.6g}"
-                for bound in BOUNDS
-                for found in [choose(case, bound)]
+                f"{bound:g}": f"{'' if best.holds(bound) else 'none; '}{best.choice.name}, "
+                f"{best.budget.worst().share.value:.6g}"
+                for bound, best in advise(case, BOUNDS).best.items()
             },
         )
 
