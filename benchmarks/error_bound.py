@@ -167,8 +167,8 @@ def main(names: list[str]) -> None:
             words = best.choice.name if best.holds(bound) else f"none; {best.choice.name}"
             print(
                 f"| {name} | {100 * bound:g} % | {words} | {100 * share.value:.2g} % | {100 * share.upper:.2g} % | "
-                f"{100 * true:.2g} % | {true / max(share.value, 1e-9):.2f} | {best.cost:.2g} | {advice.given.cost:.2g} | "
-                f"{advice.cpu_seconds:.1f} |",
+                f"{100 * true:.2g} % | {true / max(share.value, 1e-9):.2f} | {best.cost:.2g} | "
+                f"{advice.given.cost:.2g} | {advice.cpu_seconds:.1f} |",
                 flush=True,
             )
     by_bound(found)

@@ -43,6 +43,7 @@ __all__ = [
     "RecordError",
     "Results",
     "RunError",
+    "advise",
     "calibrate",
     "calibrate_all",
     "case",

@@ -17,7 +17,7 @@ from dembound.disks.scene import DiskScene
 
 NEAR, CURVED = 0.08, 0.6
 """Error of the motion along the ray over (κD)², κ = k + CURVED/r, with the RMS wave number k of S waves: measured along
-a force in rock within a factor of 1.6 at r of 4 to 14 disks, for k of 0.08 to 0.28 per disk (docs/error_bound.md)."""
+a force in rock within a factor of 1.6 at r of 4 to 14 disks, for k of 0.08 to 0.28 per disk (docs/errors.md)."""
 
 
 NEAR_FACTOR = 1.6

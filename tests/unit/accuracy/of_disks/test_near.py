@@ -73,7 +73,7 @@ def test_the_nearest_copy_of_a_force_counts() -> None:
 
 
 def test_walls_of_circles_are_of_first_order_and_those_of_rectangles_of_second() -> None:
-    """docs/charts.md: 7 % with 10 disks along the radius; docs/error_bound.md: 4.7 % with 3 along the smaller half."""
+    """docs/charts.md: 7 % with 10 disks along the radius; docs/errors.md: 4.7 % with 3 along the smaller half."""
     circle = Circle.model_validate({"type": "circle", "name": "a", "centre": (0.0, 0.0), "radius": 10.0})
     long = Rectangle.model_validate({"type": "rectangle", "name": "b", "corners": (0.0, 0.0, 6.0, 20.0)})
 
