@@ -117,20 +117,24 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
     if scene.reference == "extended":  # which has the same grid, step, and sides through which waves enter
         alike = ("time step", *(f"{side} side" for side in case.driving))
         causes = replace(causes, found=[cause for cause in causes.found if cause.name not in alike])
-    found = Budget(recorded, causes, "rock" if scene.reference in ("finer", "layer") else "disks")
+    found = Budget(causes.motions or recorded, causes, "rock" if scene.reference in ("finer", "layer") else "disks")
     wanted = reference_of(scene, case, recorded)
-    rows = [_row(scene, found, name, quantity, wanted[name][quantity]) for name in wanted for quantity in wanted[name]]
+    rows = [
+        _row(scene, found, recorded, name, quantity, wanted[name][quantity])
+        for name in wanted
+        for quantity in wanted[name]
+    ]
     return [row | {"stepping": stepping} for row in rows], [
         f"{each.name}: {each.words}" for each in causes.unknown
     ] + list(causes.limits)
 
 
-def _row(scene: Scene, found: Any, monitor: str, quantity: str, wanted: np.ndarray) -> dict[str, Any]:
+def _row(scene: Scene, found: Any, recorded: Any, monitor: str, quantity: str, wanted: np.ndarray) -> dict[str, Any]:
     """One row."""
-    own = found.motions[monitor]
+    own = recorded[monitor]
     column = own.component(quantity)
     values, wanted = own.values[quantity][:, column], wanted[:, column]
-    size = float(np.linalg.norm(values))
+    size = float(np.linalg.norm(wanted))
     truth = float(np.linalg.norm(values - wanted)) / size
     total = found.total(monitor, quantity)
     estimate = total.value
@@ -150,8 +154,9 @@ def _row(scene: Scene, found: Any, monitor: str, quantity: str, wanted: np.ndarr
         "echo_free": found.causes.echo_free,
     }
     sides = next((cause for cause in found.causes.found if cause.name == "sides"), None)
-    error = sides.parts.get(monitor, {}).get(quantity) if sides else None
-    if isinstance(error, np.ndarray):
+    part = sides.parts.get(monitor, {}).get(quantity) if sides else None
+    if isinstance(part, np.ndarray):
+        error = replace(found.motions[monitor], values={quantity: part}).at(own.time).values[quantity]
         row["corrected"] = float(np.linalg.norm(values - error[:, column] - wanted)) / size
         row["gained"] = truth / row["corrected"]
     return row

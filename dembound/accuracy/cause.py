@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.accuracy.history import History
+from dembound.accuracy.history import History, Motions
 
 SIDES, GRID, STEP, CONTINUUM, ENTRY, WALLS, NEAR = (
     *("sides", "grid", "time step", "continuum", "entry of the wave", "walls of holes", "near loads"),
@@ -81,7 +81,8 @@ class Causes:
     """Causes, and what is said about them.
 
     limits : what of the motion is not covered, and why, a line each. notes : other lines. cost : work that was spent,
-    over that of the run. echo_free : whether what `SIDES` adds is known without echoes of the larger run.
+    over that of the run. echo_free : whether what `SIDES` adds is known without echoes of the larger run. motions : the
+    motion without what sides add, relative to which errors are; None: that which was recorded.
     """
 
     found: Sequence[Cause]
@@ -89,6 +90,7 @@ class Causes:
     notes: Sequence[str] = ()
     cost: float = 0.0
     echo_free: bool = False
+    motions: Motions | None = None
 
     def __add__(self, other: Causes) -> Causes:
         """The causes of both, and what is said about both."""
@@ -98,6 +100,7 @@ class Causes:
             [*self.notes, *other.notes],
             self.cost + other.cost,
             self.echo_free or other.echo_free,
+            self.motions if other.motions is None else other.motions,
         )
 
     @property

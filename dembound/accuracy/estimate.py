@@ -50,15 +50,15 @@ def estimate_results(folder: Path, repeat: bool = False) -> Budget:
     """
     clock = Clock(time.process_time)
     with clock.with_compiling(), clock.of("estimate"):
-        found, summary = _estimated(folder, repeat)
+        found, recorded, summary = _estimated(folder, repeat)
     found = replace(found, cpu_seconds=clock.seconds["estimate"])
-    _write(found, folder / FILE)
+    _write(found, recorded, folder / FILE)
     write_json(folder / "summary.json", summary | {KEY: found.summary()})
     return found
 
 
-def _estimated(folder: Path, repeat: bool) -> tuple[Budget, dict[str, Any]]:
-    """The errors, and the summary of the run."""
+def _estimated(folder: Path, repeat: bool) -> tuple[Budget, Motions, dict[str, Any]]:
+    """The errors, what the monitors have recorded, and the summary of the run."""
     record = folder / "run.h5"
     with open_record(record) as file:
         require_run(file)
@@ -71,7 +71,8 @@ def _estimated(folder: Path, repeat: bool) -> tuple[Budget, dict[str, Any]]:
     again = repeated(case, record, cracked) if repeat else None
     said = Causes([], [], one_draw) if again is None else Causes([], [], again.lines(), again.cost)
     causes = Causes([], [lack]) if lack else _causes(case, recorded, cracked.first, summary)
-    return Budget(Named(recorded, "monitor"), causes + said, judge_of(case).truth(case), repeat=again), summary
+    motions = Named(recorded if causes.motions is None else causes.motions, "monitor")
+    return Budget(motions, causes + said, judge_of(case).truth(case), repeat=again), recorded, summary
 
 
 def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, Any]) -> Causes:
@@ -81,7 +82,7 @@ def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, A
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
     causes = causes_of(case, recorded, summary["time_step"], work)
     causes += Causes([], broken, list(judge_of(case).notes(case, summary)))
-    return causes + Causes([], list(_at_rest(Budget(recorded, causes))))
+    return causes + Causes([], list(_at_rest(Budget(causes.motions or recorded, causes))))
 
 
 def causes_of(case: Case, recorded: Motions, time_step: float, work: float) -> Causes:
@@ -167,26 +168,27 @@ def _too_little(samples: Sequence[int], until: float) -> str:
     return f"has {most} samples of its monitors (output.history_interval); {needed}"
 
 
-def _write(found: Budget, path: Path) -> None:
+def _write(found: Budget, recorded: Motions, path: Path) -> None:
     """Write the histories of errors, those without that of the sides where it is known, and the cracks of a repeat."""
     import h5py
 
     with replacing(path) as part, h5py.File(part, "w") as file:
         file.create_group("histories")
-        for name, recorded in found.motions.items():
+        for name, motion in found.motions.items():
             group = file.create_group(f"histories/{name}")
-            write(group, "time", recorded.time, "s")
+            write(group, "time", motion.time, "s")
+            own = recorded[name].at(motion.time)
             for quantity in found.quantities(name):
-                _write_quantity(group, found, name, quantity)
+                _write_quantity(group, found, own, name, quantity)
         if found.repeat is not None:
             group = file.create_group("repeat")
             write(group, "time", found.repeat.other.times, "s")
             write(group, "position", found.repeat.other.places, "m")
 
 
-def _write_quantity(group: Any, found: Budget, name: str, quantity: str) -> None:
+def _write_quantity(group: Any, found: Budget, recorded: History, name: str, quantity: str) -> None:
     """The errors of a quantity by cause, its band, and the corrected history."""
-    recorded, unit = found.motions[name], UNITS[quantity]
+    unit = UNITS[quantity]
     inner = group.create_group(quantity)
     describe(inner, {"total": found.total(name, quantity).value})
     for cause in found.causes.found:

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import replace
-
-import numpy as np
 
 from dembound.accuracy.cause import SIDES, Cause, Causes
-from dembound.accuracy.history import History, Motions
-from dembound.accuracy.of_disks.companions import QUANTITIES, Companions
+from dembound.accuracy.history import Motions
+from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.formulas import USUAL, Formulas
 from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.casefile.disks import DiskCase
@@ -23,30 +19,27 @@ PLACES = "places"
 
 
 def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
-    """The causes of the error of a run, with histories at the recorded times.
+    """The causes of the error of a run: of the far companion's motion where there is one, else of that recorded.
 
     case : to the end of the run. recorded : by monitor. time_step (s), work (particle-steps) : of the run. most :
     particle-steps that companions may take.
     """
     scene = build(case)
-    found = Causes(Formulas(scene, time_step).causes(recorded))
-    if not (moved := sides_of_pair(case)) or not case.monitor:
-        return found
-    if case.ground.size is not None or case.incident is not None:
-        reason = f"of {' and '.join(moved)}: beside a continuum no companions are run"
-        return found + Causes([Cause.unknown(SIDES, reason)])
-    companions = Companions(case, scene, time_step, most)
-    try:
-        companions.require_affordable()
-        cause = of_sides(companions, scene, time_step, 0.0)
-    except DemboundError as error:
-        return found + Causes([Cause.unknown(SIDES, "; ".join(str(error).splitlines()))])
-    times = next(iter(companions.far.values())).time
-    parts = {name: _at_times(cause.parts[name], times, own) for name, own in recorded.items() if name in cause.parts}
-    spent = companions.runner.work / work
-    words = f"{cause.words}, {in_words(spent)} of the work of this run"
-    sides = replace(cause, words=words, parts=parts)
-    return found + Causes([sides], _breaks(companions), _echoes(companions), spent, companions.echo_free)
+    moved = " and ".join(sides_of_pair(case)) if case.monitor else ""
+    reason = ""
+    if moved and (case.ground.size is not None or case.incident is not None):
+        reason = f"of {moved}: beside a continuum no companions are run"
+    elif moved:
+        companions = Companions(case, scene, time_step, most)
+        try:
+            companions.require_affordable()
+            found = causes_of_choice(companions, scene, time_step, 0.0)
+            spent = companions.runner.work / work
+            return found + Causes([], [], [f"companions took {in_words(spent)} of the work of this run"], spent)
+        except DemboundError as error:
+            reason = "; ".join(str(error).splitlines())
+    unknown = [Cause.unknown(SIDES, reason)] if reason else []
+    return Causes([*unknown, *Formulas(scene, time_step).causes(recorded)])
 
 
 def quick_causes(scene: DiskScene) -> Causes:
@@ -60,10 +53,10 @@ def quick_causes(scene: DiskScene) -> Causes:
 
 def causes_of_choice(companions: Companions, scene: DiskScene, time_step: float, wider: float) -> Causes:
     """The causes of the error of a choice, from the far companion's motion; see `Companions.of_sides`."""
-    found = Causes(of_ground(companions, scene, time_step))
+    found = Causes(of_ground(companions, scene, time_step), motions=companions.recorded(scene))
     if sides_of_pair(scene.case):
         sides = of_sides(companions, scene, time_step, wider)
-        found += Causes([sides], _breaks(companions), _echoes(companions))
+        found += Causes([sides], _breaks(companions), _echoes(companions), 0.0, companions.echo_free)
     return found
 
 
@@ -79,16 +72,6 @@ def of_sides(companions: Companions, scene: DiskScene, time_step: float, wider: 
     """What sides that absorb add; see `Companions.of_sides`."""
     parts = companions.of_sides(scene.case, scene, time_step, wider)
     return Cause(SIDES, companions.words, parts, "companion", factor=USUAL)
-
-
-def _at_times(
-    parts: Mapping[str, np.ndarray | float], times: np.ndarray, recorded: History
-) -> dict[str, np.ndarray | float]:
-    """Parts at times (k,) s of a companion at those of the record; none after its end."""
-    values = {quantity: np.asarray(parts[quantity]) for quantity in QUANTITIES}
-    found = History(recorded.place, times, values).at(recorded.time).values
-    over = recorded.time > times[-1]
-    return {quantity: np.where(over[:, None], 0.0, each) for quantity, each in found.items()}
 
 
 def _breaks(companions: Companions) -> list[str]:
