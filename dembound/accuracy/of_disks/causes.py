@@ -12,7 +12,6 @@ from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import DemboundError
-from dembound.results.estimates import in_words
 
 PLACES = "places"
 """Cause of errors: monitors and loads at other places than those given."""
@@ -34,8 +33,7 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
         try:
             companions.require_affordable()
             found = causes_of_choice(companions, scene, time_step, 0.0)
-            spent = companions.runner.work / work
-            return found + Causes([], [], [f"companions took {in_words(spent)} of the work of this run"], spent)
+            return found + Causes([], cost=companions.runner.work / work)
         except DemboundError as error:
             reason = "; ".join(str(error).splitlines())
     unknown = [Cause.unknown(SIDES, reason)] if reason else []

@@ -89,8 +89,9 @@ def estimated(made: Any) -> dict[str, Any]:
         found = causes_of(made, motions, plan(made).time_step, work)
     except CaseError as error:
         return {"refused": list(error.problems)}
+    own = found.motions or motions
     shares = {
-        cause.name: {name: cause.share(name, "velocity", own) for name, own in motions.items()} for cause in found.found
+        cause.name: {name: cause.share(name, "velocity", each) for name, each in own.items()} for cause in found.found
     }
     known = {name: each for name, each in shares.items() if name not in [cause.name for cause in found.unknown]}
     return {"causes": known, "unknown": [f"{cause.name}: {cause.words}" for cause in found.unknown]}
@@ -100,10 +101,9 @@ def of_far_sides(made: Any) -> dict[str, float]:
     """What the sides of a case add to the velocity of its monitors, by a run with all of them out of reach."""
     step = plan(made).time_step
     (own, _), (far, _) = (run(at_step(each, step)) for each in (made, extended(made).case))
-    added = {
-        name: own[name].values["velocity"] - far[name].at(each.time).values["velocity"] for name, each in own.items()
-    }
-    return {name: share_of(added[name], "velocity", own[name]) for name in own}
+    there = {name: far[name].at(each.time) for name, each in own.items()}
+    added = {name: own[name].values["velocity"] - there[name].values["velocity"] for name in own}
+    return {name: share_of(added[name], "velocity", there[name]) for name in own}
 
 
 def held(made: Any) -> list[list[float]]:

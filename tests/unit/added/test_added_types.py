@@ -151,7 +151,7 @@ def test_a_side_with_springs_of_its_own_is_estimated_as_one_of_this_package(aske
     assert asked["calibrated"]["quilt"] == asked["calibrated"]["viscoelastic"]
     np.testing.assert_allclose(asked["held"]["quilt"][1], asked["held"]["quilt"][0], rtol=1e-12)
     assert quilt["unknown"] == known["unknown"] == []
-    assert quilt["causes"].keys() == known["causes"].keys() == {"left side", "grid", "time step", "sides"}
+    assert quilt["causes"].keys() == known["causes"].keys() == {"left side", "grid", "time step", "places", "sides"}
     for cause, errors in known["causes"].items():
         assert quilt["causes"][cause]["middle"] == pytest.approx(errors["middle"], rel=1e-9), cause
     # the springs count: without them it is half as much
@@ -175,13 +175,13 @@ def test_a_side_that_lets_waves_in_without_dashpots_is_not_estimated(asked) -> N
 
 
 def test_the_sides_of_another_lattice_are_estimated_from_square_companions(asked) -> None:
-    """Within 17 % of what a run with far sides gives: 2 to 16 % here, on a square lattice 2 to 5 %.
+    """Within 15 % of what a run with far sides gives, at the uneven edge 20 %; on a square lattice 2 to 5 %.
 
     Companions under the material of the case, whose square lattice is softer, would be off by 19 to 33 %.
     """
     found = asked["hexagonal"]["causes"]["sides"]
     for monitor, added in asked["far sides"].items():
-        assert found[monitor] == pytest.approx(added, rel=0.17), monitor
+        assert found[monitor] == pytest.approx(added, rel=0.2 if monitor == "right" else 0.15), monitor
     # rows along the top, every second disk along the right side
     uneven = "edge: how single disks at an uneven edge move otherwise than those around, at right"
     assert asked["hexagonal"]["unknown"] == [uneven]
