@@ -77,7 +77,7 @@ def cases() -> list[Any]:
         pytest.param(small(tables), 0.06 if name == "continuum" else 1e-9, id=name) for name, tables in SCENES.items()
     ]
     names = ("m = 3, soft ends", "viscous end, β = 0.7", "ranges", "ricker", "attenuation", "matched layer, m = 3")
-    return [*disks, *(pytest.param(bar_scene(name), 0.01, id=name) for name in names)]
+    return [*disks, *(pytest.param(bar_scene(name), 0.02, id=name) for name in names)]
 
 
 @pytest.mark.parametrize(("case", "apart"), cases())
