@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.accuracy.cause import QUANTITIES
 from dembound.accuracy.history import QUIET, History, Motions
-from dembound.accuracy.of_bars.motions import FINER, BarMotions
+from dembound.accuracy.of_bars.motions import FINER, BarMotions, places_of
 from dembound.accuracy.of_bars.options import FACTORS
 from dembound.accuracy.of_bars.window import Window
 from dembound.bar.banded import ROUNDING
@@ -25,7 +25,7 @@ CLEARLY = 2.0
 
 
 class ExactMotion:
-    """The motion of rods at the nodes of the monitors of a scene.
+    """The motion of rods at the places of the monitors of a scene's case.
 
     The stress at the ends of the bar is that half a spacing of this scene inside.
     """
@@ -36,8 +36,8 @@ class ExactMotion:
 
     @cached_property
     def places(self) -> dict[str, float]:
-        """Monitor -> m, the place of its node."""
-        return {name: float(self._scene.positions[node, 0]) for name, node in self._scene.monitors.items()}
+        """Monitor -> m, where the case has it, which need not be at a node."""
+        return places_of(self._scene.case)
 
     def at(self, window: Window) -> Motions:
         """At the times of a window; computed once for all windows whose steps are between two powers of 2 s."""
@@ -79,7 +79,7 @@ class ExactMotion:
 
         window = Window.up_to(self._scene.case.run.duration + 2.0 * step, step)
         time = window.finer(FINER).time
-        found = BarMotions(self._scene.case, self._scene, window, dict.fromkeys(self.places, time)).exact()
+        found = BarMotions(self._scene.case, self._scene, window, dict.fromkeys(self.places, time)).exact(self.places)
         return {
             name: {q: CubicSpline(time, values) for q, values in each.values.items()} for name, each in found.items()
         }

@@ -19,6 +19,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from dembound.accuracy.of_bars.motions import AT_PLACE
 from dembound.accuracy.of_bars.options import BarOption
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene
@@ -30,9 +31,6 @@ MARGIN = 1.5
 
 DISPERSES = 0.95
 """Square of the Courant number, over that at which waves are not dispersed, above which the rules are not used."""
-
-AT_PLACE = 1e-9
-"""Distance of a node from the place of its monitor that is none, over the length of the bar."""
 
 Kind = tuple[str, ...]
 

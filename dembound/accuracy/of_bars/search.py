@@ -9,14 +9,14 @@ motion until bonds change.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from dembound.accuracy.best import Best
-from dembound.accuracy.budget import expected
+from dembound.accuracy.budget import Expected, expected
 from dembound.accuracy.cause import Cause
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
@@ -25,11 +25,12 @@ from dembound.accuracy.of_bars.causes import QUIET, difference, largest_motion, 
 from dembound.accuracy.of_bars.exact import ExactMotion
 from dembound.accuracy.of_bars.floors import Floors, first_echo, is_regular
 from dembound.accuracy.of_bars.motions import BarMotions
-from dembound.accuracy.of_bars.options import BarOption, bar_options, may_break
+from dembound.accuracy.of_bars.options import GIVEN_ENDS, BarOption, bar_options, may_break, other_options
 from dembound.accuracy.of_bars.window import Window
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
+from dembound.words import percent
 
 SAFETY = 1.05
 """Expected errors are below the bound by this factor: they differ from true ones by up to 3 %
@@ -37,9 +38,6 @@ SAFETY = 1.05
 
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: an eighth of the spacing."""
-
-PLACES = "places"
-"""Cause of errors: monitors at other nodes than in the given case."""
 
 ALONG = "; its nodes and method remain, as it may break, and the error is that before bonds change"
 """What is said of a bar that may break."""
@@ -56,14 +54,16 @@ def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Best:
     own = given_motion(case)
     if not own.moves:
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
-    motions = affordable_motions(own, kept)
+    motions = affordable(own, bar_options(case, kept))
     if not motions:
         raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
     best, tried = cheapest(motions, bound)
-    words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
+    words = best.choice.words
+    if may_break(case):
+        words += ALONG + (_otherwise(own, bound, kept) if not best.holds(bound) else "")
     choice = Choice.of(case, best.choice.case(case), words)
     costs = best.choice.cost, own.choice.cost
-    found = Best(case, choice, best.error, best.by, bound, *costs, tried, SAFETY)
+    found = Best(case, choice, best.by_causes.worst, best.by_causes.by, bound, *costs, tried, SAFETY)
     return found if may_break(case) else ended_earlier(found, best.recorded, best.recorded, best.causes, kept)
 
 
@@ -73,10 +73,20 @@ def given_motion(case: BarCase) -> Motion:
     return Motion(next(each for each in bar_options(case, ()) if not each.changes), exact)
 
 
-def affordable_motions(own: Motion, kept: Sequence[str]) -> list[Motion]:
-    """Motions of all choices for a case that cost at most `COSTLIEST` times as much as it does, the cheapest first."""
-    choices = sorted(bar_options(own.choice.scene.case, kept), key=lambda each: each.cost)
+def affordable(own: Motion, options: Iterable[BarOption]) -> list[Motion]:
+    """Motions of choices for a case that cost at most `COSTLIEST` times as much as it does, the cheapest first."""
+    choices = sorted(options, key=lambda each: each.cost)
     return [Motion(each, own.exact) for each in choices if each.cost <= COSTLIEST * own.choice.cost]
+
+
+def _otherwise(own: Motion, bound: float, kept: Sequence[str]) -> str:
+    """The cheapest choice of finite differences that keeps a bound, for a bar that may break; empty without one."""
+    motions = affordable(own, other_options(own.choice.scene.case, kept))
+    best = cheapest(motions, bound)[0] if motions else None
+    if best is None or not best.holds(bound):
+        return ""
+    words = best.choice.words.removeprefix(f"{GIVEN_ENDS}, ")
+    return f"; {words}, at Courant number {best.choice.courant:.3g}, have {percent(best.error)}, but break otherwise"
 
 
 def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
@@ -91,7 +101,7 @@ def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
             continue
         motion.add_to(floors)
         found.append(motion)
-        if SAFETY * motion.error <= bound:
+        if motion.holds(bound):
             return motion, len(found)
     best = min(found, key=lambda each: each.error)
     for motion in reversed(left):  # finer nodes first
@@ -145,17 +155,22 @@ class Motion:
             for name, own in self.recorded.items()
         }
 
-    @property
-    def by(self) -> dict[str, float]:
-        """Shares of the error by cause at the worst monitor; some have opposite signs, as those of grid and steps."""
-        return expected(self.causes, self.recorded).by
+    def holds(self, bound: float) -> bool:
+        """Whether the error is below a bound, with a reserve; also that by causes, which takes longer to find."""
+        return SAFETY * self.error <= bound and SAFETY * self.by_causes.worst <= bound
+
+    @cached_property
+    def by_causes(self) -> Expected:
+        """The same error as an estimate gives it, and its causes; some have opposite signs, as those of grid and steps.
+
+        It differs from `error` by the exact motion, which that one takes between the samples of another window.
+        """
+        return expected(self.causes, self.recorded)
 
     @cached_property
     def causes(self) -> list[Cause]:
-        """What ends, nodes, steps and other places of monitors add to the motion."""
-        at_nodes = self._motions.exact()
-        causes = split(self._motions, self._own, at_nodes, self.recorded)
-        return [*causes, difference(PLACES, at_nodes, self._exact, self.recorded)]
+        """What ends, nodes, steps and places of monitors beside nodes add to the motion."""
+        return split(self._motions, self._own, self._motions.exact(), self.recorded)
 
     @property
     def moves(self) -> bool:

@@ -10,7 +10,8 @@ from small_cases import SPALLING, small
 
 from dembound.accuracy.advise import choose
 from dembound.accuracy.best import Best
-from dembound.accuracy.of_bars.search import SAFETY, affordable_motions, cheapest, given_motion
+from dembound.accuracy.of_bars.options import bar_options
+from dembound.accuracy.of_bars.search import SAFETY, affordable, cheapest, given_motion
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
@@ -73,7 +74,7 @@ def test_the_search_finds_what_the_errors_of_all_choices_give(
 ) -> None:
     case = with_changes(scene(name), {**changes, "run.duration": 6e-4})
     assert isinstance(case, BarCase)
-    motions = affordable_motions(given_motion(case), ["run"])
+    motions = affordable(given_motion(case), bar_options(case, ["run"]))
 
     found = [cheapest(motions, bound) for bound in bounds]
 
