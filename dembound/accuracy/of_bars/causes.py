@@ -13,11 +13,11 @@ Own less endless is the error of the ends, endless less exact time that of the t
 all ways of a wave, there and back, are included, and so are ends that are softer than the bar, and what is lost at
 interfaces between ranges. Where nodes lie beside the places of monitors, the exact motion at both is compared, too.
 
-At Courant number 1 finite differences are exact: with h = sΔt/2 the half node and the spring of an endless row need the
-force (ρcA sinh h + ρcA e^{−h}) v = ρcA cosh h v at its end, and pass on e^{−2h} of it from node to node; recorded is the
-mean of two half steps, μv = cosh h v, so that a force F on the end makes the velocity F/ρcA of a rod. A dashpot ρcA takes
-ρcA μv, which is all that arrives, and interfaces between ranges return what those of rods do. What remains is the
-displacement, a sum of steps: Δt/sinh 2h in place of 1/s, too small by (ωΔt)²/6.
+At Courant number 1 finite differences are exact: with h = sΔt/2 the half node and the spring at the end of an endless
+row need the force ρcA (sinh h + e^{−h}) v = ρcA cosh h v, and pass on e^{−2h} of it from node to node. Recorded is the
+mean of two half steps, μv = cosh h v, so that a force F on the end makes the velocity F/ρcA, that of a rod. A dashpot
+ρcA takes ρcA μv, all that arrives, and interfaces between ranges return what those of rods do. What remains is the
+displacement, a sum of steps: Δt/sinh 2h in place of 1/s, another one by (ωΔt)²/6.
 
 Whether the bar was linear is seen in the record itself: at a monitor whose record is not that of `own`, as a method has
 changed the bonds, nothing is said.

@@ -16,6 +16,7 @@ from dembound.accuracy.of_bars.window import Window
 from dembound.bar.banded import ROUNDING
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene
+from dembound.bar.stability import own_step
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -33,6 +34,11 @@ class ExactMotion:
     def __init__(self, scene: BarScene) -> None:
         self._scene = scene
         self._found: dict[int, dict[str, dict[str, CubicSpline]]] = {}
+
+    @cached_property
+    def step(self) -> float:
+        """The time step (s) of the case."""
+        return own_step(self._scene, self._scene.step_limit())
 
     @cached_property
     def places(self) -> dict[str, float]:

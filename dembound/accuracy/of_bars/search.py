@@ -9,6 +9,7 @@ motion until bonds change.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,7 +22,7 @@ from dembound.accuracy.cause import Cause
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History, Motions
-from dembound.accuracy.of_bars.causes import QUIET, difference, largest_motion, not_linear, split
+from dembound.accuracy.of_bars.causes import EQUAL, HOW, QUIET, difference, largest_motion, not_linear, split
 from dembound.accuracy.of_bars.exact import ExactMotion
 from dembound.accuracy.of_bars.floors import Floors, first_echo, is_regular
 from dembound.accuracy.of_bars.motions import BarMotions
@@ -30,7 +31,8 @@ from dembound.accuracy.of_bars.window import Window
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
-from dembound.words import percent
+from dembound.results.estimates import in_words
+from dembound.results.resample import at_times
 
 SAFETY = 1.05
 """Expected errors are below the bound by this factor: they differ from true ones by up to 3 %
@@ -38,6 +40,9 @@ SAFETY = 1.05
 
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: an eighth of the spacing."""
+
+BETWEEN = 4
+"""Times in a step at which it is looked whether the motion is seen between its steps."""
 
 ALONG = "; its nodes and method remain, as it may break, and the error is that before bonds change"
 """What is said of a bar that may break."""
@@ -86,7 +91,7 @@ def _otherwise(own: Motion, bound: float, kept: Sequence[str]) -> str:
     if best is None or not best.holds(bound):
         return ""
     words = best.choice.words.removeprefix(f"{GIVEN_ENDS}, ")
-    return f"; {words}, at Courant number {best.choice.courant:.3g}, have {percent(best.error)}, but break otherwise"
+    return f"; {words}, at Courant number {best.choice.courant:.3g}, have {in_words(best.error)}, but break otherwise"
 
 
 def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
@@ -96,7 +101,7 @@ def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
     """
     floors, found, left = Floors(), list[Motion](), list[Motion]()
     for motion in motions:
-        if SAFETY * floors.of(motion.choice) > bound:
+        if SAFETY * max(floors.of(motion.choice), motion.unseen) > bound:
             left.append(motion)
             continue
         motion.add_to(floors)
@@ -105,7 +110,7 @@ def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
             return motion, len(found)
     best = min(found, key=lambda each: each.error)
     for motion in reversed(left):  # finer nodes first
-        if floors.of(motion.choice) < best.error:
+        if max(floors.of(motion.choice), motion.unseen) < best.error:
             motion.add_to(floors)
             found.append(motion)
             best = min(best, motion, key=lambda each: each.error)
@@ -126,9 +131,28 @@ class Motion:
             floors.add(self.choice, self._error_of(counted), self._error_of(counted, echo))
 
     @cached_property
+    def unseen(self) -> float:
+        """What a history with longer steps than those of the case does not show, RMS over RMS.
+
+        It is the difference of the exact motion from the cubic curve through its values at the steps: a pulse of a few
+        samples may be exact at each of them, and not be seen between.
+        """
+        if self.choice.step <= (1.0 + EQUAL) * self.exact.step:
+            return 0.0
+        own, between = self._exact, self.exact.at(self._motions.window.finer(BETWEEN))
+        errors = {
+            name: {
+                q: at_times(own[name].time, own[name].values[q], each.time) - values
+                for q, values in each.values.items()
+            }
+            for name, each in between.items()
+        }
+        return expected([Cause("", HOW, errors)], between).worst
+
+    @cached_property
     def error(self) -> float:
-        """The error at the worst monitor."""
-        return self._error_of(self.recorded)
+        """The error at the worst monitor, with what is not seen between steps."""
+        return math.hypot(self._error_of(self.recorded), self.unseen)
 
     def _error_of(self, recorded: Motions, last: Mapping[str, float] | None = None) -> float:
         """The error of what is recorded; last : s, by monitor, up to which it counts."""
@@ -157,13 +181,13 @@ class Motion:
 
     def holds(self, bound: float) -> bool:
         """Whether the error is below a bound, with a reserve; also that by causes, which takes longer to find."""
-        return SAFETY * self.error <= bound and SAFETY * self.by_causes.worst <= bound
+        return SAFETY * self.error <= bound and SAFETY * math.hypot(self.by_causes.worst, self.unseen) <= bound
 
     @cached_property
     def by_causes(self) -> Expected:
-        """The same error as an estimate gives it, and its causes; some have opposite signs, as those of grid and steps.
+        """The error at its steps as an estimate gives it, and its causes; grid and steps have opposite signs.
 
-        It differs from `error` by the exact motion, which that one takes between the samples of another window.
+        It differs from `error` by the exact motion, too, which that one takes between the samples of another window.
         """
         return expected(self.causes, self.recorded)
 
