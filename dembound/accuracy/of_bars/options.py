@@ -20,7 +20,7 @@ from dembound.methods import FiniteDifference
 
 COARSER = (32.0, 24.0, 16.0, 12.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25)
 FACTORS = (1.0, *COARSER, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125)
-"""Spacings over the given ones that are tried, each the nearest that divides its range and has nodes at its monitors.
+"""Spacings over the given ones that are tried: the nearest that divide their ranges, and that have nodes at monitors.
 """
 
 MOST_PARTS = 200
@@ -61,7 +61,9 @@ class BarOption:
     @property
     def words(self) -> str:
         """The choice in words."""
-        return f"{self.ends}{self.method}, nodes every {self.spacing:.4g} m, steps of {self.step:.4g} s"
+        ranges = self.scene.rod.ranges
+        spacings = " and ".join(dict.fromkeys(f"{part.spacing:.4g}" for part in ranges))
+        return f"{self.ends}{self.method}, nodes every {spacings} m, steps of {self.step:.4g} s"
 
     @property
     def spacing(self) -> float:
@@ -91,8 +93,13 @@ class BarOption:
 def bar_options(case: BarCase, kept: Sequence[str]) -> Iterator[BarOption]:
     """All choices that keep the values of some keys, those with fewer changes first; none that cannot run."""
     if may_break(case):
-        return _options(case, kept, [("", {})], [{}])
-    return _options(case, kept, list(_methods(case)), _spacings(case))
+        yield from _options(case, kept, [("", {})], [{}])
+        return
+    methods, spacings = list(_methods(case)), _spacings(case)
+    if _moves_alike(case, kept):  # other nodes with finite differences only
+        yield from _options(case, kept, methods[:1], [{}])
+        methods = methods[-1:]
+    yield from _options(case, kept, methods, spacings)
 
 
 def other_options(case: BarCase, kept: Sequence[str]) -> Iterator[BarOption]:
@@ -113,6 +120,13 @@ def _options(
 def may_break(case: BarCase) -> bool:
     """Whether bonds may change, after which nodes and method are part of what happens."""
     return math.isfinite(case.bar.least_strength)
+
+
+def _moves_alike(case: BarCase, kept: Sequence[str]) -> bool:
+    """Whether finite differences, which may be taken, do in a bar that cannot break what its method does."""
+    if isinstance(case.method, FiniteDifference) or any(f"{key}.".startswith("method.") for key in kept):
+        return False
+    return not case.method.begin(build_bar(case).rod).bond.any()
 
 
 def _ends(case: BarCase, kept: Sequence[str]) -> Iterator[tuple[str, Changes]]:
@@ -163,12 +177,12 @@ def _spacings(case: BarCase) -> list[Changes]:
     wanted = [[factor * spacing for spacing in given] for factor in FACTORS]
     if len(parts) > 1:
         wanted += [[factor * unit * part.speed for part in parts] for factor in FACTORS]
-    found = [_near(case, each) for each in wanted]
+    found = [_near(case, each, at_monitors) for each in wanted for at_monitors in (True, False)]
     return [each for number, each in enumerate(found) if each not in found[:number]]
 
 
-def _near(case: BarCase, wanted: Sequence[float]) -> Changes:
-    """The spacings nearest to some (m, by range) that divide their ranges and have nodes at all monitors."""
+def _near(case: BarCase, wanted: Sequence[float], at_monitors: bool) -> Changes:
+    """The spacings nearest to some (m, by range) that divide their ranges; at_monitors : with nodes at all of these."""
     bar = case.bar
     keys = [f"bar.range.{each.name}.spacing" for each in bar.range] or ["bar.spacing"]
     changes: Changes = {}
@@ -177,8 +191,8 @@ def _near(case: BarCase, wanted: Sequence[float]) -> Changes:
         if math.isclose(spacing, given, rel_tol=AT_NODE):
             continue
         places = [each.position - start for each in case.monitor if start <= each.position <= start + part.length]
-        step = _equal_parts(part.length, places)
-        changes[key] = float(f"{part.length / (step * max(1, round(part.length / spacing / step))):.12g}")
+        least = _equal_parts(part.length, places) if at_monitors else 1
+        changes[key] = float(f"{part.length / (least * max(1, round(part.length / spacing / least))):.12g}")
     return changes
 
 

@@ -91,7 +91,7 @@ def _otherwise(own: Motion, bound: float, kept: Sequence[str]) -> str:
     if best is None or not best.holds(bound):
         return ""
     words = best.choice.words.removeprefix(f"{GIVEN_ENDS}, ")
-    return f"; {words}, at Courant number {best.choice.courant:.3g}, have {in_words(best.error)}, but break otherwise"
+    return f"; {words}, at Courant number {best.choice.courant:.3g}, have {in_words(best.by_causes.worst)}, but break otherwise"
 
 
 def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
