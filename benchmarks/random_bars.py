@@ -242,7 +242,8 @@ def main() -> None:
     options = parser.parse_args()
     kept, at_steps, factors, missed, dearer, searched = [], [], [], 0, [], []
     print(
-        "| bar | bound | chosen | expected | true at steps, between | steps, ms | by hand, ms | given: true, ms | tried | search, s |"
+        "| bar | bound | chosen | expected | true at steps, between | steps, ms | by hand, ms | given: true, ms "
+        "| tried | search, s |"
     )
     print("|---|---|---|---|---|---|---|---|---|---|")
     for seed in range(options.first, options.first + options.scenes):
@@ -281,7 +282,8 @@ def main() -> None:
                 flush=True,
             )
     print(
-        f"\n{sum(kept)} of {len(kept)} choices keep their bound, {sum(at_steps)} at their steps; by hand {missed} were found where none was chosen"
+        f"\n{sum(kept)} of {len(kept)} choices keep their bound, {sum(at_steps)} at their steps; "
+        f"by hand {missed} were found where none was chosen"
     )
     print(f"true over expected: median {np.median(factors):.3f}, 95 % below {np.quantile(factors, 0.95):.3f}")
     if finite := [each for each in dearer if math.isfinite(each) and each > 0.0]:

@@ -1,10 +1,10 @@
 """The cheapest choice of nodes, steps and absorbing ends of a bar that keeps the error of all monitors within a bound.
 
-The motion of a linear bar is known without a run, as it is stepped and exactly (estimate/bars.py), for every choice:
-the error is their difference at each monitor. Choices are tried in the order of their predicted cost.
+The motion of a linear bar is known without a run, as it is stepped and exactly (motions.py), for every choice: the
+error is their difference at each monitor. Choices are tried in the order of their predicted cost.
 
 Of a bar that may break the nodes and the method remain, as they are part of how it breaks; its error is that of the
-motion until bonds change.
+motion until bonds change. Where it is too large, finite differences that would do are named.
 """
 
 from __future__ import annotations
@@ -91,7 +91,8 @@ def _otherwise(own: Motion, bound: float, kept: Sequence[str]) -> str:
     if best is None or not best.holds(bound):
         return ""
     words = best.choice.words.removeprefix(f"{GIVEN_ENDS}, ")
-    return f"; {words}, at Courant number {best.choice.courant:.3g}, have {in_words(best.by_causes.worst)}, but break otherwise"
+    error = in_words(best.by_causes.worst)
+    return f"; {words}, at Courant number {best.choice.courant:.3g}, have {error}, but break otherwise"
 
 
 def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:

@@ -248,7 +248,7 @@ def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
     assert choice.cost < 0.5 * choose(case, 0.01, ["bar", "run.until"]).cost
     recorded = recorded_of(choice.case)[0]  # type: ignore[arg-type]
     expected = float(choice.words.rpartition("about ")[2].removesuffix(" s"))
-    # the run looks at its monitors some times only
-    assert next(iter(recorded.values())).time[-1] == pytest.approx(expected, rel=0.1)
+    # the run looks at its monitors some times only, and ends at the next of them
+    assert next(iter(recorded.values())).time[-1] == pytest.approx(expected, rel=0.15)
     ringing = with_changes(scene("finite differences, ν = 0.5"), {"run.duration": 0.02})
     assert choose(ringing, 0.1).case.run.until == "duration"
