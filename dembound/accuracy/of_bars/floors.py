@@ -26,8 +26,8 @@ from dembound.bar.scene import BarScene
 from dembound.methods.rod import Range
 
 MARGIN = 2.0
-"""Factor by which rules for finer nodes and other ends may be wrong: 1.31 of all pairs of choices for 40 bars with nodes
-up to four times as far apart as given, 1.64 with up to 32 times (benchmarks/error_bound_bars.py --every)."""
+"""Factor by which rules for finer nodes and other ends may be wrong: 1.31 of all pairs of choices for 40 bars with
+nodes up to four times as far apart as given, 1.64 with up to 32 times (benchmarks/error_bound_bars.py --every)."""
 
 DISPERSES = 0.95
 """Square of the Courant number, over that at which waves are not dispersed, above which the rules are not used."""
