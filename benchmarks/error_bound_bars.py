@@ -4,7 +4,7 @@
     python benchmarks/error_bound_bars.py --every [NAME...]      # computes the errors of all choices
 
 The exact motion is d'Alembert's, for attenuation and ranges that of finite differences on nodes eight times as fine as
-those of the choice. Errors are those at the nodes of the given case's monitors.
+those of the choice. Errors are those at the places of the monitors.
 
 With `--every` it prints how many errors the search computes, whether it finds the choice that all of them give, and the
 largest factor by which the rules of bar_floors.py are wrong, of all pairs of choices: for finer nodes and other ends,
@@ -25,8 +25,8 @@ from estimated_bars import SCENES, exact, recorded_of, scene
 from dembound.accuracy.advise import advise
 from dembound.accuracy.history import History, loud
 from dembound.accuracy.of_bars.floors import MARGIN, Floors
-from dembound.accuracy.of_bars.search import SAFETY, Motion, affordable_motions, cheapest, given_motion
-from dembound.bar.scene import build_bar
+from dembound.accuracy.of_bars.options import bar_options
+from dembound.accuracy.of_bars.search import Motion, affordable, cheapest, given_motion
 from dembound.casefile.bar import BarCase
 
 BOUNDS = (0.003, 0.01, 0.03)
@@ -47,10 +47,11 @@ NAMES = (
 
 def true_error(given: BarCase, case: BarCase) -> float:
     """The largest error of all quantities at monitors that move, RMS over RMS."""
-    scene, (found, _) = build_bar(given), recorded_of(case)
+    found, _ = recorded_of(case)
+    places = {monitor.name: monitor.position for monitor in given.monitor}
     errors = []
     for name, own in found.items():
-        moved = History(scene.positions[scene.monitors[name]], own.time, own.values)
+        moved = History(np.array([places[name], 0.0]), own.time, own.values)
         expected = exact(case, moved)
         for quantity, values in own.values.items():
             if name in loud(found, quantity):
@@ -79,12 +80,13 @@ def every(names: list[str]) -> None:
     print(f"| bar | choices | {bounds} | same choices | finer nodes, other ends | coarser nodes |")
     print("|---|---|" + "---|" * len(BOUNDS) + "---|---|---|")
     for name in names or SCENES:
-        motions = affordable_motions(given_motion(scene(name)), [])
+        own = given_motion(scene(name))
+        motions = affordable(own, bar_options(own.choice.scene.case, []))
         best = min(motions, key=lambda each: each.error)
         tried, same = [], 0
         for bound in BOUNDS:
             found, count = cheapest(motions, bound)
-            same += found is next((each for each in motions if SAFETY * each.error <= bound), best)
+            same += found is next((each for each in motions if each.holds(bound)), best)
             tried.append(str(count))
         row = [
             name,

@@ -11,7 +11,13 @@ Up to the first change of its bonds a bar is linear, and its motion is known at 
 
 Own less endless is the error of the ends, endless less exact time that of the time step, the rest that of the grid. So
 all ways of a wave, there and back, are included, and so are ends that are softer than the bar, and what is lost at
-interfaces between ranges.
+interfaces between ranges. Where nodes lie beside the places of monitors, the exact motion at both is compared, too.
+
+At Courant number 1 finite differences are exact: with h = sΔt/2 the half node and the spring at the end of an endless
+row need the force ρcA (sinh h + e^{−h}) v = ρcA cosh h v, and pass on e^{−2h} of it from node to node. Recorded is the
+mean of two half steps, μv = cosh h v, so that a force F on the end makes the velocity F/ρcA, that of a rod. A dashpot
+ρcA takes ρcA μv, all that arrives, and interfaces between ranges return what those of rods do. What remains is the
+displacement, a sum of steps: Δt/sinh 2h in place of 1/s, another one by (ωΔt)²/6.
 
 Whether the bar was linear is seen in the record itself: at a monitor whose record is not that of `own`, as a method has
 changed the bonds, nothing is said.
@@ -20,6 +26,7 @@ changed the bonds, nothing is said.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -47,6 +54,16 @@ FACTOR = 1.05
 HOW = "from the waves of the linear bar at each frequency"
 """How its errors are found."""
 
+NO_GRID = "exact: at Courant number 1 finite differences pass a wave on by one spacing in each step"
+NO_ECHO = "exact: at Courant number 1 dashpots ρcA take all of a wave that comes to them through finite differences"
+"""Why some errors are zero."""
+
+PLACES, LOADS = "places", "near loads"
+"""Causes of errors: monitors that are not at nodes, and loads on several nodes."""
+
+EQUAL = 1e-9
+"""Relative difference up to which steps, places and dashpots are equal, for rounding."""
+
 
 def causes_of_bar(case: BarCase, recorded: Motions, time_step: float) -> Causes:
     """The causes of the errors of a bar, whose cost is 0, as nothing is run.
@@ -69,11 +86,60 @@ def causes_of_bar(case: BarCase, recorded: Motions, time_step: float) -> Causes:
 
 
 def split(motions: BarMotions, own: Motions, exact: Motions, recorded: Motions) -> list[Cause]:
-    """What the grid, the time step and absorbing ends add, by the motions of the bar as it is stepped and of rods."""
+    """What the grid, the time step, absorbing ends and places add, by the motions as it is stepped and of rods.
+
+    exact : at the nodes of the monitors.
+    """
     step = motions.window.step
-    endless, exact_time = motions.endless(step), motions.endless(0.0)
-    found = [difference(GRID, exact_time, exact, recorded), difference(STEP, endless, exact_time, recorded)]
-    return [*found, difference(SIDES, own, endless, recorded)] if motions.absorbing else found
+    endless = motions.endless(step)
+    found = list(_inside(motions, endless, exact, recorded))
+    if motions.absorbing and _takes_all(motions):
+        found.append(_none(SIDES, NO_ECHO, recorded))
+    elif motions.absorbing:
+        found.append(difference(SIDES, own, endless, recorded))
+    if motions.beside_places:
+        found.append(difference(PLACES, exact, motions.exact(motions.places), recorded))
+    return found
+
+
+def _inside(motions: BarMotions, endless: Motions, exact: Motions, recorded: Motions) -> Iterator[Cause]:
+    """What grid and time step add, where they do not cancel out."""
+    if not _passes_all(motions):
+        exact_time = motions.endless(0.0)
+        yield difference(GRID, exact_time, exact, recorded)
+        yield difference(STEP, endless, exact_time, recorded)
+        return
+    yield _none(GRID, NO_GRID, recorded)
+    if any(load.nodes > 1 for load in motions.case.load):
+        at_ends = motions.loaded_at_ends.endless(motions.window.step)
+        yield difference(LOADS, endless, at_ends, recorded)
+        endless = at_ends
+    yield difference(STEP, endless, exact, recorded)
+
+
+def _passes_all(motions: BarMotions) -> bool:
+    """Whether grid and time step together pass on all waves as they are: finite differences at Courant number 1."""
+    rod = motions.scene.rod
+    return not motions.case.method.begin(rod).bond.any() and all(
+        part.drag_rate == 0.0 and math.isclose(motions.window.step * part.speed, part.spacing, rel_tol=EQUAL)
+        for part in rod.ranges
+    )
+
+
+def _takes_all(motions: BarMotions) -> bool:
+    """Whether nothing comes back from ends that absorb: dashpots alone, with the impedance of the bar, see above."""
+    return _passes_all(motions) and all(
+        math.isclose(dashpot, part.density * part.speed * part.section, rel_tol=EQUAL)
+        for dashpot, part in motions.dashpots
+    )
+
+
+def _none(cause: str, words: str, recorded: Motions) -> Cause:
+    """A cause that adds nothing."""
+    nothing = {
+        name: {q: np.zeros_like(v, dtype=float) for q, v in own.values.items()} for name, own in recorded.items()
+    }
+    return Cause(cause, words, nothing)
 
 
 def difference(cause: str, of: Motions, less: Motions, recorded: Motions) -> Cause:

@@ -10,12 +10,13 @@ import numpy as np
 
 from dembound.accuracy.cause import QUANTITIES
 from dembound.accuracy.history import QUIET, History, Motions
-from dembound.accuracy.of_bars.motions import FINER, BarMotions
+from dembound.accuracy.of_bars.motions import FINER, BarMotions, places_of
 from dembound.accuracy.of_bars.options import FACTORS
 from dembound.accuracy.of_bars.window import Window
 from dembound.bar.banded import ROUNDING
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene
+from dembound.bar.stability import own_step
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -25,7 +26,7 @@ CLEARLY = 2.0
 
 
 class ExactMotion:
-    """The motion of rods at the nodes of the monitors of a scene.
+    """The motion of rods at the places of the monitors of a scene's case.
 
     The stress at the ends of the bar is that half a spacing of this scene inside.
     """
@@ -35,9 +36,14 @@ class ExactMotion:
         self._found: dict[int, dict[str, dict[str, CubicSpline]]] = {}
 
     @cached_property
+    def step(self) -> float:
+        """The time step (s) of the case."""
+        return own_step(self._scene, self._scene.step_limit())
+
+    @cached_property
     def places(self) -> dict[str, float]:
-        """Monitor -> m, the place of its node."""
-        return {name: float(self._scene.positions[node, 0]) for name, node in self._scene.monitors.items()}
+        """Monitor -> m, where the case has it, which need not be at a node."""
+        return places_of(self._scene.case)
 
     def at(self, window: Window) -> Motions:
         """At the times of a window; computed once for all windows whose steps are between two powers of 2 s."""
@@ -79,7 +85,7 @@ class ExactMotion:
 
         window = Window.up_to(self._scene.case.run.duration + 2.0 * step, step)
         time = window.finer(FINER).time
-        found = BarMotions(self._scene.case, self._scene, window, dict.fromkeys(self.places, time)).exact()
+        found = BarMotions(self._scene.case, self._scene, window, dict.fromkeys(self.places, time)).exact(self.places)
         return {
             name: {q: CubicSpline(time, values) for q, values in each.values.items()} for name, each in found.items()
         }

@@ -5,6 +5,7 @@ All are sums over complex frequencies (window.py) of what loads and waves do at 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -15,10 +16,11 @@ from dembound.accuracy.of_bars.chain import Chain, Frequencies, Response, observ
 from dembound.accuracy.of_bars.rods import Rods
 from dembound.accuracy.of_bars.window import Window, needed
 from dembound.bar.layers import ENDS, EndLayer
-from dembound.bar.scene import BarScene, build_bar
+from dembound.bar.scene import BarScene, build_bar, end_supports
 from dembound.boundaries.matched_layer import MatchedLayer
 from dembound.boundaries.signals import Signal
 from dembound.casefile.bar import BarCase
+from dembound.methods.rod import Range
 
 FINER = 8
 """Samples in a step of the waves of the exact motion, which need not arrive at whole steps."""
@@ -31,6 +33,14 @@ NEAR = 20
 
 ABOVE = 1.1
 """Largest frequency that counts then, over that of the shortest wave; above, motion decays within a few spacings."""
+
+AT_PLACE = 1e-9
+"""Distance of a node from the place of its monitor that is none, over the length of the bar."""
+
+
+def places_of(case: BarCase) -> dict[str, float]:
+    """Monitor -> m, where the case has it."""
+    return {monitor.name: monitor.position for monitor in case.monitor}
 
 
 @dataclass(frozen=True)
@@ -51,6 +61,36 @@ class BarMotions:
     def nodes(self) -> dict[str, int]:
         """The node of every monitor."""
         return {name: self.scene.monitors[name] for name in self.times}
+
+    @property
+    def places(self) -> dict[str, float]:
+        """Monitor -> m, where the case has it."""
+        given = places_of(self.case)
+        return {name: given[name] for name in self.times}
+
+    @property
+    def beside_places(self) -> bool:
+        """Whether the node of a monitor is not at its place."""
+        rod = self.scene.rod
+        reach = AT_PLACE * rod.ranges[-1].end
+        return any(abs(rod.positions[self.nodes[name]] - place) > reach for name, place in self.places.items())
+
+    @property
+    def dashpots(self) -> list[tuple[float, Range]]:
+        """Of ends that absorb the dashpot, N·s/m, nan with anything else, and the range there."""
+        found = []
+        for side in self.absorbing:
+            rows = end_supports(self.case, side)
+            alone = not (side in self.scene.layers or rows.stiffness.any() or rows.prescribed.any())
+            found.append((float(rows.damping.sum()) if alone else math.nan, self.scene.rod.end(side)))
+        return found
+
+    @property
+    def loaded_at_ends(self) -> BarMotions:
+        """The same bar with all loads on its last nodes alone."""
+        loads = tuple(load.model_copy(update={"nodes": 1}) for load in self.case.load)
+        case = replace(self.case, load=loads)
+        return replace(self, case=case, scene=build_bar(case))
 
     def own(self) -> Motions:
         """The motion of the bar as it is stepped, with its own ends."""

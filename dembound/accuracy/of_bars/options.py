@@ -16,15 +16,27 @@ from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import own_step, unit_step
 from dembound.casefile.bar import BarCase
 from dembound.errors import DemboundError
+from dembound.methods import FiniteDifference
 
-FACTORS = (4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25, 1.0, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125)
-"""Spacings over the given ones that are tried, if all ranges are a whole number of them long."""
+COARSER = (32.0, 24.0, 16.0, 12.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25)
+FACTORS = (1.0, *COARSER, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125)
+"""Spacings over the given ones that are tried: the nearest that divide their ranges, and that have nodes at monitors.
+"""
+
+MOST_PARTS = 200
+"""Largest number of equal parts of a range that is looked for, so that all its monitors are between two of them."""
+
+AT_NODE = 1e-6
+"""Distance of a monitor from a node that is none, over the spacing."""
 
 SHARES = (0.9, 0.99)
 """Shares of the stability limit that are tried as steps."""
 
 LAYERS = (20, 40, 80)
 """Numbers of nodes in matched layers that are tried."""
+
+GIVEN_ENDS = "ends as given"
+"""Words of ends that do not change."""
 
 STEP_KEYS = ("time_step", "safety", "courant")
 """Keys of ``[run]`` that determine the step."""
@@ -49,7 +61,9 @@ class BarOption:
     @property
     def words(self) -> str:
         """The choice in words."""
-        return f"{self.ends}{self.method}, nodes every {self.spacing:.4g} m, steps of {self.step:.4g} s"
+        ranges = self.scene.rod.ranges
+        spacings = " and ".join(dict.fromkeys(f"{part.spacing:.4g}" for part in ranges))
+        return f"{self.ends}{self.method}, nodes every {spacings} m, steps of {self.step:.4g} s"
 
     @property
     def spacing(self) -> float:
@@ -78,12 +92,29 @@ class BarOption:
 
 def bar_options(case: BarCase, kept: Sequence[str]) -> Iterator[BarOption]:
     """All choices that keep the values of some keys, those with fewer changes first; none that cannot run."""
-    breaks = may_break(case)
+    if may_break(case):
+        yield from _options(case, kept, [("", {})], [{}])
+        return
+    methods, spacings = list(_methods(case)), _spacings(case)
+    if _moves_alike(case, kept):  # other nodes with finite differences only
+        yield from _options(case, kept, methods[:1], [{}])
+        methods = methods[-1:]
+    yield from _options(case, kept, methods, spacings)
+
+
+def other_options(case: BarCase, kept: Sequence[str]) -> Iterator[BarOption]:
+    """Choices of finite differences for a bar that may break, which breaks otherwise with them; as `bar_options`."""
+    return _options(case, kept, [_differences(case)], _spacings(case))
+
+
+def _options(
+    case: BarCase, kept: Sequence[str], methods: Sequence[tuple[str, Changes]], spacings: Sequence[Changes]
+) -> Iterator[BarOption]:
+    """All ends and steps with some methods, in words and as changes, and some spacings."""
     for ends, of_ends in _ends(case, kept):
-        for method, of_method in _methods(case) if not breaks else [("", Changes())]:
-            for factor in sorted(FACTORS, key=lambda each: each != 1.0) if not breaks else [1.0]:
-                changes = of_ends | of_method | _spacings(case, factor)
-                yield from _stepped(case, changes, (ends, method), kept)
+        for method, of_method in methods:
+            for spacing in spacings:
+                yield from _stepped(case, of_ends | of_method | spacing, (ends, method), kept)
 
 
 def may_break(case: BarCase) -> bool:
@@ -91,9 +122,16 @@ def may_break(case: BarCase) -> bool:
     return math.isfinite(case.bar.least_strength)
 
 
+def _moves_alike(case: BarCase, kept: Sequence[str]) -> bool:
+    """Whether finite differences, which may be taken, do in a bar that cannot break what its method does."""
+    if isinstance(case.method, FiniteDifference) or any(f"{key}.".startswith("method.") for key in kept):
+        return False
+    return not case.method.begin(build_bar(case).rod).bond.any()
+
+
 def _ends(case: BarCase, kept: Sequence[str]) -> Iterator[tuple[str, Changes]]:
     """What may stand in for more of the bar, in words and as changes; all ends alike that are not kept."""
-    yield "ends as given", {}
+    yield GIVEN_ENDS, {}
     free = [side for side, table in case.boundary.items() if table.is_artificial and not _is_kept(side, kept)]
     if not free:
         return
@@ -114,19 +152,57 @@ def _is_kept(side: str, kept: Sequence[str]) -> bool:
 
 
 def _methods(case: BarCase) -> Iterator[tuple[str, Changes]]:
-    """The method as given, and with corrected ends."""
+    """The method as given, with corrected ends, and finite differences with loads on the last node."""
     yield "", {}
     if case.method.soft_ends and "corrected_ends" in type(case.method).model_fields:
         yield ", corrected ends", {"method.corrected_ends": True}
+    if (differences := _differences(case))[1]:
+        yield differences
 
 
-def _spacings(case: BarCase, factor: float) -> Changes:
-    """Spacings of the bar and of its ranges, larger by a factor."""
-    if factor == 1.0:
-        return {}
-    own = {"bar.spacing": case.bar.spacing}
-    own |= {f"bar.range.{each.name}.spacing": each.spacing for each in case.bar.range if each.spacing is not None}
-    return {key: float(f"{factor * spacing:.12g}") for key, spacing in own.items()}
+def _differences(case: BarCase) -> tuple[str, Changes]:
+    """Finite differences with loads on the last node, where they act on a bar without nodes; no changes if so given."""
+    changes: Changes = {f"load.{load.name}.nodes": 1 for load in case.load if load.nodes > 1}
+    words = ", loads on the last node" if changes else ""
+    if isinstance(case.method, FiniteDifference):
+        return words, changes
+    return f", finite differences{words}", changes | {"method": {"type": "finite_difference"}}
+
+
+def _spacings(case: BarCase) -> list[Changes]:
+    """Spacings near `FACTORS` times the given ones, which come first; of ranges those of equal travel times, too."""
+    parts = case.bar.parts
+    unit = min(part.length / part.cells / part.speed for part in parts)
+    given = [part.length / part.cells for part in parts]
+    wanted = [[factor * spacing for spacing in given] for factor in FACTORS]
+    if len(parts) > 1:
+        wanted += [[factor * unit * part.speed for part in parts] for factor in FACTORS]
+    found = [_near(case, each, at_monitors) for each in wanted for at_monitors in (True, False)]
+    return [each for number, each in enumerate(found) if each not in found[:number]]
+
+
+def _near(case: BarCase, wanted: Sequence[float], at_monitors: bool) -> Changes:
+    """The spacings nearest to some (m, by range) that divide their ranges; at_monitors : with nodes at all of these."""
+    bar = case.bar
+    keys = [f"bar.range.{each.name}.spacing" for each in bar.range] or ["bar.spacing"]
+    changes: Changes = {}
+    for key, part, start, spacing in zip(keys, bar.parts, bar.starts, wanted, strict=True):
+        given = part.length / part.cells
+        if math.isclose(spacing, given, rel_tol=AT_NODE):
+            continue
+        places = [each.position - start for each in case.monitor if start <= each.position <= start + part.length]
+        least = _equal_parts(part.length, places) if at_monitors else 1
+        changes[key] = float(f"{part.length / (least * max(1, round(part.length / spacing / least))):.12g}")
+    return changes
+
+
+def _equal_parts(length: float, places: Sequence[float]) -> int:
+    """The smallest number of equal parts of a length (m) between which places (m) are; 1 if it is too large."""
+    for count in range(1, MOST_PARTS + 1):
+        steps = [place / length * count for place in places]
+        if all(abs(step - round(step)) <= AT_NODE for step in steps):
+            return count
+    return 1
 
 
 def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequence[str]) -> Iterator[BarOption]:

@@ -1,15 +1,16 @@
 """The cheapest choice of nodes, steps and absorbing ends of a bar that keeps the error of all monitors within a bound.
 
-The motion of a linear bar is known without a run, as it is stepped and exactly (estimate/bars.py), for every choice:
-the error is their difference at each monitor. Choices are tried in the order of their predicted cost.
+The motion of a linear bar is known without a run, as it is stepped and exactly (motions.py), for every choice: the
+error is their difference at each monitor. Choices are tried in the order of their predicted cost.
 
 Of a bar that may break the nodes and the method remain, as they are part of how it breaks; its error is that of the
-motion until bonds change.
+motion until bonds change. Where it is too large, finite differences that would do are named.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,22 +21,24 @@ from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History, Motions
-from dembound.accuracy.of_bars.causes import FACTOR, QUIET, difference, largest_motion, not_linear, split
+from dembound.accuracy.of_bars.causes import EQUAL, FACTOR, HOW, QUIET, difference, largest_motion, not_linear, split
 from dembound.accuracy.of_bars.exact import ExactMotion
 from dembound.accuracy.of_bars.floors import Floors, first_echo, is_regular
 from dembound.accuracy.of_bars.motions import BarMotions
-from dembound.accuracy.of_bars.options import BarOption, bar_options, may_break
+from dembound.accuracy.of_bars.options import GIVEN_ENDS, BarOption, bar_options, may_break, other_options
 from dembound.accuracy.of_bars.window import Window
 from dembound.accuracy.proposal import Advice, Proposal
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
+from dembound.results.estimates import in_words
+from dembound.results.resample import at_times
 
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: an eighth of the spacing."""
 
-PLACES = "places"
-"""Cause of errors: monitors at other nodes than in the given case."""
+BETWEEN = 4
+"""Times in a step at which it is looked whether the motion is seen between its steps."""
 
 ALONG = "; its nodes and method remain, as it may break, and the error is that before bonds change"
 """What is said of a bar that may break."""
@@ -52,14 +55,16 @@ def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str]) 
     own = given_motion(case)
     if not own.moves:
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
-    motions = affordable_motions(own, kept)
+    motions = affordable(own, bar_options(case, kept))
     if bounds and not motions:
         raise CaseError(["advise: no choice keeps the values of --keep and --set"], case.name)
     best, tried = {}, 0
     for bound in bounds:
         motion, count = cheapest(motions, bound)
         tried += count
-        words = f"{motion.choice.words}{ALONG if may_break(case) else ''}"
+        words = motion.choice.words
+        if may_break(case):
+            words += ALONG + (_otherwise(own, bound, kept) if not motion.holds(bound) else "")
         found = Proposal(Choice.of(case, motion.choice.case(case), words), motion.choice.cost, motion.budget)
         best[bound] = found if may_break(case) else ended_earlier(found, case, bound, motion.recorded, kept)
     return Advice(Proposal(Choice("the case as it is", {}, case), own.choice.cost, own.budget), best, tried)
@@ -71,10 +76,21 @@ def given_motion(case: BarCase) -> Motion:
     return Motion(next(each for each in bar_options(case, ()) if not each.changes), exact)
 
 
-def affordable_motions(own: Motion, kept: Sequence[str]) -> list[Motion]:
-    """Motions of all choices for a case that cost at most `COSTLIEST` times as much as it does, the cheapest first."""
-    choices = sorted(bar_options(own.choice.scene.case, kept), key=lambda each: each.cost)
+def affordable(own: Motion, options: Iterable[BarOption]) -> list[Motion]:
+    """Motions of choices for a case that cost at most `COSTLIEST` times as much as it does, the cheapest first."""
+    choices = sorted(options, key=lambda each: each.cost)
     return [Motion(each, own.exact) for each in choices if each.cost <= COSTLIEST * own.choice.cost]
+
+
+def _otherwise(own: Motion, bound: float, kept: Sequence[str]) -> str:
+    """The cheapest choice of finite differences that keeps a bound, for a bar that may break; empty without one."""
+    motions = affordable(own, other_options(own.choice.scene.case, kept))
+    best = cheapest(motions, bound)[0] if motions else None
+    if best is None or not best.holds(bound):
+        return ""
+    words = best.choice.words.removeprefix(f"{GIVEN_ENDS}, ")
+    error = in_words(best.budget.worst().share.value)
+    return f"; {words}, at Courant number {best.choice.courant:.3g}, have {error}, but break otherwise"
 
 
 def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
@@ -84,16 +100,16 @@ def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
     """
     floors, found, left = Floors(), list[Motion](), list[Motion]()
     for motion in motions:
-        if FACTOR * floors.of(motion.choice) > bound:
+        if FACTOR * max(floors.of(motion.choice), motion.unseen) > bound:
             left.append(motion)
             continue
         motion.add_to(floors)
         found.append(motion)
-        if motion.budget.worst().share.upper <= bound:
+        if motion.holds(bound):
             return motion, len(found)
     best = min(found, key=lambda each: each.error)
     for motion in reversed(left):  # finer nodes first
-        if floors.of(motion.choice) < best.error:
+        if max(floors.of(motion.choice), motion.unseen) < best.error:
             motion.add_to(floors)
             found.append(motion)
             best = min(best, motion, key=lambda each: each.error)
@@ -114,9 +130,28 @@ class Motion:
             floors.add(self.choice, self._error_of(counted), self._error_of(counted, echo))
 
     @cached_property
+    def unseen(self) -> float:
+        """What a history with longer steps than those of the case does not show, RMS over RMS.
+
+        It is the difference of the exact motion from the cubic curve through its values at the steps: a pulse of a few
+        samples may be exact at each of them, and not be seen between.
+        """
+        if self.choice.step <= (1.0 + EQUAL) * self.exact.step:
+            return 0.0
+        own, between = self._exact, self.exact.at(self._motions.window.finer(BETWEEN))
+        errors = {
+            name: {
+                q: at_times(own[name].time, own[name].values[q], each.time) - values
+                for q, values in each.values.items()
+            }
+            for name, each in between.items()
+        }
+        return Budget(between, Causes([Cause("", HOW, errors)])).worst().share.value
+
+    @cached_property
     def error(self) -> float:
-        """The error at the worst monitor."""
-        return self._error_of(self.recorded)
+        """The error at the worst monitor, with what is not seen between steps."""
+        return math.hypot(self._error_of(self.recorded), self.unseen)
 
     def _error_of(self, recorded: Motions, last: Mapping[str, float] | None = None) -> float:
         """The error of what is recorded; last : s, by monitor, up to which it counts."""
@@ -143,17 +178,24 @@ class Motion:
             for name, own in self.recorded.items()
         }
 
+    def holds(self, bound: float) -> bool:
+        """Whether the error is below a bound, with a reserve; also that by causes, which takes longer to find."""
+        return FACTOR * self.error <= bound and self.budget.worst().share.upper <= bound
+
     @cached_property
     def budget(self) -> Budget:
-        """Errors by cause; some have opposite signs, as those of grid and steps."""
-        return Budget(self.recorded, Causes(self.causes))
+        """The error as an estimate gives it, and its causes; grid and steps have opposite signs.
+
+        It differs from `error` by the exact motion, too, which that one takes between the samples of another window.
+        """
+        unseen = {name: dict.fromkeys(own.values, self.unseen) for name, own in self.recorded.items()}
+        between = [Cause("between steps", "by the exact motion", unseen, "bound")] if self.unseen else []
+        return Budget(self.recorded, Causes([*self.causes, *between]))
 
     @cached_property
     def causes(self) -> list[Cause]:
-        """What ends, nodes, steps and other places of monitors add to the motion."""
-        at_nodes = self._motions.exact()
-        causes = split(self._motions, self._own, at_nodes, self.recorded)
-        return [*causes, difference(PLACES, at_nodes, self._exact, self.recorded)]
+        """What ends, nodes, steps and places of monitors beside nodes add to the motion."""
+        return split(self._motions, self._own, self._motions.exact(), self.recorded)
 
     @property
     def moves(self) -> bool:

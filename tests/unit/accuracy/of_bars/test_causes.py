@@ -1,17 +1,18 @@
 """Errors of bars, estimated from their equations, beside exact motions and runs without the cause."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
-from estimated_bars import RICKER, SCENES, estimated, exact, recorded_of, rows, scene
+from estimated_bars import RICKER, SCENES, dalembert, estimated, exact, recorded_of, rows, scene
 from small_cases import SPALLING, small
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import SIDES, STEP, Cause, Causes
 from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History
-from dembound.accuracy.of_bars.causes import causes_of_bar
+from dembound.accuracy.of_bars.causes import NO_ECHO, NO_GRID, causes_of_bar
 from dembound.kinds import with_changes
 from dembound.running import plan
 
@@ -122,6 +123,88 @@ def test_nothing_is_said_about_a_bar_that_has_broken_but_about_the_time_before()
     values = before["gauge"].values["velocity"][:, 0]
     error = np.linalg.norm(values - true) / np.linalg.norm(values)
     assert Budget(before, known).total("gauge", "velocity").value == pytest.approx(error, rel=0.03)
+
+
+AT_ONE = {"run": {"duration": 1.1e-3, "courant": 1.0}}
+EVEN = {"range": [{"name": "a", "length": 0.6}, {"name": "b", "length": 0.4, "wave_speed": 1370.0, "spacing": 0.005}]}
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("viscous end", {}),
+        ("viscous ends, loaded", RICKER),
+        ("input", {"boundary.right": {"type": "viscous"}}),
+        ("wall", {"method": {"type": "finite_difference"}}),
+        ("viscous end", {"bar.range": EVEN["range"]}),
+        ("patch", {"boundary.right": {"type": "viscous"}}),
+    ],
+)
+def test_finite_differences_at_courant_number_1_are_exact(name: str, changes: dict[str, Any]) -> None:
+    """Grid and ends are zero, and said to be; what remains is the sum of steps in displacements."""
+    case = with_changes(scene(name), AT_ONE | changes)
+    recorded, causes = estimated(case)
+    found = {each.name: each for each in causes.found}
+
+    assert found["grid"].words == NO_GRID
+    assert "sides" not in found or found["sides"].words == NO_ECHO
+    for monitor, own in recorded.items():
+        shares = Budget(recorded, causes).shares
+        for quantity in ("velocity", "stress"):  # a window of e^{-13.8} and samples up to 1e-8 of the waves
+            assert shares(monitor, quantity) == pytest.approx(dict.fromkeys(found, 0.0), abs=1e-6)
+        if not case.bar.range:
+            true = exact(case, own)
+            for quantity in ("velocity", "stress"):  # steps sum up rounding errors, Ricker's tail ends at 1e-9
+                np.testing.assert_allclose(
+                    own.values[quantity][:, 0], true[quantity], atol=1e-7 * np.abs(true[quantity]).max()
+                )
+            error = np.linalg.norm(own.values["displacement"][:, 0] - true["displacement"])
+            assert shares(monitor, "displacement")["time step"] == pytest.approx(
+                error / np.linalg.norm(own.values["displacement"]), rel=0.03, abs=5e-5
+            )
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "causes"),
+    [
+        ("viscous end", {"boundary.right.beta_p": 0.999}, {"grid"}),  # returns 0.05 %
+        ("matched layer", {}, {"grid"}),
+        ("viscous end", {"bar.attenuation": 0.5}, set()),
+        ("viscous end", {"run.courant": 0.999}, set()),
+        ("viscous end", {"bar.range": [*EVEN["range"][:1], EVEN["range"][1] | {"spacing": 0.01}]}, set()),
+        ("viscous end", {"method": {"type": "peridynamics", "horizon": 1}}, set()),
+    ],
+)
+def test_what_is_not_exact(name: str, changes: dict[str, Any], causes: set[str]) -> None:
+    found = estimated(with_changes(scene(name), AT_ONE | changes))[1].found
+
+    assert {each.name for each in found if each.words in (NO_GRID, NO_ECHO)} == causes
+
+
+def test_loads_on_several_nodes_are_a_cause_of_their_own_at_courant_number_1() -> None:
+    case = with_changes(scene("viscous end"), AT_ONE | {"load.hit.nodes": 3})
+    recorded, causes = estimated(case)
+
+    for monitor, own in recorded.items():
+        shares = Budget(recorded, causes).shares(monitor, "velocity")
+        error = np.linalg.norm(own.values["velocity"][:, 0] - exact(case, own)["velocity"])
+        assert shares["near loads"] == pytest.approx(error / np.linalg.norm(own.values["velocity"]), rel=0.01)
+        assert shares["time step"] < 1e-6
+
+
+@pytest.mark.parametrize("name", ["viscous end", "m = 3, soft ends"])
+def test_a_monitor_between_nodes_is_at_its_place(name: str) -> None:
+    case = with_changes(scene(name), {"monitor.far.position": 0.804, "bar.spacing": 0.01})
+    recorded, causes = estimated(case)
+    found = Budget(recorded, causes)
+
+    assert recorded["far"].place[0] == pytest.approx(0.8)
+    for quantity, values in recorded["far"].values.items():
+        true = dalembert(case, 0.804, recorded["far"].time, quantity)
+        error = np.linalg.norm(values[:, 0] - true) / np.linalg.norm(values[:, 0])
+        assert found.total("far", quantity).value == pytest.approx(error, rel=0.03, abs=1e-4)
+    assert found.shares("far", "velocity")["places"] > 0.01
+    assert found.shares("near", "velocity")["places"] < 1e-12
 
 
 def _until(recorded: History, time: float) -> History:
