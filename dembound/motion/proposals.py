@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dembound.boundaries import SIDES, normal_axis
+from dembound.boundaries import SIDES, is_far, normal_axis
 from dembound.motion.kind import Plan
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.motion.silence import monitored
@@ -41,10 +41,6 @@ class WaveScene:
     places: np.ndarray
     names: Sequence[str]
     axes: Sequence[int]
-
-    def plane(self, side: str) -> float:
-        """Where a side is along its normal, m."""
-        return float(self.planned.scene.size[normal_axis(side)]) if side in ("right", "top") else 0.0
 
     def of_side(self, side: str) -> list[Source]:
         """The sources whose waves the side may reflect: of free-field sides only local ones."""
@@ -91,7 +87,7 @@ def _passed(seen: WaveScene) -> float | None:
     for side in SIDES:
         table, axis = case.side(side), normal_axis(side)
         if axis in mirrors and not (table.layer or any(factor != 0.0 for factor in table.factors.values())):
-            mirrors[axis].append(seen.plane(side))
+            mirrors[axis].append(planned.scene.plane(side))
     if any(len(planes) > 1 for planes in mirrors.values()):
         return None  # periodic sides, too
     at_surface = any(case.side(side).is_free and normal_axis(side) in seen.axes for side in SIDES)
@@ -124,8 +120,9 @@ def _movable(seen: WaveScene) -> Iterator[str]:
 def _echoes(seen: WaveScene, needed: float) -> Iterator[str]:
     """When the first echo of each artificial side comes to a monitor, if within the time needed (s)."""
     for side in _movable(seen):
+        plane = seen.planned.scene.plane(side)
         times = [
-            source.start + source.distance_over(side, seen.plane(side), seen.places) / seen.front.speed
+            source.start + source.distance_over(side, plane, seen.places) / seen.front.speed
             for source in seen.of_side(side)
         ]
         first = np.min(times, axis=0, initial=np.inf) if times else np.full(len(seen.places), np.inf)
@@ -152,8 +149,8 @@ def _smaller(seen: WaveScene, needed: float) -> Iterator[str]:
 
 def _spare(seen: WaveScene, side: str, needed: float, unit: float) -> float:
     """Length (m), of whole units, by which a side may be nearer; at least one unit beyond all monitors and sources."""
-    axis, plane = normal_axis(side), seen.plane(side)
-    outwards = 1.0 if plane > 0.0 else -1.0
+    axis, plane = normal_axis(side), seen.planned.scene.plane(side)
+    outwards = 1.0 if is_far(side) else -1.0
     there = plane_needed(side, seen.of_side(side), seen.places, seen.front, needed)
     least = max(outwards * there, *(outwards * value + unit for value in _inside(seen, axis)))
     return unit * max(0.0, float(np.floor((outwards * plane - least) / unit + ROUNDING)))

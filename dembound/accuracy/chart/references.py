@@ -1,7 +1,7 @@
 """The reference of a chart: an exact solution, an extended run, a finer run of a bar, or that of the finest choice."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -19,7 +19,6 @@ from dembound.casefile import Case
 from dembound.casefile.chart import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import with_changes
-from dembound.motion.kind import Finding
 from dembound.table import Box
 
 SIDES = "boundary."
@@ -131,7 +130,11 @@ class _References:
             reason = "no side has to be moved, the extended scene is that of the case"
             raise CaseError([f"--reference: {reason}"], self._case.name)
         outcome = self._done("extended scene", larger.case, larger.inside)
-        outcome = replace(outcome, findings=_shifted(outcome.findings, larger.inside, self._judge.places))
+        findings = {
+            name: found._replace(value=found.value - larger.inside[0]) if name in self._judge.from_left_end else found
+            for name, found in outcome.findings.items()
+        }
+        outcome = replace(outcome, findings=findings)
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
         return self._of_run("extended", sentence, outcome, self._places(fine))
@@ -173,11 +176,8 @@ class _References:
         return outcome
 
     def _places(self, fine: FinerRun | None) -> Callable[[Run, Run], Motions]:
-        """The histories of a run for the outcome of a choice, at their places in the scene before it was extended."""
-        if fine is not None:
-            return fine.motions
-        places = {name: history.place for name, history in self._outcomes[self._own].motions.items()}
-        return lambda run, _: {name: replace(run.motions[name], place=place) for name, place in places.items()}
+        """The histories of a run for the outcome of a choice."""
+        return (lambda run, _: run.motions) if fine is None else fine.motions
 
     def _of_run(self, name: str, sentence: str, run: Run, motions: Callable[[Run, Run], Motions]) -> Reference:
         """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
@@ -204,14 +204,6 @@ def _finest(outcomes: Sequence[Run]) -> int:
     if not done:
         raise RunError("no choice could be run")
     return max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
-
-
-def _shifted(findings: Mapping[str, Finding], inside: Box, axes: Mapping[str, int]) -> dict[str, Finding]:
-    """Findings with places in the scene of the case, which lies in a larger one at a box; axes : of places, by name."""
-    return {
-        name: found._replace(value=found.value - inside[axes[name]]) if name in axes else found
-        for name, found in findings.items()
-    }
 
 
 def _is_same_run(outcome: Run, run: Run) -> bool:

@@ -12,7 +12,7 @@ from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.of_disks.causes import causes_by_formula
 from dembound.accuracy.of_disks.companions import QUANTITIES, Companions
 from dembound.accuracy.of_disks.near import errors_near_loads, wall_error
-from dembound.boundaries import normal_axis
+from dembound.boundaries import normal_axis, plane_of
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 
@@ -102,6 +102,5 @@ def _depth(scene: DiskScene, side: str) -> float:
     """How far (m) inside a side the disks are at which waves enter, 0 beside a continuum."""
     if scene.case.side(side).is_outside:
         return 0.0
-    axis = normal_axis(side)
-    plane = scene.case.size[axis] if side in ("right", "top") else 0.0
-    return abs(float(scene.edges[side].positions[:, axis].mean()) - plane)
+    middle = float(scene.edges[side].positions[:, normal_axis(side)].mean())
+    return abs(middle - plane_of(side, scene.case.box))
