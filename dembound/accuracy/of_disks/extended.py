@@ -2,13 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
 from dembound.accuracy.moved_sides import Extended, movable, must_not_exceed, same_step, sentence_of
 from dembound.boundaries import SIDES, is_far, normal_axis, plane_of
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.run import Run
+from dembound.disks.loads import forces_of
 from dembound.disks.material.wave_front import front_of
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
@@ -17,9 +21,12 @@ from dembound.errors import CaseError
 from dembound.holes import Hole, Rectangle
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.motion.silence import monitored
+from dembound.nearest import EQUAL, nearest
 from dembound.packings import Packing
-from dembound.packings.tiling import count_disks
+from dembound.packings.tiling import count_disks, disks_around
 from dembound.table import Box
+
+T = TypeVar("T", Load, Monitor)
 
 AROUND = 65
 """Places along each side of a scene without monitors."""
@@ -58,6 +65,8 @@ def bricks_needed(scene: DiskScene, moving: Sequence[str]) -> dict[str, int]:
 def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
     """The case of a scene with so many more bricks beyond its sides; all places keep their coordinates.
 
+    Only monitors and loads to which one of the new disks is nearer are given the place of their own disk.
+
     Raises CaseError where a hole reaches beyond a side that moves.
     """
     case = scene.case
@@ -68,6 +77,8 @@ def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
     return replace(
         case,
         packing=packing,
+        load=tuple(_at_own_disk(load, scene, packing) for load in case.load),
+        monitor=tuple(_at_own_disk(monitor, scene, packing) for monitor in case.monitor),
         hole=(*case.hole, *_floors_beyond(case, packing.box)),
         run=_run_of(scene),
         name=f"{case.name}_extended",
@@ -86,6 +97,22 @@ def _with_more(case: DiskCase, bricks: Mapping[str, int]) -> Packing:
     (left, bottom), (wide, high) = case.packing.origin, case.packing.brick_size
     larger = case.packing.with_copies(across + more["left"] + more["right"], up + more["bottom"] + more["top"])
     return larger.model_copy(update={"origin": (left - more["left"] * wide, bottom - more["bottom"] * high)})
+
+
+def _at_own_disk(table: T, scene: DiskScene, larger: Packing) -> T:
+    """A load or monitor at its place, or where one of the disks that the scene gets is nearer, at that of its disk."""
+    if table.position is None:
+        return table
+    brick, low = scene.ground.brick, np.array(larger.origin)
+    own = scene.positions[forces_of(table, scene)[0]][0] if isinstance(table, Load) else scene.monitored[table.name]
+    tiles, places = disks_around(brick, low, table.position)
+    places = places[((tiles >= 0) & (tiles < larger.copies)).all(axis=1)].reshape(-1, 2)
+    gone = [hole.contains(places) for hole in scene.case.hole]
+    there = np.vstack([own, places[~np.any(gone, axis=0)] if gone else places])
+    taken = there[nearest(there, np.array([table.position]))[0]]
+    if np.abs(taken - own).max() < EQUAL * brick.mean_diameter:
+        return table
+    return table.model_copy(update={"position": (float(own[0]), float(own[1]))})
 
 
 def _bricks_beyond(scene: DiskScene, side: str, sources: list[Source], front: Front) -> int:
