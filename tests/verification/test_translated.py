@@ -4,8 +4,8 @@ Every key that is a place is moved, by the meaning of keys, so that a new one is
 two lengths, so that an axis, a sign or a plane taken at zero is seen; all lengths are binary fractions.
 
 Constants of contacts are those of the brick, wherever it is, and have the same bits. What is computed from coordinates
-X, as the shape functions of a continuum at its ties, delays of waves and distances from sources, is rounded by ε X, over
-at least a radius R that it varies in. n steps add up to n ε X/R.
+X, as the shape functions of a continuum at its ties, delays of waves and distances from sources, is rounded by ε X,
+over at least a radius R that it varies in. n steps add up to n ε X/R.
 """
 
 import re

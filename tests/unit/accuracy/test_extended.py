@@ -144,9 +144,11 @@ def test_a_scene_large_enough_is_left_alone_and_one_far_too_large_refused(bar) -
     with pytest.raises(CaseError, match=r"run\.duration: is 10 s.* only in a scene of 50..(\.5)? m × 1 m with 20,1"):
         extended(bar({"boundary.left": GRIP, "run.duration": 10.0}), most=1000)
     sides = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
-    said = r"^ground\.size: the scene cannot be extended, .* --reference finest, .* packing\.size = \[30, 5\]"
+    instead = r".* packing\.size = \[30, 5\], packing\.origin = \[-4, 2\], no \[ground\]"
+    said = r"^ground\.size: the scene cannot be extended, .* --reference finest," + instead
+    ground = {"ground.size": [30.0, 5.0], "ground.origin": [-4.0, 2.0], "packing.origin": [6.0, 2.0]}
     with pytest.raises(CaseError, match=said):
-        extended(bar({**FIELD, "boundary": sides, "ground.size": [30.0, 5.0], "packing.origin": [10.0, 0.0]}))
+        extended(bar({**FIELD, "boundary": sides, "monitor": [], **ground}))
 
 
 def test_where_waves_enter_a_side_stays_and_is_named(bar) -> None:

@@ -1,0 +1,120 @@
+"""What is derived from places of a case, without a run, is the same for a case that is moved as a whole."""
+
+import numpy as np
+import pytest
+from small_cases import Tables, small
+from translated import translated
+
+from dembound.accuracy.extended import extended
+from dembound.accuracy.of_disks.boxes import box_tables, boxes
+from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.exact import problem_of
+from dembound.accuracy.of_disks.exact.lamb import LambProblem
+from dembound.accuracy.of_disks.expected import _depth
+from dembound.casefile import Case
+from dembound.disks.reflection.arrivals import arrivals_of
+from dembound.disks.scene import build
+from dembound.disks.trials import _reduced
+from dembound.kinds import checked, with_changes
+
+BY = np.array([-37.0, -11.0])
+"""m, of whole diameters."""
+
+LAMB: Tables = {
+    "packing": {"pattern": "A", "size": [40.0, 30.0], "radius": 0.5},
+    "material": {"density": 2500.0, "p_wave_speed": 300.0, "fric": 0.5},
+    "boundary": {"left": {"type": "symmetry"}, "right": {"type": "viscous"}, "bottom": {"type": "viscous"}},
+    "wave": {"pulse": {"type": "cubic_spline", "amplitude": 1.0, "period": 0.1}},
+    "load": [{"name": "hammer", "force": [0.0, -2e5], "position": [0.0, 30.0], "wave": "pulse"}],
+    "monitor": [{"name": "receiver", "position": [10.5, 30.0]}, {"name": "other", "position": [25.5, 30.0]}],
+    "run": {"duration": 0.15},
+}
+SOURCE = {"type": "viscoelastic", "source": [20.0, 22.0]}
+FORCE = LAMB | {
+    "boundary": {"left": SOURCE, "right": {"type": "viscous"}, "bottom": {"type": "viscous"}},
+    "load": [{"name": "hammer", "force": [0.0, -2e5], "position": [20.0, 30.0], "wave": "pulse"}],
+}
+BLAST = FORCE | {
+    "hole": [{"name": "shaft", "type": "circle", "centre": [16.0, 14.0], "radius": 2.5}],
+    "load": [{"name": "blast", "pressure": 1e6, "hole": "shaft", "wave": "pulse"}],
+}
+
+
+@pytest.fixture(params=[LAMB, FORCE, BLAST], ids=["symmetry", "force", "blast"])
+def both(request) -> tuple[Case, Case]:
+    case = small(request.param)
+    return case, translated(case, tuple(BY))
+
+
+def places_of(case) -> np.ndarray:
+    """All places of a case (k, 2) m."""
+    values = [each.position for each in (*case.monitor, *case.load) if each.position is not None]
+    values += [load.region for load in case.load if load.region is not None]
+    values += [hole.box for hole in case.hole] + [case.packing.box, case.box]
+    return np.concatenate([np.reshape(value, (-1, 2)) for value in values])
+
+
+def test_the_same_scene_is_extended_by_as_much(both) -> None:
+    own, other = (extended(case) for case in both)
+
+    assert own.case.packing.copies == other.case.packing.copies
+    np.testing.assert_array_equal(places_of(other.case), places_of(own.case) + BY)
+    assert other.sentence == own.sentence
+
+
+def test_larger_disks_are_at_the_same_places(both) -> None:
+    own, other = (coarser(case, build(case), 1e-4, 1.3).case for case in both)
+
+    np.testing.assert_allclose(places_of(other), places_of(own) + BY, rtol=0.0, atol=1e-12)
+
+
+def test_exact_solutions_are_as_far_from_loads_and_hold_as_long(both) -> None:
+    own, other = (problem_of(build(case)) for case in both)
+
+    assert type(own) is type(other)
+    assert own.until == pytest.approx(other.until, rel=1e-12)
+    if isinstance(own, LambProblem):
+        assert isinstance(other, LambProblem)
+        assert other.away == own.away
+        assert own.load.force == (4e5 if both[0].side("left").is_mirror else 2e5)
+
+
+def test_what_reaches_sides_and_how_stiff_they_are(both) -> None:
+    for side in ("left", "right", "bottom"):
+        own, other = (arrivals_of(case, side, build(case).ground) for case in both)
+        assert [each.name for each in own] == [each.name for each in other]
+        for one, another in zip(own, other, strict=True):
+            np.testing.assert_allclose(another.angles, one.angles, atol=1e-9)
+            np.testing.assert_allclose(another.shares, one.shares, atol=1e-12)
+        assert _depth(build(both[1]), side) == _depth(build(both[0]), side) == 0.5
+    springs = [case.side("left").stiffest("left", case.packing.box) for case in both]
+    assert springs[0] == springs[1]
+    if both[0].side("left").type == "viscoelastic":
+        assert springs[0].distance == 20.0
+
+
+def test_boxes_and_their_tables_are_in_the_ground_at_its_place() -> None:
+    case = small(BLAST | {"packing": BLAST["packing"] | {"size": [80.0, 60.0]}})
+    own, other = (list(boxes(build(each))) for each in (case, translated(case, tuple(BY))))
+
+    assert own
+    assert [each[1:] for each in own] == [each[1:] for each in other]
+    for one, another in zip(own, other, strict=True):
+        np.testing.assert_array_equal(another.box, np.add(one.box, np.tile(BY, 2)))
+    moved = translated(case, tuple(BY))
+    tables = box_tables(moved, other[0].box)
+    assert tables["ground"] == {"size": [80.0, 60.0], "origin": [-37.0, -11.0]}
+    assert "origin" not in box_tables(case, own[0].box)["ground"]
+    packing = {f"packing.{key}": value for key, value in tables.pop("packing").items()}
+    made = checked(with_changes(moved, tables | packing))
+    assert made.box == moved.box
+    assert build(made).outside is not None
+
+
+def test_a_trial_of_fewer_bricks_has_the_stiffest_springs_of_the_whole_side() -> None:
+    case = small(FORCE | {"packing": FORCE["packing"] | {"size": [300.0, 200.0]}, "load": [], "monitor": []})
+    own, other = (_reduced(each)[0] for each in (case, translated(case, tuple(BY))))
+
+    assert own.packing.copies == other.packing.copies != case.packing.copies
+    assert own.side("left") == other.side("left")
+    assert own.side("left").distance == 20.0
