@@ -9,6 +9,7 @@ over at least a radius R that it varies in. n steps add up to n ε X/R.
 """
 
 import re
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -16,8 +17,13 @@ import tomli_w
 from translated import translated
 
 from dembound.accuracy.runner import measure
+from dembound.boundaries import SIDES, normal_axis
 from dembound.check import check
+from dembound.disks.rest.block_stress import Blocks
+from dembound.disks.scene import build
+from dembound.disks.sources import sources_of
 from dembound.kinds import loads
+from dembound.motion.silence import silent_rule
 from dembound.running import Progress
 
 BY = (-18.5, -5.5)
@@ -28,7 +34,6 @@ OF_THE_MACHINE = ("memory", "disk", "estimated time")
 LATTICE = {"pattern": "A", "radius": RADIUS}
 DENSE = {"pattern": "B", "radius": RADIUS, "radius_ratio": 1.5, "brick": [5.0, 5.0], "seed": 1}
 FRAMED = DENSE | {"pattern": "C", "edge_radius": 0.26}
-SIDES = ("left", "right", "bottom", "top")
 OUTSIDE = {side: {"type": "outside"} for side in SIDES}
 HALF_SPACE = {side: OUTSIDE[side] for side in SIDES[:3]}
 AT_REST = {"boundary": {"left": {"type": "roller"}, "right": {"type": "roller"}, "bottom": {"type": "fixed"}}}
@@ -150,3 +155,24 @@ def test_check_says_the_same_but_for_places(name) -> None:
     assert facts.keys() == there.keys()
     for key in facts.keys() - set(OF_THE_MACHINE):
         assert in_place(there[key]) == in_place(facts[key])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_built_has_the_same_sides_sources_and_blocks(name) -> None:
+    own, other = (build(each) for each in (case_of(name), translated(case_of(name), BY)))
+    (sources, moved), near = (sources_of(each.case, each.ground) for each in (own, other)), {"rtol": 0.0, "atol": 1e-12}
+
+    for side in SIDES:
+        assert other.plane(side) == pytest.approx(own.plane(side) + BY[normal_axis(side)], abs=1e-12)
+        if side in own.edges:
+            np.testing.assert_array_equal(other.edges[side].nodes, own.edges[side].nodes)
+    assert other.sides.keys() == own.sides.keys()
+    for side, nodes in own.tied.items():
+        np.testing.assert_array_equal(other.tied[side], nodes)
+    np.testing.assert_allclose(other.positions, own.positions + BY, **near)
+    for one, another in zip(sources, moved, strict=True):
+        np.testing.assert_allclose(another.box, np.add(one.box, np.tile(BY, 2)), **near)
+        np.testing.assert_allclose((another.start, another.over), (one.start, one.over), **near)
+    rules = silent_rule(own, sources), silent_rule(other, moved)
+    assert astuple(rules[1]) == pytest.approx(astuple(rules[0]), rel=1e-12)
+    np.testing.assert_allclose(Blocks.of(other).low, Blocks.of(own).low + BY, **near)

@@ -1,5 +1,7 @@
 """What is derived from places of a case, without a run, is the same for a case that is moved as a whole."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_cases import Tables, small
@@ -60,6 +62,8 @@ def test_the_same_scene_is_extended_by_as_much(both) -> None:
     assert own.case.packing.copies == other.case.packing.copies
     np.testing.assert_array_equal(places_of(other.case), places_of(own.case) + BY)
     assert other.sentence == own.sentence
+    everywhere, there = (extended(replace(case, monitor=())).case.packing for case in both)
+    assert everywhere.copies == there.copies
 
 
 def test_larger_disks_are_at_the_same_places(both) -> None:
