@@ -36,9 +36,9 @@ def extended_disks(case: DiskCase, most: int) -> Extended:
     """A scene of disks with more bricks; parameters and errors as of `extended`."""
     if case.ground.size is not None:
         reason = "its disks fill a box of the ground only, and are not continued beyond"
-        instead = "take --reference finest, or let the disks fill the ground: packing.size = [{:g}, {:g}]".format(*case.size)
-        begins = "packing.origin = [{:g}, {:g}], no [ground]".format(*case.box[:2])
-        raise CaseError([f"ground.size: the scene cannot be extended, as {reason}; {instead}, {begins}"], case.name)
+        filled = "packing.size = [{:g}, {:g}], packing.origin = [{:g}, {:g}], no [ground]".format(*case.size, *case.box)
+        instead = f"take --reference finest, or let the disks fill the ground: {filled}"
+        raise CaseError([f"ground.size: the scene cannot be extended, as {reason}; {instead}"], case.name)
     if case.incident is not None:
         reason = "its wave comes through the ground beyond all sides; take --reference finest"
         raise CaseError([f"incident: the scene cannot be extended, as {reason}"], case.name)
