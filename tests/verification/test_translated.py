@@ -1,7 +1,8 @@
 """A scene that is moved as a whole moves alike, and `check` says the same of it but for places.
 
-Every key that is a place is moved, by the meaning of keys, so that a new one is, too. The first way has both signs and
-two lengths, so that an axis, a sign or a plane taken at zero is seen; all lengths are binary fractions.
+Every key that is a place is moved, by the meaning of keys, so that a new one is, too. Scenes then have zero inside of
+their width and above all of their height, so that an axis, a sign or a plane taken at zero is seen; all lengths are
+binary fractions.
 
 Constants of contacts are those of the brick, wherever it is, and have the same bits. What is computed from coordinates
 X, as the shape functions of a continuum at its ties, delays of waves and distances from sources, is rounded by ε X,
@@ -19,6 +20,7 @@ from translated import translated
 from dembound.accuracy.runner import measure
 from dembound.boundaries import SIDES, normal_axis
 from dembound.check import check
+from dembound.disks.ram import SceneSizes
 from dembound.disks.rest.block_stress import Blocks
 from dembound.disks.scene import build
 from dembound.disks.sources import sources_of
@@ -26,7 +28,7 @@ from dembound.kinds import loads
 from dembound.motion.silence import silent_rule
 from dembound.running import Progress
 
-BY = (-18.5, -5.5)
+BY = (-18.5, -35.5)
 RADIUS = 0.25
 OF_THE_MACHINE = ("memory", "disk", "estimated time")
 """Facts that another moment does not repeat."""
@@ -57,7 +59,7 @@ SCENES = {
         "hole": [circle(8.1, 3.0, 1.2)],
         "load": [BLOW, WIDE, BLAST],
         "monitor": [[2.2, 4.1], [11.9, 0.3]],
-        "run": {"duration": 0.02, "until": "silent"},
+        "run": {"duration": 0.2, "until": "silent"},
     },
     "free field": {
         "packing": DENSE | {"size": [10.0, 10.0]},
@@ -86,7 +88,7 @@ SCENES = {
         "outside": {"element": 2.0},
         "incident": {"type": "sv", "angle": -20.0, "wave": "pulse"},
         "hole": [{"name": "step", "type": "rectangle", "corners": [3.0, 4.0, 5.0, 7.0]}],
-        "monitor": [[2.2, 4.1], [-1.4, 3.0]],
+        "monitor": [[2.2, 4.1], [-1.4, 3.0], [0.0, 2.2]],
         "run": {"duration": 0.03},
     },
     "periodic": {
@@ -157,11 +159,12 @@ def test_check_says_the_same_but_for_places(name) -> None:
         assert in_place(there[key]) == in_place(facts[key])
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SCENES)
 def test_what_is_built_has_the_same_sides_sources_and_blocks(name) -> None:
     own, other = (build(each) for each in (case_of(name), translated(case_of(name), BY)))
     (sources, moved), near = (sources_of(each.case, each.ground) for each in (own, other)), {"rtol": 0.0, "atol": 1e-12}
 
+    assert SceneSizes.expected(other.case) == SceneSizes.expected(own.case)
     for side in SIDES:
         assert other.plane(side) == pytest.approx(own.plane(side) + BY[normal_axis(side)], abs=1e-12)
         if side in own.edges:

@@ -1,7 +1,7 @@
 """The reference of a chart: an exact solution, an extended run, a finer run of a bar, or that of the finest choice."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -19,6 +19,7 @@ from dembound.casefile import Case
 from dembound.casefile.chart import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import with_changes
+from dembound.motion.kind import Finding
 from dembound.table import Box
 
 SIDES = "boundary."
@@ -130,10 +131,7 @@ class _References:
             reason = "no side has to be moved, the extended scene is that of the case"
             raise CaseError([f"--reference: {reason}"], self._case.name)
         outcome = self._done("extended scene", larger.case, larger.inside)
-        findings = {
-            name: found._replace(value=found.value - larger.inside[0]) if name in self._judge.from_left_end else found
-            for name, found in outcome.findings.items()
-        }
+        findings = _from_own_end(outcome.findings, larger.inside[0], self._judge.from_left_end)
         outcome = replace(outcome, findings=findings)
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
@@ -204,6 +202,13 @@ def _finest(outcomes: Sequence[Run]) -> int:
     if not done:
         raise RunError("no choice could be run")
     return max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
+
+
+def _from_own_end(findings: Mapping[str, Finding], begins: float, names: Sequence[str]) -> dict[str, Finding]:
+    """Findings of an extended scene, those of these names from where the scene of the case begins in it, m."""
+    return {
+        name: found._replace(value=found.value - begins) if name in names else found for name, found in findings.items()
+    }
 
 
 def _is_same_run(outcome: Run, run: Run) -> bool:

@@ -1,6 +1,7 @@
 """What a run's monitors need, by hand."""
 
 import pytest
+from translated import translated
 
 from dembound.kinds import loads
 from dembound.motion.proposals import proposals
@@ -105,3 +106,14 @@ def test_a_rock_bar(spalling) -> None:
     # precursor 10 (0.94 · 0.025²/8)^(1/3) = 0.419 m: half of 0.94 + 0.419 + 0.525 m, whole spacings
     assert found["smaller scene"] == "0.95 m instead of 4 m along x (right 3.05 m nearer): no echo before 0.00094 s"
     assert "shorter run" not in lines(case)  # a bar that may break
+
+
+@pytest.mark.parametrize("by", [(-37.0, -81.0), (37.0, 11.0)])
+def test_nearer_sides_are_proposed_wherever_a_scene_is(bar, by) -> None:
+    """All of its sides are too far away, so that the sign of each counts."""
+    case = bar({**SQUARE, "run.duration": 0.04})
+    found = lines(case)
+
+    for side in ("left", "right", "bottom", "top"):
+        assert side in found["smaller scene"]
+    assert lines(translated(case, by)) == found

@@ -8,8 +8,10 @@ from small_cases import Tables, small
 from translated import translated
 
 from dembound.accuracy.extended import extended
+from dembound.accuracy.of_disks.arrangements import _with_monitors
 from dembound.accuracy.of_disks.boxes import box_tables, boxes
 from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.exact import problem_of
 from dembound.accuracy.of_disks.exact.lamb import LambProblem
 from dembound.accuracy.of_disks.expected import _depth
@@ -31,7 +33,7 @@ LAMB: Tables = {
     "monitor": [{"name": "receiver", "position": [10.5, 30.0]}, {"name": "other", "position": [25.5, 30.0]}],
     "run": {"duration": 0.15},
 }
-SOURCE = {"type": "viscoelastic", "source": [20.0, 22.0]}
+SOURCE = {"type": "viscoelastic", "source": [20.0, 2.0]}
 FORCE = LAMB | {
     "boundary": {"left": SOURCE, "right": {"type": "viscous"}, "bottom": {"type": "viscous"}},
     "load": [{"name": "hammer", "force": [0.0, -2e5], "position": [20.0, 30.0], "wave": "pulse"}],
@@ -67,7 +69,12 @@ def test_the_same_scene_is_extended_by_as_much(both) -> None:
 
 
 def test_larger_disks_are_at_the_same_places(both) -> None:
-    own, other = (coarser(case, build(case), 1e-4, 1.3).case for case in both)
+    """In ground that they do not fill in whole cells, so that places move with its sides."""
+    wide = {"name": "wide", "force": [1e5, 0.0], "region": [3.0, 3.0, 9.0, 7.0], "wave": "pulse"}
+    case = with_changes(both[0], {"packing.size": [41.0, 31.0], "load": [wide]})
+    own, other = (coarser(each, build(each), 1e-4, 1.3).case for each in (case, translated(case, tuple(BY))))
+
+    assert own.size[1] != pytest.approx(31.0, rel=1e-3)
 
     np.testing.assert_allclose(places_of(other), places_of(own) + BY, rtol=0.0, atol=1e-12)
 
@@ -99,12 +106,17 @@ def test_what_reaches_sides_and_how_stiff_they_are(both) -> None:
 
 def test_boxes_and_their_tables_are_in_the_ground_at_its_place() -> None:
     case = small(BLAST | {"packing": BLAST["packing"] | {"size": [80.0, 60.0]}})
+    watched = with_changes(case, {"monitor": [{"name": "corner", "position": [79.7, 59.7]}]})
     own, other = (list(boxes(build(each))) for each in (case, translated(case, tuple(BY))))
 
     assert own
     assert [each[1:] for each in own] == [each[1:] for each in other]
     for one, another in zip(own, other, strict=True):
         np.testing.assert_array_equal(another.box, np.add(one.box, np.tile(BY, 2)))
+        wide, moved = (
+            _with_monitors(*each) for each in ((watched, one.box), (translated(watched, tuple(BY)), another.box))
+        )
+        np.testing.assert_array_equal(moved, np.add(wide, np.tile(BY, 2)))
     moved = translated(case, tuple(BY))
     tables = box_tables(moved, other[0].box)
     assert tables["ground"] == {"size": [80.0, 60.0], "origin": [-37.0, -11.0]}
@@ -113,6 +125,15 @@ def test_boxes_and_their_tables_are_in_the_ground_at_its_place() -> None:
     made = checked(with_changes(moved, tables | packing))
     assert made.box == moved.box
     assert build(made).outside is not None
+
+
+def test_monitors_under_waves_from_a_side_are_at_the_same_places_of_larger_disks() -> None:
+    driven = {"left": {"type": "viscous_input", "wave_p": "pulse"}, "right": {"type": "viscous"}}
+    case = small(LAMB | {"packing": LAMB["packing"] | {"size": [41.0, 30.0]}, "boundary": driven, "load": []})
+    own, other = (Companions(each, build(each), 1e-3, 1e5) for each in (case, translated(case, tuple(BY))))
+
+    for name, place in own._places(own.scene).items():
+        np.testing.assert_allclose(other._places(other.scene)[name], place + BY, rtol=0.0, atol=1e-12)
 
 
 def test_a_trial_of_fewer_bricks_has_the_stiffest_springs_of_the_whole_side() -> None:
