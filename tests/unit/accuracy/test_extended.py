@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.extended import extended
+from dembound.accuracy.of_disks.extended import _floors_beyond
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import checked, load
@@ -42,7 +43,7 @@ def at(scene, nodes):
 
 @pytest.mark.parametrize("pattern", ["A", "B", "C"])
 def test_all_stays_at_its_place_on_its_particles(field, pattern) -> None:
-    random = {"pattern": pattern, "size": [10.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+    random = {"pattern": pattern, "size": [10.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 2.5]}
     if pattern == "C":
         random["edge_radius"] = 0.26
     case = field({} if pattern == "A" else {"packing": random})
@@ -253,6 +254,15 @@ def test_monitors_and_loads_in_a_continuum_are_at_disks_of_the_larger_scene(bar)
         np.testing.assert_allclose(place, small.monitored[name], atol=1e-9)
     assert found.case.load == case.load
     assert f"{large.disk_count:,} particles" in found.sentence
+
+
+def test_a_floor_goes_on_to_the_left(bar) -> None:
+    slope = {"name": "slope", "type": "polygon", "points": [[6.0, 11.0], [4.0, 6.0], [-1.0, 6.0], [-1.0, 11.0]]}
+    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    case = bar({"packing.size": [10.0, 10.0], "motion.held": [], "boundary": sides, "hole": [slope], "monitor": []})
+    (floor,) = _floors_beyond(case, (-7.0, -3.0, 12.0, 10.0))
+
+    assert floor.corners == pytest.approx((-7.0, 6.0, 0.0, 10.0), abs=1e-9)
 
 
 @pytest.mark.parametrize("stage", ["before", "after"])

@@ -19,10 +19,11 @@ from dembound.casefile import Case
 from dembound.disks.reflection.arrivals import arrivals_of
 from dembound.disks.scene import build
 from dembound.disks.trials import _reduced
+from dembound.errors import CaseError
 from dembound.kinds import checked, with_changes
 
-BY = np.array([-37.0, -11.0])
-"""m, of whole diameters."""
+BY = np.array([-37.5, -11.25])
+"""m, not of whole diameters."""
 
 LAMB: Tables = {
     "packing": {"pattern": "A", "size": [40.0, 30.0], "radius": 0.5},
@@ -88,6 +89,15 @@ def test_exact_solutions_are_as_far_from_loads_and_hold_as_long(both) -> None:
         assert isinstance(other, LambProblem)
         assert other.away == own.away
         assert own.load.force == (4e5 if both[0].side("left").is_mirror else 2e5)
+    else:
+        assert other.blast.surface == own.blast.surface + BY[1]
+
+
+def test_loads_near_a_side_have_no_exact_solution_wherever_they_are() -> None:
+    case = small(FORCE, changes={"load.hammer.position": [39.0, 30.0]})
+    for each in (case, translated(case, tuple(BY))):
+        with pytest.raises(CaseError, match=r"^load: is 1\.5 m from the right side"):
+            problem_of(build(each))
 
 
 def test_what_reaches_sides_and_how_stiff_they_are(both) -> None:
@@ -104,23 +114,27 @@ def test_what_reaches_sides_and_how_stiff_they_are(both) -> None:
         assert springs[0].distance == 20.0
 
 
-def test_boxes_and_their_tables_are_in_the_ground_at_its_place() -> None:
-    case = small(BLAST | {"packing": BLAST["packing"] | {"size": [80.0, 60.0]}})
+@pytest.mark.parametrize("height", [20.0, 50.0])
+def test_boxes_and_their_tables_are_in_the_ground_at_its_place(height) -> None:
+    """Deep in the ground, and so near its surface that the disks reach up to this."""
+    shaft = BLAST["hole"][0] | {"centre": [16.0, height]}
+    case = small(BLAST | {"packing": BLAST["packing"] | {"size": [80.0, 60.0]}, "hole": [shaft], "monitor": []})
     watched = with_changes(case, {"monitor": [{"name": "corner", "position": [79.7, 59.7]}]})
-    own, other = (list(boxes(build(each))) for each in (case, translated(case, tuple(BY))))
+    moved = translated(case, tuple(BY))
+    own, other = (list(boxes(build(each))) for each in (case, moved))
 
     assert own
     assert [each[1:] for each in own] == [each[1:] for each in other]
     for one, another in zip(own, other, strict=True):
         np.testing.assert_array_equal(another.box, np.add(one.box, np.tile(BY, 2)))
-        wide, moved = (
-            _with_monitors(*each) for each in ((watched, one.box), (translated(watched, tuple(BY)), another.box))
-        )
-        np.testing.assert_array_equal(moved, np.add(wide, np.tile(BY, 2)))
-    moved = translated(case, tuple(BY))
-    tables = box_tables(moved, other[0].box)
-    assert tables["ground"] == {"size": [80.0, 60.0], "origin": [-37.0, -11.0]}
-    assert "origin" not in box_tables(case, own[0].box)["ground"]
+        both = ((watched, one.box), (translated(watched, tuple(BY)), another.box))
+        wide, there = (_with_monitors(*each) for each in both)
+        np.testing.assert_array_equal(there, np.add(wide, np.tile(BY, 2)))
+    tables, given = box_tables(moved, other[-1].box), box_tables(case, own[-1].box)
+    assert tables.keys() == given.keys()
+    assert ("boundary.top" in tables) == (height == 20.0)
+    assert tables["ground"] == {"size": [80.0, 60.0], "origin": BY.tolist()}
+    assert given["ground"] == {"size": [80.0, 60.0]}
     packing = {f"packing.{key}": value for key, value in tables.pop("packing").items()}
     made = checked(with_changes(moved, tables | packing))
     assert made.box == moved.box
