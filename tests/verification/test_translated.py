@@ -173,6 +173,8 @@ def test_what_is_built_has_the_same_sides_sources_and_blocks(name) -> None:
     for side, nodes in own.tied.items():
         np.testing.assert_array_equal(other.tied[side], nodes)
     np.testing.assert_allclose(other.positions, own.positions + BY, **near)
+    for monitor, place in own.monitored.items():
+        np.testing.assert_allclose(other.monitored[monitor], place + BY, **near)
     for one, another in zip(sources, moved, strict=True):
         np.testing.assert_allclose(another.box, np.add(one.box, np.tile(BY, 2)), **near)
         np.testing.assert_allclose((another.start, another.over), (one.start, one.over), **near)

@@ -117,3 +117,6 @@ def test_nearer_sides_are_proposed_wherever_a_scene_is(bar, by) -> None:
     for side in ("left", "right", "bottom", "top"):
         assert side in found["smaller scene"]
     assert lines(translated(case, by)) == found
+    mirrored = bar({**SQUARE, "boundary.top": {"type": "free"}, "run.duration": 0.6})
+    assert "shorter run" in lines(mirrored)
+    assert lines(translated(mirrored, by)) == lines(mirrored)
