@@ -1,9 +1,9 @@
 """A scene enlarged until nothing returns from its artificial sides: the reference for what they reflect.
 
 Sides that stand in for the ground or rock beyond them (`Boundary.is_artificial`) move outwards by whole bricks, until
-no wave can have been there and back at any monitor within the run. The disks of the case keep their places in bricks,
-as all bricks are alike, and move like those of an endless scene. Driven sides, mirror planes and periodic sides stay
-where they are, and free, fixed and roller sides that are not `artificial`.
+no wave can have been there and back at any monitor within the run. Loads, holes and monitors stay where they are. The
+disks of the case keep their places, as all bricks are alike, and move like those of an endless scene. Driven sides,
+mirror planes and periodic sides stay where they are, and free, fixed and roller sides that are not `artificial`.
 
 Where waves enter through an artificial side it stays, too: farther away it would send another wave, as packings
 disperse, or the same too late. What it reflects is then in the reference as in the case, and the sentence gives it.

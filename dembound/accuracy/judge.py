@@ -27,12 +27,12 @@ class Judge(ABC, Generic[C, S]):
 
     Attributes
     ----------
-    places : findings of its runs that are places, each with its axis, 0 or 1.
+    from_left_end : findings of its runs that are places, m from the left end, which extended scenes have elsewhere.
     first_break : its finding that is the time (s) of the first break.
     quantities : what its monitors record, and charts compare.
     """
 
-    places: ClassVar[Mapping[str, int]]
+    from_left_end: ClassVar[Sequence[str]] = ()
     first_break: ClassVar[str]
     quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement")
 

@@ -26,7 +26,7 @@ class Extended:
 
     case : the enlarged case, called as the case with "_extended"; the case itself if no side has to move.
     sentence : its size, the number of its particles, and what does not return from where.
-    inside : the scene of the case in it, m.
+    inside : the scene of the case in it, m; a bar begins at zero however long it is.
     """
 
     case: Case

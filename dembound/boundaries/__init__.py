@@ -11,7 +11,7 @@ from dembound.boundaries.matched_layer import MatchedLayer
 from dembound.boundaries.outside import Outside
 from dembound.boundaries.periodic import Periodic
 from dembound.boundaries.roller import Roller
-from dembound.boundaries.sides import OPPOSITE, SIDES, Motion, axis_of_motion, normal_axis
+from dembound.boundaries.sides import OPPOSITE, SIDES, Motion, axis_of_motion, is_far, normal_axis, plane_of
 from dembound.boundaries.symmetry import Symmetry
 from dembound.boundaries.velocity import Velocity
 from dembound.boundaries.viscoelastic import Viscoelastic, ViscoelasticInput
@@ -54,5 +54,7 @@ __all__ = [
     "Viscous",
     "ViscousInput",
     "axis_of_motion",
+    "is_far",
     "normal_axis",
+    "plane_of",
 ]

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 from dembound.boundaries.layer import Layer
 from dembound.boundaries.sides import Factor, Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
-from dembound.table import Table
+from dembound.table import Box, Table
 
 Place = tuple[Edge, BoundaryMedium]
 """Where a side is: its particles, and the medium that it represents."""
@@ -141,10 +141,6 @@ class Boundary(Table):
         keys = {f"wave_{motion}": waves.get(motion) for motion in ("p", "s")}
         return self.model_copy(update=keys)
 
-    def shifted(self, by: tuple[float, float]) -> Self:
-        """The side in coordinates whose origin has moved by minus (x, y) m; by default it has no places."""
-        return self
-
     def at_rest(self) -> "Boundary":
         """The side without its waves."""
         return self.driven_by({}) if self.waves else self
@@ -153,10 +149,10 @@ class Boundary(Table):
         """The side used to calibrate β for plane waves at normal incidence: without springs and columns."""
         return self
 
-    def stiffest(self, side: str, extent: tuple[float, float]) -> "Boundary":
+    def stiffest(self, side: str, box: Box) -> "Boundary":
         """The side with its largest stiffness everywhere, independent of its position.
 
-        side : its name; extent : width and height of the scene, m.
+        side : its name; box : left, bottom, right and top of the disks, m.
         """
         return self
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.boundaries.sides import normal_axis
+from dembound.boundaries.sides import is_far, normal_axis
 
 SAMPLES_PER_RADIUS = 100
 """Lines of sight per smallest radius: a disk that shows less than 1 % of it counts as hidden."""
@@ -79,4 +79,4 @@ def _lines_of_sight(begin: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.
 
 def _sign(side: str) -> float:
     """Direction of a side's outward normal along its axis."""
-    return 1.0 if side in ("right", "top") else -1.0
+    return 1.0 if is_far(side) else -1.0

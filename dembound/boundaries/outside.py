@@ -79,7 +79,7 @@ def _goes_on(side: str, tables: Mapping[str, Any]) -> bool:
     ground, packing = tables.get("ground"), tables.get("packing")
     if not (ground and ground.size and packing):
         return False
-    return side in packing.gaps(ground.size)
+    return side in packing.gaps(ground.box(packing))
 
 
 def _has_column(tables: Mapping[str, Any]) -> bool:

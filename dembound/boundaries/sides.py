@@ -2,6 +2,8 @@
 
 from typing import Literal
 
+from dembound.table import Box
+
 SIDES = ("left", "right", "bottom", "top")
 
 Motion = Literal["p", "s"]
@@ -17,6 +19,16 @@ OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 def normal_axis(side: str) -> int:
     """Axis of a side's normal: 0 for left and right, 1 for bottom and top."""
     return 0 if side in ("left", "right") else 1
+
+
+def is_far(side: str) -> bool:
+    """Whether a side is at the far end of its axis, as the right and the top are."""
+    return side in ("right", "top")
+
+
+def plane_of(side: str, box: Box) -> float:
+    """Where (m, along its normal) a side of a box is."""
+    return box[normal_axis(side) + 2 * is_far(side)]
 
 
 def axis_of_motion(side: str, motion: Motion) -> int:

@@ -13,11 +13,11 @@ from pydantic import model_validator
 
 from dembound.boundaries.boundary import Boundary, Place
 from dembound.boundaries.driven import Driven
-from dembound.boundaries.sides import normal_axis
+from dembound.boundaries.sides import normal_axis, plane_of
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import Dashpots, Viscous, ViscousInput
 from dembound.errors import CaseError
-from dembound.table import quantity, shifted_place
+from dembound.table import Box, quantity
 
 
 class Springs(Boundary):
@@ -61,12 +61,6 @@ class Springs(Boundary):
             raise ValueError("must have exactly one of distance and source, which give the distance L")
         return self
 
-    def shifted(self, by: tuple[float, float]) -> Self:
-        """With its source shifted by (x, y) m."""
-        if self.source is None:
-            return self
-        return self.model_copy(update={"source": shifted_place(self.source, by)})
-
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """Adds the factors α, the modulus G (Pa) and the distances L (m) of the springs."""
         distances = self.distances(edge)
@@ -93,13 +87,12 @@ class Springs(Boundary):
         ratio = theirs / mine
         return self.model_copy(update={"alpha_n": self.alpha_n * ratio, "alpha_s": self.alpha_s * ratio})
 
-    def stiffest(self, side: str, extent: tuple[float, float]) -> Boundary:
+    def stiffest(self, side: str, box: Box) -> Boundary:
         """The side with the distance of the source from its nearest point, where its springs are stiffest."""
         if self.source is None:
             return self
-        axis, far = normal_axis(side), side in ("right", "top")
-        nearest = [min(max(place, 0.0), length) for place, length in zip(self.source, extent, strict=True)]
-        nearest[axis] = extent[axis] if far else 0.0
+        nearest = [min(max(place, box[axis]), box[2 + axis]) for axis, place in enumerate(self.source)]
+        nearest[normal_axis(side)] = plane_of(side, box)
         distance = math.dist(self.source, nearest)
         return self.model_copy(update={"source": None, "distance": distance}) if distance > 0.0 else self
 

@@ -132,6 +132,11 @@ class DiskBody(Scene):
         return np.vstack([self.assembly.positions, *(each.body.mesh.positions for each in self.continua)])
 
     @property
+    def low(self) -> np.ndarray:
+        """(2,) lower left corner of the body, m."""
+        return self.assembly.origin
+
+    @property
     def size(self) -> np.ndarray:
         """(2,) width and height of the body, m."""
         return self.assembly.size

@@ -42,7 +42,7 @@ def tied_of(body: DiskBody) -> dict[str, np.ndarray]:
     if body.seam is None:
         return {}
     node = body.seam.node
-    left = body.assembly.positions[node, 0] < 0.5 * body.size[0]
+    left = body.assembly.positions[node, 0] < body.low[0] + 0.5 * body.size[0]
     near = {"left": node[left], "right": node[~left]}
     return {side: nodes for side, nodes in near.items() if body.case.side(side).needs_column}
 

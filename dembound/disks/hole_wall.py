@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from dembound.boundaries.half_mass import half_contacts, half_edges
+from dembound.boundaries.sides import is_far
 from dembound.casefile.disks.load import Load
 from dembound.disks.beyond.cut_bonds import CutBonds
 from dembound.disks.beyond.mesh import Box, box_of
@@ -72,7 +73,7 @@ def _edges_of(scene: DiskBody, body: Assembly) -> Box:
     """Left, bottom, right and top (m) of a body; at sides of half cells the line of their centres."""
     box = list(box_of(body))
     for edge in half_edges(scene.edges, scene.case.boundary):
-        at_high_end = edge.side in ("right", "top")
+        at_high_end = is_far(edge.side)
         box[edge.axis + 2 * at_high_end] = float(np.median(edge.positions[:, edge.axis]))
     return box[0], box[1], box[2], box[3]
 

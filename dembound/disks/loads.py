@@ -10,7 +10,7 @@ from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.body import DiskBody
 from dembound.disks.hole_wall import pressure_on
 from dembound.errors import CaseError
-from dembound.nearest import nearest
+from dembound.nearest import EQUAL, nearest
 from dembound.outside.traction import Traction, traction_in
 from dembound.packings.tiling import Assembly
 from dembound.table import EVERYWHERE
@@ -59,7 +59,8 @@ def _particles(load: Load, assembly: Assembly) -> np.ndarray:
         return nearest(positions, np.array([load.position]))
     if load.region is None:
         return np.arange(len(positions))
-    low, high = np.array(load.region[:2]), np.array(load.region[2:])
+    near = EQUAL * float(assembly.radii.min())  # rounding must not decide which disks on the rim have the load
+    low, high = np.array(load.region[:2]) - near, np.array(load.region[2:]) + near
     return np.flatnonzero(((positions >= low) & (positions <= high)).all(axis=1))
 
 

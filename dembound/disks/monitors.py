@@ -29,7 +29,7 @@ from dembound.nearest import nearest
 from dembound.outside.interpolation import interpolation, slopes
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, nearest_in_column
-from dembound.packings.tiling import Assembly
+from dembound.packings.tiling import Assembly, disks_around
 
 Monitors = tuple[dict[str, int], dict[str, Between]]
 """Name -> node, and name -> place of those in a continuum."""
@@ -117,7 +117,7 @@ class _Around:
     def _lowest(self) -> float:
         """Height (m) above which the continuum's motion is the total one, or there is a column to make it so."""
         is_total = self.first == 0 and not self.case.side("bottom").waves
-        return -np.inf if is_total else 0.0
+        return -np.inf if is_total else self.case.box[1]
 
     def _allowed(self, places: np.ndarray) -> np.ndarray:
         """The places (k, 2) m, or the nearest ones where motion is recorded."""
@@ -161,13 +161,9 @@ class _Around:
         case, brick, of = self.case, self.brick, self.assembly
         begin = of.positions[self.first] - brick.positions[of.brick_particle[self.first]]
         begin = begin - of.tile[self.first] * brick.size
-        tile = np.floor((np.array(position) - begin) / brick.size)
-        tiles = tile + np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)])
-        places = (begin + brick.size * tiles[:, None] + brick.positions).reshape(-1, 2)
-        in_ground = is_in((0.0, 0.0, *case.size), position)
-        left, bottom, right, top = (
-            (0.0, 0.0, *case.size) if in_ground else reach(case.ground, case.packing, case.boundary)
-        )
+        places = disks_around(brick, begin, position)[1].reshape(-1, 2)
+        in_ground = is_in(case.box, position)
+        left, bottom, right, top = case.box if in_ground else reach(case.ground, case.packing, case.boundary)
         refused = (places < (left, bottom)).any(axis=1) | (places > (right, top)).any(axis=1)
         refused |= ~self.outside.is_beyond(places) | (self._allowed(places) != places).any(axis=1)
         there = np.flatnonzero(~refused)

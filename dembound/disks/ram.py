@@ -23,7 +23,6 @@ from dembound.kernels.lanes import LANES
 from dembound.motion.ram import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
 from dembound.outside.medium import Medium
 from dembound.outside.ram import GridSizes, body_bytes, header_bytes, snapshot_bytes
-from dembound.packings.base import TYPED
 
 NEAR = 1.08
 """Listed pairs over contacts: those with a gap below `contacts.SKIN` are listed, too. In random bricks 1.07 to 1.08."""
@@ -86,8 +85,8 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
     speed = material.p_wave_speed or math.sqrt((moduli.emod + moduli.pb_emod) / material.density)
     medium = Medium.isotropic(material.density, speed, 0.5 * speed)
     box, surface = case.packing.box, None
-    if "top" in sides and box[3] < (1.0 - TYPED) * case.size[1]:
-        surface = case.size[1]
+    if "top" in sides and not case.reaches_surface:
+        surface = case.box[3]
     settings = settings_of(case, medium, 2.0 * case.packing.radius, box, sides)
     tops = None if any(case.periodic) else expected_tops(case, box)
     return GridSizes.of(mesh_of(settings, box, sides, surface=surface, tops=tops, periodic=case.periodic))

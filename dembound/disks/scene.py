@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.boundaries import Periodic
+from dembound.boundaries import Periodic, is_far
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor, with_shares
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.disks import DiskCase
@@ -94,7 +94,7 @@ class DiskScene(DiskBody):
         for side, each in side_forces(self).items():
             acting, edge = each.under(stress)[:2], self.edges[side]
             rest = edge.length * stress[[0, 2] if edge.axis == 0 else [2, 1]]
-            rest = rest * (1.0 if side in ("right", "top") else -1.0) - acting.sum(axis=1)
+            rest = rest * (1.0 if is_far(side) else -1.0) - acting.sum(axis=1)
             shown, most = acting.copy(), np.abs(acting).argmax(axis=1)
             shown[[0, 1], most] += rest
             rests += rest
@@ -164,8 +164,8 @@ def _scene(
     body, seam, beyond = assembly, None, case.outside_sides
     outline = Outline.of(case, ground, body, beyond, case.periodic, floors) if beyond else None
     if sides := case.column_sides:
-        left = 0.0 if outline is None else outline.mesh.origin[0]
-        assembly, seam = with_column(ground.brick, body, sides, case.column_rows, left)
+        beside = case.box[0] if outline is None else outline.mesh.origin[0]
+        assembly, seam = with_column(ground.brick, body, sides, case.column_rows, (beside, case.box[1]))
         edges = edges_beside_column(assembly, seam, edges)
     assembly, seam = with_half_contacts(case, ground.brick, assembly, seam, edges)
     count = len(assembly.radii)
@@ -225,7 +225,7 @@ def column_alone(scene: DiskScene) -> DiskScene:
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
     alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
-    column = tile(brick, (1, case.column_rows[1]), UPRIGHT)
+    column = tile(brick, (1, case.column_rows[1]), UPRIGHT, case.box[:2])
     return _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
 
 

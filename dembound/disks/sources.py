@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.boundaries import axis_of_motion, normal_axis
+from dembound.boundaries import axis_of_motion, normal_axis, plane_of
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.disks.beyond.ground_waves import incident_in
@@ -29,7 +29,7 @@ def _sides(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
     """Driven sides, each with its waves."""
     for side, waves in case.driving.items():
         axis, box = normal_axis(side), list(EVERYWHERE)
-        box[axis] = box[2 + axis] = case.packing.extent[axis] if side in ("right", "top") else 0.0
+        box[axis] = box[2 + axis] = plane_of(side, case.box)
         for motion, name in waves.items():
             if axis_of_motion(side, motion) not in ground.held:
                 wave, speed = case.wave[name], ground.wave_speeds(axis)[0 if motion == "p" else 1]
@@ -41,10 +41,11 @@ def _incident(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
     if case.incident is None:
         return
     wave, signal = incident_in(case, medium_of(ground)), case.wave[case.incident.wave]
-    width, height = case.size
-    corners = np.array([(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)])
+    left, bottom, right, top = case.box
+    corners = np.array([(left, bottom), (right, bottom), (left, top), (right, top)])
     delays, slowest = wave.delays(corners), slowest_speed(ground)
-    yield Source(EVERYWHERE, signal.start + delays.min(), signal.duration() + delays.max() + height / slowest, slowest)
+    down = signal.duration() + delays.max() + case.size[1] / slowest
+    yield Source(EVERYWHERE, signal.start + delays.min(), down, slowest)
 
 
 def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:

@@ -89,7 +89,7 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
     fewer_up = int(np.clip(round(up * np.sqrt(most / (across * up))), 1, up))
     fewer = int(np.clip(most // fewer_up, 1, across)), fewer_up
     words = [f"{fewer[0]} × {fewer[1]} of its {across} × {up} bricks, the same sides"]
-    stiffest = {side: table.stiffest(side, case.packing.extent) for side, table in case.boundary.items()}
+    stiffest = {side: table.stiffest(side, case.packing.box) for side, table in case.boundary.items()}
     if stiffest != case.boundary:
         words.append("springs that depend on the distance of a source are those nearest to it")
     words += ["no holes, whose free walls do not lower the limit"] * bool(case.hole)

@@ -28,9 +28,8 @@ def _echoes(planned: Plan) -> Iterator[str]:
         is_across = axis in planned.stepped.uniform_axes or scene.size[axis] == 0.0
         if is_across or not table.may_move or table.absorber:
             continue
-        plane = float(scene.size[axis]) if side in ("right", "top") else 0.0
         seen = [source for source in sources if source.is_local or not table.needs_column]  # of columns only local ones
-        times = [source.start + source.distance_over(side, plane, places) / speed for source in seen]
+        times = [source.start + source.distance_over(side, scene.plane(side), places) / speed for source in seen]
         first = np.min(times, axis=0, initial=np.inf) if times else np.full(len(places), np.inf)
         if first.min() < scene.case.run.duration:
             yield f"{side} ({table.type}) may reflect to {names[int(first.argmin())]} from {first.min():.3g} s on"

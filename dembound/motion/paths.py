@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dembound.boundaries import normal_axis
+from dembound.boundaries import is_far, normal_axis
 from dembound.table import Box
 
 PRECURSOR = 10.0
@@ -64,7 +64,7 @@ class Source:
     def distance_over(self, side: str, plane: float, places: np.ndarray) -> np.ndarray:
         """Shortest way (k,) m over a side, which is at `plane` m along its normal, to places (k, 2) m."""
         axis, box = normal_axis(side), list(self.box)
-        edge = 2 + axis if side in ("right", "top") else axis
+        edge = axis + 2 * is_far(side)
         box[edge] = min(box[edge], plane) if edge > 1 else max(box[edge], plane)
         image = places.copy()
         image[:, axis] = 2.0 * plane - image[:, axis]
@@ -82,7 +82,7 @@ def plane_needed(side: str, sources: Sequence[Source], places: np.ndarray, front
 
     duration : s. Infinitely far inwards where nothing comes at all.
     """
-    axis, sign = normal_axis(side), 1.0 if side in ("right", "top") else -1.0
+    axis, sign = normal_axis(side), 1.0 if is_far(side) else -1.0
     needed = -np.inf
     for source in sources:
         reach = front.reach(duration - source.start)

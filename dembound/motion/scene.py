@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from dembound.boundaries.sides import plane_of
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile import Case
 from dembound.motion.beside import Beside
@@ -70,9 +71,19 @@ class Scene(ABC):
         """(n, 2) m."""
 
     @property
+    def low(self) -> np.ndarray:
+        """(2,) m, lower left corner of the body; by default it begins at zero."""
+        return np.zeros(2)
+
+    @property
     @abstractmethod
     def size(self) -> np.ndarray:
         """(2,) width and height, m."""
+
+    def plane(self, side: str) -> float:
+        """Where (m, along its normal) a side of the body is."""
+        low, high = self.low.tolist(), (self.low + self.size).tolist()
+        return plane_of(side, (*low, *high))
 
     @property
     @abstractmethod

@@ -55,10 +55,7 @@ def _longest(scene: Scene, sources: Sequence[Source], places: np.ndarray) -> flo
     """The default of `silent_for` (s)."""
     waves = max((source.over - source.start for source in sources if np.isfinite(source.over)), default=0.0)
     slowest = min((source.slowest for source in sources), default=np.inf)
-    ways = [
-        np.abs((scene.size[normal_axis(side)] if side in ("right", "top") else 0.0) - places[:, normal_axis(side)])
-        for side in scene.edges
-    ]
+    ways = [np.abs(scene.plane(side) - places[:, normal_axis(side)]) for side in scene.edges]
     return max(waves, 2.0 * float(np.max(ways, initial=0.0)) / slowest)
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.boundaries.sides import SIDES, is_far, normal_axis
 from dembound.outside.edges import elements_at, is_free, nodes_at
 from dembound.outside.mesh import Mesh
 from dembound.table import Box
@@ -62,7 +62,7 @@ class _Part(NamedTuple):
 
 def _part(mesh: Mesh, side: str, region: Box, depth: float | np.ndarray) -> _Part:
     """The part of a side in a region."""
-    axis, end = normal_axis(side), int(side in ("right", "top"))
+    axis, end = normal_axis(side), int(is_far(side))
     along, near = 1 - axis, ROUNDING * float(mesh.size.max())
     element, node = elements_at(mesh, side), nodes_at(mesh, side)
     level = mesh.positions[node[:, 0], axis]

@@ -59,7 +59,10 @@ class Packing(Table, ABC):
         None, unit="1", means="count", help="number of bricks along x and y, instead of size"
     )
     origin: tuple[float, float] = quantity(
-        (0.0, 0.0), unit="m", means="place", help="lower left corner of the box of disks in [ground]"
+        (0.0, 0.0),
+        unit="m",
+        means="place",
+        help="lower left corner of the disks; in [ground] of their box",
     )
     radius: float = quantity(unit="m", means=SIZE, help="disk radius (mean radius of a random packing)", gt=0.0)
 
@@ -109,16 +112,11 @@ class Packing(Table, ABC):
         (left, bottom), (width, height) = self.origin, self.extent
         return left, bottom, left + width, bottom + height
 
-    def gaps(self, ground: Extent) -> dict[str, float]:
-        """How far (m) a ground of this width and height goes on beyond the box's sides, but for those at its end."""
-        left, bottom, right, top = self.box
-        gaps = {"left": left, "right": ground[0] - right, "bottom": bottom, "top": ground[1] - top}
-        return {side: gap for side, gap in gaps.items() if gap > TYPED * max(ground)}
-
-    @property
-    def first_row(self) -> int:
-        """Number of rows of bricks in the ground below the box."""
-        return round(self.origin[1] / self.brick_size[1])
+    def gaps(self, ground: Box) -> dict[str, float]:
+        """How far (m) a ground goes on beyond the box's sides, but for those at its end."""
+        (left, bottom, right, top), own = ground, self.box
+        gaps = {"left": own[0] - left, "right": right - own[2], "bottom": own[1] - bottom, "top": top - own[3]}
+        return {side: gap for side, gap in gaps.items() if gap > TYPED * max(right - left, top - bottom)}
 
     def about(self, extent: tuple[float, float]) -> float:
         """Number of disks in a rectangle of this width and height (m), within some per cent."""

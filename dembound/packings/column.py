@@ -63,13 +63,17 @@ class Seam:
 
 
 def with_column(
-    brick: Brick, body: Assembly, sides: tuple[str, ...], rows: tuple[int, int] | None = None, left: float = 0.0
+    brick: Brick,
+    body: Assembly,
+    sides: tuple[str, ...],
+    rows: tuple[int, int] | None = None,
+    beside: tuple[float, float] | None = None,
 ) -> tuple[Assembly, Seam]:
     """A body and its free-field column in one assembly, the column first and to the left, and the seam between them.
 
     sides : those at which the column represents the ground.
     rows : first row of bricks of the body in the column, and the number of rows of the column; None: it is as high as
-    the body. left : x (m) of what it is beside.
+    the body. beside : lower left corner (m) of what it is beside, by default of the body.
 
     Raises PackingError when a disk of the body has no twin in the column.
     """
@@ -86,7 +90,8 @@ def with_column(
         raise PackingError(f"{np.count_nonzero(twin < 0)} disks of the body have no twin in the free-field column")
     count = len(column.radii)
     width = float(brick.size[0])
-    corner = np.array([left - width - APART * brick.mean_diameter, 0.0])
+    left, bottom = body.origin.tolist() if beside is None else beside
+    corner = np.array([left - width - APART * brick.mean_diameter, bottom])
     seam = _seam(brick, body, first, numbers, sides)
     joint = replace(
         body,

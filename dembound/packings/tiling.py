@@ -141,6 +141,16 @@ def tile(
     return whole.without(np.zeros(len(twin), dtype=bool))[0]
 
 
+def disks_around(brick: Brick, begin: np.ndarray, place: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """The disks of an endless tiling in the bricks round a place (m): their tiles (9, 2), places (9, m, 2) m.
+
+    begin : (2,) m, lower left corner of tile (0, 0).
+    """
+    tile = np.floor((np.array(place) - begin) / brick.size)
+    tiles = tile + np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)])
+    return tiles, begin + brick.size * tiles[:, None] + brick.positions
+
+
 def count_disks(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> int:
     """Number of disks of `tile` with these parameters, before disks without connection are left out."""
     across, up = (

@@ -204,6 +204,7 @@ def header_of(run: Run) -> dict[str, Any]:
         "keys": json.dumps(case.keys),
         "version": __version__,
         "time_step": run.time_step,
+        "corner": scene.low,
         "size": scene.size,
         "kind": scene.kind,
         **scene.attributes,

@@ -83,6 +83,7 @@ COLUMNS: Mapping[str, Shapes] = {
 ATTRIBUTES: Mapping[str, tuple[str, tuple[int, ...]]] = {
     **{name: (TEXTS, ()) for name in ("name", "title", "case", "keys", "kind", "version", PLACE, DIGEST)},
     **{name: (NUMBERS, ()) for name in ("time_step", "step_limit", "steps", "regular_steps", "complete")},
+    "corner": (NUMBERS, (2,)),
     "size": (NUMBERS, (2,)),
 }
 """Attributes of a run's record, with their types and shapes."""

@@ -167,7 +167,8 @@ def meshes_of(file: h5py.File) -> "list[Coloured]":
 
 def extent_of(file: h5py.File) -> np.ndarray:
     """Lowest and highest corner (2, 2) m of the scene of an open record, with its continuum."""
-    corners = [np.zeros(2), file.attrs["size"]]
+    low = file.attrs.get("corner", np.zeros(2))  # earlier versions began at zero
+    corners = [low, low + file.attrs["size"]]
     if CONTINUUM in file:
         corners += [*file[f"{CONTINUUM}/element"][:].reshape(-1, 2)]
     return np.array([np.min(corners, axis=0), np.max(corners, axis=0)])

@@ -131,7 +131,8 @@ class _References:
             reason = "no side has to be moved, the extended scene is that of the case"
             raise CaseError([f"--reference: {reason}"], self._case.name)
         outcome = self._done("extended scene", larger.case, larger.inside)
-        outcome = replace(outcome, findings=_shifted(outcome.findings, larger.inside, self._judge.places))
+        findings = _from_own_end(outcome.findings, larger.inside[0], self._judge.from_left_end)
+        outcome = replace(outcome, findings=findings)
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
         return self._of_run("extended", sentence, outcome, self._places(fine))
@@ -173,11 +174,8 @@ class _References:
         return outcome
 
     def _places(self, fine: FinerRun | None) -> Callable[[Run, Run], Motions]:
-        """The histories of a run for the outcome of a choice, at their places in the scene before it was extended."""
-        if fine is not None:
-            return fine.motions
-        places = {name: history.place for name, history in self._outcomes[self._own].motions.items()}
-        return lambda run, _: {name: replace(run.motions[name], place=place) for name, place in places.items()}
+        """The histories of a run for the outcome of a choice."""
+        return (lambda run, _: run.motions) if fine is None else fine.motions
 
     def _of_run(self, name: str, sentence: str, run: Run, motions: Callable[[Run, Run], Motions]) -> Reference:
         """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
@@ -206,11 +204,10 @@ def _finest(outcomes: Sequence[Run]) -> int:
     return max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
 
 
-def _shifted(findings: Mapping[str, Finding], inside: Box, axes: Mapping[str, int]) -> dict[str, Finding]:
-    """Findings with places in the scene of the case, which lies in a larger one at a box; axes : of places, by name."""
+def _from_own_end(findings: Mapping[str, Finding], begins: float, names: Sequence[str]) -> dict[str, Finding]:
+    """Findings of an extended scene, those of these names from where the scene of the case begins in it, m."""
     return {
-        name: found._replace(value=found.value - inside[axes[name]]) if name in axes else found
-        for name, found in findings.items()
+        name: found._replace(value=found.value - begins) if name in names else found for name, found in findings.items()
     }
 
 

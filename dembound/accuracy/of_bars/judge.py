@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import ClassVar
 
 from dembound.accuracy.cause import Causes, Truth
@@ -27,7 +27,7 @@ from dembound.results.histories import Quantity
 class BarJudge(Judge[BarCase, BarScene]):
     """Errors of bars."""
 
-    places: ClassVar[Mapping[str, int]] = {SPALL_PLACE: 0}
+    from_left_end: ClassVar[Sequence[str]] = (SPALL_PLACE,)
     first_break = SPALL_TIME
     quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement", "stress")
 

@@ -91,7 +91,8 @@ def _boxes(case: DiskCase, accuracy: Mapping[str, Any], name: str) -> Iterator[C
     for box in dict.fromkeys([*small, *(_with_monitors(case, each) for each in small)]):
         tables = box_tables(case, box)
         kept = {key: value for key, value in case.packing.given().items() if key != "bricks"}
-        changes = {"ground.size": tables.pop("ground")["size"], "packing": kept | tables.pop("packing"), **tables}
+        ground = {f"ground.{key}": value for key, value in tables.pop("ground").items()}
+        changes = {**ground, "packing": kept | tables.pop("packing"), **tables}
         changes |= accuracy
         if is_valid(case, changes):
             yield Choice(f"a box of {_size(box)} in a {name}continuum", changes, changed(case, changes))
@@ -104,8 +105,8 @@ def _with_monitors(case: DiskCase, box: Box) -> Box:
     low, high = np.array(box[:2]), np.array(box[2:])
     brick, margin = np.array(case.packing.brick_size), case.packing.radius
     lower, upper = np.min([low, *np.subtract(places, margin)], axis=0), np.max([high, *np.add(places, margin)], axis=0)
-    low = np.maximum(low - brick * np.ceil((low - lower) / brick - ROUNDING), 0.0)
-    high = np.minimum(high + brick * np.ceil((upper - high) / brick - ROUNDING), case.size)
+    low = np.maximum(low - brick * np.ceil((low - lower) / brick - ROUNDING), case.box[:2])
+    high = np.minimum(high + brick * np.ceil((upper - high) / brick - ROUNDING), case.box[2:])
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,10 +55,15 @@ def box_facts(scene: DiskScene) -> Entries:
 def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
     """The keys of a case with disks in a box (m) only, by table; those of the packing that it keeps are left out."""
     left, bottom, right, top = box
-    sides = SIDES if top < case.size[1] else SIDES[:3]
-    outside = {f"boundary.{side}": continuum_beyond(case.side(side)) for side in sides}
+    outside = {f"boundary.{side}": continuum_beyond(case.side(side)) for side in _sides_beyond(case, box)}
     packing = {"size": [right - left, top - bottom], "origin": [left, bottom]}
-    return {"ground": {"size": list(case.size)}, "packing": packing, **outside}
+    ground = {"size": list(case.size)} | ({"origin": list(case.box[:2])} if any(case.box[:2]) else {})
+    return {"ground": ground, "packing": packing, **outside}
+
+
+def _sides_beyond(case: DiskCase, box: Box) -> Sequence[str]:
+    """The sides of a box (m) beyond which a continuum goes on: the top of one below the surface, too."""
+    return SIDES if box[3] < case.box[3] else SIDES[:3]
 
 
 def continuum_beyond(table: Boundary) -> dict[str, Any]:
@@ -152,26 +157,24 @@ def _round(scene: DiskScene, clearance: float) -> Box:
     """The box of whole bricks (m) with a clearance (m) from holes and loads, up to the surface if it is near."""
     case, brick = scene.case, np.array(scene.case.packing.brick_size)
     lows, highs = (np.array(corners) for corners in zip(*extents(case), strict=True))
-    size, origin = np.array(case.size), np.array(case.packing.origin)
-    origin[1] = 0.0
+    ground, origin = np.array(case.box), np.array([case.packing.origin[0], case.box[1]])
     least = least_element(case, scene.ground.brick.mean_diameter)
     lowest = lows.min(axis=0) - clearance
     lowest[1] = min([lowest[1], *(floor.height - least for floor in case.floors.values())])
     low = origin + brick * np.floor((lowest - origin) / brick)
     high = origin + brick * np.ceil((highs.max(axis=0) + clearance - origin) / brick)
-    low, high = np.maximum(low, 0.0), np.minimum(high, size)
-    if size[1] - high[1] < max(least, clearance):
-        high[1] = size[1]
+    low, high = np.maximum(low, ground[:2]), np.minimum(high, ground[2:])
+    if ground[3] - high[1] < max(least, clearance):
+        high[1] = ground[3]
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
 def _with_continuum(scene: DiskScene, box: Box) -> BoxOfDisks:
     """A box with its continuum and column."""
     case, ground = scene.case, scene.ground
-    below = box[3] < case.size[1]
-    sides = SIDES if below else SIDES[:3]
+    sides = _sides_beyond(case, box)
     settings = settings_of(case, medium_of(ground), ground.brick.mean_diameter, box, sides)
-    surface, tops = (case.size[1], None) if below else (None, expected_tops(case, box))
+    surface, tops = (case.box[3], None) if "top" in sides else (None, expected_tops(case, box))
     grid = GridSizes.of(mesh_of(settings, box, sides, surface=surface, tops=tops))
     first = 0 if scene.seam is None else scene.seam.count
     places = scene.assembly.positions[first:]

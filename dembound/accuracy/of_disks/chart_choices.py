@@ -99,7 +99,8 @@ def _box(case: DiskCase) -> Named:
         return
     tables = box_tables(case, best.box)
     packing = {key: value for key, value in case.packing.given().items() if key != "bricks"} | tables.pop("packing")
-    changes = {"ground.size": tables.pop("ground")["size"], "packing": packing, **tables}
+    ground = {f"ground.{key}": value for key, value in tables.pop("ground").items()}
+    changes = {**ground, "packing": packing, **tables}
     if is_valid(case, changes, build):
         yield "box of {:g} m × {:g} m, outside".format(*packing["size"]), changes
 

@@ -28,6 +28,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.laws import Moduli
 from dembound.packings.square import Square
+from dembound.table import Box
 
 CELLS = 4
 """Smallest number of particles across a hole."""
@@ -69,9 +70,8 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
     Raises the errors of building a scene.
     """
     columns, rows, cell = _cells(case.size, diameter)
-    packing = Square(pattern="A", radius=0.5 * cell, bricks=(columns, rows))
-    size = np.array(packing.extent)
-    sides = _Sides(size / case.size, size)
+    packing = Square(pattern="A", radius=0.5 * cell, bricks=(columns, rows), origin=case.box[:2])
+    sides = _Sides(np.divide(packing.extent, case.size), packing.box)
     larger = replace(
         case,
         packing=packing,
@@ -108,21 +108,26 @@ def _middle(box: tuple[float, float, float, float]) -> np.ndarray:
 class _Sides:
     """How places move with the sides.
 
-    stretch : of lengths along x and y. size : width and height (m) afterwards, which rounding must not exceed.
+    stretch : of lengths along x and y, from the lower left corner. box : left, bottom, right and top (m) afterwards,
+    which rounding must not exceed.
     """
 
     stretch: np.ndarray
-    size: np.ndarray
+    box: Box
 
     def moved(self, place: np.ndarray) -> tuple[float, float]:
         """How far (m) a place moves."""
-        x, y = (place * (self.stretch - 1.0)).tolist()
+        x, y = ((place - self.box[:2]) * (self.stretch - 1.0)).tolist()
         return x, y
 
     def at(self, place: np.ndarray) -> tuple[float, float]:
         """Where (m) a place is afterwards."""
-        x, y = np.clip(place * self.stretch, 0.0, self.size).tolist()
+        x, y = self.within((place - self.box[:2]) * self.stretch + self.box[:2]).tolist()
         return x, y
+
+    def within(self, place: np.ndarray) -> np.ndarray:
+        """A place (2,) m, or the nearest one in the box."""
+        return np.clip(place, self.box[:2], self.box[2:])
 
 
 def _run(case: DiskCase) -> Any:
@@ -176,7 +181,8 @@ def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:
         (node,), _ = forces_of(load, scene)
         return load.model_copy(update=update | {"position": sides.at(scene.positions[node])})
     assert load.region is not None
-    box = np.array(load.region) * np.tile(sides.stretch, 2)
+    corner = np.tile(sides.box[:2], 2)
+    box = (np.array(load.region) - corner) * np.tile(sides.stretch, 2) + corner
     middle, half = 0.5 * (box[:2] + box[2:]), np.maximum(0.5 * (box[2:] - box[:2]), 0.5 * cell * (1.0 + 1e-9))
-    low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, sides.size)
+    low, high = sides.within(middle - half), sides.within(middle + half)
     return load.model_copy(update=update | {"region": (*low.tolist(), *high.tolist())})

@@ -89,7 +89,7 @@ class Companions:
     @cached_property
     def _far(self) -> Run:
         """The run with far sides."""
-        return self._measured(self._own if self.pair is None else enlarged(build(self._own), self.pair.bricks)[0])
+        return self._measured(self._own if self.pair is None else enlarged(build(self._own), self.pair.bricks))
 
     @cached_property
     def _lattice(self) -> DiskScene:
@@ -162,10 +162,10 @@ class Companions:
     def _places(self, scene: DiskScene) -> dict[str, np.ndarray]:
         """Where (2,) m in the lattice of the companion the monitors of a scene are, seen from the middle of loads."""
         seen, own = (middle_of_loads(each) for each in (scene, self._lattice))
-        stretch = np.array(self._lattice.case.size) / self.case.size
+        low, stretch = np.array(self.case.box[:2]), np.array(self._lattice.case.size) / self.case.size
         names = [monitor.name for monitor in self.case.monitor]
         if seen is None or own is None:
-            return {name: scene.monitored[name] * stretch for name in names}
+            return {name: low + (scene.monitored[name] - low) * stretch for name in names}
         return {name: own + scene.monitored[name] - seen for name in names}
 
     def _motion(self, motions: Motions, places: Mapping[str, np.ndarray]) -> dict[str, dict[str, np.ndarray]]:
@@ -210,7 +210,7 @@ class Companions:
     def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
         """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
         bricks = {side: min(count, self._bricks(scene, side, wider)) for side, count in needed.items()}
-        return enlarged(scene, bricks)[0]
+        return enlarged(scene, bricks)
 
     def _bricks(self, scene: DiskScene, side: str, wider: float) -> int:
         """Bricks by which a side moves."""

@@ -2,13 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
 from dembound.accuracy.moved_sides import Extended, movable, must_not_exceed, same_step, sentence_of
-from dembound.boundaries import SIDES, normal_axis
+from dembound.boundaries import SIDES, is_far, normal_axis, plane_of
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.run import Run
 from dembound.disks.loads import forces_of
 from dembound.disks.material.wave_front import front_of
@@ -19,9 +21,12 @@ from dembound.errors import CaseError
 from dembound.holes import Hole, Rectangle
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.motion.silence import monitored
+from dembound.nearest import EQUAL, nearest
 from dembound.packings import Packing
-from dembound.packings.tiling import count_disks
-from dembound.table import Box, shifted_box, shifted_place
+from dembound.packings.tiling import count_disks, disks_around
+from dembound.table import Box
+
+T = TypeVar("T", Load, Monitor)
 
 AROUND = 65
 """Places along each side of a scene without monitors."""
@@ -31,10 +36,9 @@ def extended_disks(case: DiskCase, most: int) -> Extended:
     """A scene of disks with more bricks; parameters and errors as of `extended`."""
     if case.ground.size is not None:
         reason = "its disks fill a box of the ground only, and are not continued beyond"
-        instead = "take --reference finest, or let the disks fill the ground: packing.size = [{:g}, {:g}], no [ground]"
-        raise CaseError(
-            [f"ground.size: the scene cannot be extended, as {reason}; {instead.format(*case.ground.size)}"], case.name
-        )
+        filled = "packing.size = [{:g}, {:g}], packing.origin = [{:g}, {:g}], no [ground]".format(*case.size, *case.box)
+        instead = f"take --reference finest, or let the disks fill the ground: {filled}"
+        raise CaseError([f"ground.size: the scene cannot be extended, as {reason}; {instead}"], case.name)
     if case.incident is not None:
         reason = "its wave comes through the ground beyond all sides; take --reference finest"
         raise CaseError([f"incident: the scene cannot be extended, as {reason}"], case.name)
@@ -46,8 +50,7 @@ def extended_disks(case: DiskCase, most: int) -> Extended:
     size = "{:g} m × {:g} m".format(*packing.extent)
     must_not_exceed(count, most, size, case)
     sentence = sentence_of(case, f"the same scene {size}, {count:,} particles", moving)
-    larger, inside = enlarged(scene, bricks)
-    return Extended(larger, sentence, inside)
+    return Extended(enlarged(scene, bricks), sentence, case.packing.box)
 
 
 def bricks_needed(scene: DiskScene, moving: Sequence[str]) -> dict[str, int]:
@@ -58,29 +61,27 @@ def bricks_needed(scene: DiskScene, moving: Sequence[str]) -> dict[str, int]:
     return {side: _bricks_beyond(scene, side, sources, front) for side in moving}
 
 
-def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> tuple[DiskCase, Box]:
-    """The case of a scene with so many more bricks beyond its sides, and where (m) the scene lies in it.
+def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
+    """The case of a scene with so many more bricks beyond its sides; all places keep their coordinates.
+
+    Only monitors and loads to which one of the new disks is nearer are given the place of their own disk.
 
     Raises CaseError where a hole reaches beyond a side that moves.
     """
     case = scene.case
-    inside = (0.0, 0.0, *case.packing.extent)
     if not any(bricks.values()):
-        return case, inside
+        return case
     packing = _with_more(case, bricks)
-    wide, high = case.packing.brick_size
-    by = bricks.get("left", 0) * wide, bricks.get("bottom", 0) * high
     _holes_must_end(case, bricks)
-    at_places = _at_places(case, scene, by, packing.extent)
-    larger = replace(
-        at_places,
+    return replace(
+        case,
         packing=packing,
-        hole=(*at_places.hole, *_floors_beyond(case, by, packing.extent)),
-        boundary={side: table.shifted(by) for side, table in case.boundary.items()},
+        load=tuple(_at_own_disk(load, scene, packing) for load in case.load),
+        monitor=tuple(_at_own_disk(monitor, scene, packing) for monitor in case.monitor),
+        hole=(*case.hole, *_floors_beyond(case, packing.box)),
         run=_run_of(scene),
         name=f"{case.name}_extended",
     )
-    return larger, shifted_box(inside, by)
 
 
 def _run_of(scene: DiskScene) -> Run:
@@ -90,9 +91,27 @@ def _run_of(scene: DiskScene) -> Run:
 
 
 def _with_more(case: DiskCase, bricks: Mapping[str, int]) -> Packing:
-    """The packing with so many more bricks beyond its sides."""
+    """The packing with so many more bricks beyond its sides, which begins farther left and below."""
     (across, up), more = case.packing.copies, {side: bricks.get(side, 0) for side in SIDES}
-    return case.packing.with_copies(across + more["left"] + more["right"], up + more["bottom"] + more["top"])
+    (left, bottom), (wide, high) = case.packing.origin, case.packing.brick_size
+    larger = case.packing.with_copies(across + more["left"] + more["right"], up + more["bottom"] + more["top"])
+    return larger.model_copy(update={"origin": (left - more["left"] * wide, bottom - more["bottom"] * high)})
+
+
+def _at_own_disk(table: T, scene: DiskScene, larger: Packing) -> T:
+    """A load or monitor at its place, or where one of the disks that the scene gets is nearer, at that of its disk."""
+    if table.position is None:
+        return table
+    brick, low = scene.ground.brick, np.array(larger.origin)
+    own = scene.positions[forces_of(table, scene)[0]][0] if isinstance(table, Load) else scene.monitored[table.name]
+    tiles, places = disks_around(brick, low, table.position)
+    places = places[((tiles >= 0) & (tiles < larger.copies)).all(axis=1)].reshape(-1, 2)
+    gone = [hole.contains(places) for hole in scene.case.hole]
+    there = np.vstack([own, places[~np.any(gone, axis=0)] if gone else places])
+    taken = there[nearest(there, np.array([table.position]))[0]]
+    if np.abs(taken - own).max() < EQUAL * brick.mean_diameter:
+        return table
+    return table.model_copy(update={"position": (float(own[0]), float(own[1]))})
 
 
 def _bricks_beyond(scene: DiskScene, side: str, sources: list[Source], front: Front) -> int:
@@ -100,7 +119,7 @@ def _bricks_beyond(scene: DiskScene, side: str, sources: list[Source], front: Fr
     case, axis, places = scene.case, normal_axis(side), _targets(scene)
     if side in case.column_sides:  # it moves like the ground under everything that is not local
         sources = [source for source in sources if source.is_local]
-    outwards, plane = (1.0, float(scene.size[axis])) if side in ("right", "top") else (-1.0, 0.0)
+    outwards, plane = 1.0 if is_far(side) else -1.0, scene.plane(side)
     needed = plane_needed(side, sources, places, front, case.run.duration)
     ends = np.array([source.box[axis::2] for source in sources if source.is_local]).ravel()
     outermost = float(np.max(outwards * np.concatenate([places[:, axis], ends[np.isfinite(ends)]])))
@@ -112,10 +131,9 @@ def _targets(scene: DiskScene) -> np.ndarray:
     """Places (k, 2) m to which nothing may return: those of monitors, or without monitors all around the scene."""
     if scene.case.monitor:
         return monitored(scene)
-    wide, high = scene.size
     along, zero = np.linspace(0.0, 1.0, AROUND), np.zeros(AROUND)
     square = np.concatenate([np.column_stack([a, b]) for a, b in ((along, zero), (zero, along))])
-    return np.concatenate([square, 1.0 - square]) * [wide, high]
+    return scene.low + np.concatenate([square, 1.0 - square]) * scene.size
 
 
 def _particles(scene: DiskScene, copies: tuple[int, int]) -> int:
@@ -129,9 +147,10 @@ def _particles(scene: DiskScene, copies: tuple[int, int]) -> int:
     return count + new - old
 
 
-def _floors_beyond(case: DiskCase, by: tuple[float, float], size: tuple[float, float]) -> list[Hole]:
-    """The holes of a case shifted by (x, y) m that go on as level floors up to the sides of an enlarged one, m."""
-    ends = {"left": (0.0, by[0]), "right": (by[0] + case.packing.extent[0], size[0])}
+def _floors_beyond(case: DiskCase, larger: Box) -> list[Hole]:
+    """The holes that go on as level floors from the sides of a case up to those of a larger box, m."""
+    own = case.packing.box
+    ends = {"left": (larger[0], own[0]), "right": (own[2], larger[2])}
     first = case.floors_of([hole for hole in case.hole if hole.stage == "before"])
     each = [("before", side, floor) for side, floor in first.items()]
     each += [("after", side, floor) for side, floor in case.floors.items() if first.get(side) != floor]
@@ -141,7 +160,7 @@ def _floors_beyond(case: DiskCase, by: tuple[float, float], size: tuple[float, f
                 "type": "rectangle",
                 "name": f"{stage}_{side}",
                 "stage": stage,
-                "corners": (ends[side][0], floor.height + by[1], ends[side][1], size[1]),
+                "corners": (ends[side][0], floor.height, ends[side][1], larger[3]),
             }
         )
         for stage, side, floor in each
@@ -151,14 +170,13 @@ def _floors_beyond(case: DiskCase, by: tuple[float, float], size: tuple[float, f
 
 def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
     """Raise CaseError for holes that reach beyond a side that moves, but for level floors beside a continuum."""
-    planes = dict(zip(SIDES, (0.0, case.packing.extent[0], 0.0, case.packing.extent[1]), strict=True))
     problems = [
         f"hole.{hole.name}: reaches the {side} side, beyond which the case does not say how it goes on, so that the "
         "scene cannot be extended there"
         for hole in case.hole
-        for side, plane in planes.items()
+        for side in SIDES
         if bricks.get(side, 0)
-        and _reaches(hole.box, side, plane)
+        and _reaches(hole.box, side, plane_of(side, case.packing.box))
         and not (side in case.floors and case.side(side).is_outside)
     ]
     if problems:
@@ -167,35 +185,5 @@ def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
 
 def _reaches(box: Box, side: str, plane: float) -> bool:
     """Whether a rectangle reaches a plane (m along its normal), or beyond."""
-    axis = normal_axis(side)
-    return box[2 + axis] >= plane if side in ("right", "top") else box[axis] <= plane
-
-
-def _at_places(case: DiskCase, scene: DiskScene, by: tuple[float, float], size: tuple[float, float]) -> DiskCase:
-    """The case with holes, loads and monitors shifted by (x, y) m, each exactly to its particle's place.
-
-    size : m, of the enlarged scene, beyond which rounding must not bring them.
-    """
-    places = scene.monitored
-
-    def shifted(place: np.ndarray) -> tuple[float, float]:
-        x, y = shifted_place((float(place[0]), float(place[1])), by)
-        return min(x, size[0]), min(y, size[1])
-
-    def shifted_load(load: Load) -> Load:
-        if load.position is not None:
-            (node,), _ = forces_of(load, scene)
-            return load.model_copy(update={"position": shifted(scene.positions[node])})
-        if load.region is None:
-            return load
-        x0, y0, x1, y1 = shifted_box(load.region, by)
-        return load.model_copy(update={"region": (x0, y0, min(x1, size[0]), min(y1, size[1]))})
-
-    return replace(
-        case,
-        hole=tuple(hole.shifted(by) for hole in case.hole),
-        load=tuple(shifted_load(load) for load in case.load),
-        monitor=tuple(
-            monitor.model_copy(update={"position": shifted(places[monitor.name])}) for monitor in case.monitor
-        ),
-    )
+    outermost = plane_of(side, box)
+    return outermost >= plane if is_far(side) else outermost <= plane

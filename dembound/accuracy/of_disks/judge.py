@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any
 
 from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Named
@@ -21,7 +21,7 @@ from dembound.accuracy.proposal import Advice
 from dembound.accuracy.reference import Exact
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
-from dembound.disks.contacts.breaks import BREAK_TIME, BREAK_X, BREAK_Y
+from dembound.disks.contacts.breaks import BREAK_TIME
 from dembound.disks.scene import DiskScene
 
 REALISATIONS = (
@@ -33,7 +33,6 @@ REALISATIONS = (
 class DiskJudge(Judge[DiskCase, DiskScene]):
     """Errors of bonded disks."""
 
-    places: ClassVar[Mapping[str, int]] = {BREAK_X: 0, BREAK_Y: 1}
     first_break = BREAK_TIME
 
     def causes(self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:

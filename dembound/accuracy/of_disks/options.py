@@ -157,8 +157,10 @@ def _wider(plain: DiskOption, companions: Companions) -> Iterator[DiskOption]:
     for wider in WIDER:
         try:
             case = companions.wider(plain.scene, needed, wider)
-            extent = tuple(round(length, 10) for length in case.packing.extent)
-            packing = case.packing.model_copy(update={"size": extent, "bricks": None})
+            extent, origin = (
+                tuple(round(length, 10) for length in lengths) for lengths in (case.packing.extent, case.packing.origin)
+            )
+            packing = case.packing.model_copy(update={"size": extent, "origin": origin, "bricks": None})
             case = checked(replace(case, packing=packing, run=own.run, name=own.name))
         except DemboundError:
             return

@@ -103,7 +103,7 @@ def _with_far_sides(given: Coarser, ratio: float, most: float) -> Pair:
         limited = {side: int(min(count, _limit(smaller.case, side, times))) for side, count in bricks.items()}
         if _count(smaller.case, limited) <= allowed:
             break
-    return Pair(given, ratio, smaller, build(enlarged(smaller, limited)[0]), limited, limited == bricks)
+    return Pair(given, ratio, smaller, build(enlarged(smaller, limited)), limited, limited == bricks)
 
 
 def _limit(case: DiskCase, side: str, times: float) -> float:

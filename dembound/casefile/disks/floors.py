@@ -9,7 +9,6 @@ from dembound.casefile.messages import numbered
 from dembound.holes import Hole
 from dembound.holes.floor import Floor, floor_beside
 from dembound.packings import Packing
-from dembound.packings.base import TYPED
 
 SIDEWAYS = ("left", "right")
 """The sides at which there may be a floor."""
@@ -18,8 +17,7 @@ SIDEWAYS = ("left", "right")
 def floors(holes: Sequence[Hole], packing: Packing, ground: Ground, boundary: Mapping[str, Any]) -> dict[str, Floor]:
     """The floors at the sides of the disks, if these reach the free surface of the ground; see `floor_beside`."""
     top = boundary.get("top", Free())
-    height = packing.extent[1] if ground.size is None else ground.size[1]
-    if not (top and top.is_free) or packing.box[3] < (1.0 - TYPED) * height:
+    if not (top and top.is_free) or "top" in packing.gaps(ground.box(packing)):
         return {}
     found = {side: floor_beside(holes, packing.box, side, 2.0 * packing.radius) for side in SIDEWAYS}
     return {side: floor for side, floor in found.items() if floor is not None}

@@ -1,13 +1,17 @@
 """The ``[ground]`` table, where in the ground monitors and loads may be, and mistakes of a box of disks in it."""
 
+import math
 from collections.abc import Iterator, Mapping
 
 from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.sides import SIDES, is_far, plane_of
 from dembound.casefile.messages import corners
 from dembound.packings import Packing
 from dembound.packings.base import TYPED, Extent
 from dembound.table import Box, Table, quantity
+
+ROUNDING = 1e-12
+"""Part of coordinates by which a place on a rim may be beyond it: sums of coordinates and lengths are rounded."""
 
 
 class Ground(Table):
@@ -16,36 +20,44 @@ class Ground(Table):
     Its free surface is at the top. Without a size the disks fill all of it.
     """
 
-    size: Extent | None = quantity(
-        None, unit="m", means="length", help="width and height of the ground; its surface is at this height"
+    size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the ground")
+    origin: tuple[float, float] = quantity(
+        (0.0, 0.0), unit="m", means="place", help="lower left corner of the ground; its surface is size above"
     )
+
+    def box(self, packing: Packing) -> Box:
+        """Left, bottom, right and top (m) of the ground; without a size those of the disks, which fill it."""
+        if self.size is None:
+            return packing.box
+        (left, bottom), (width, height) = self.origin, self.size
+        return left, bottom, left + width, bottom + height
 
 
 def ground_problems(ground: Ground, packing: Packing, boundaries: Mapping[str, Boundary | None]) -> Iterator[str]:
     """Check a box of disks against the ground that it is a part of; an invalid side is None."""
     if ground.size is None:
-        if packing.origin != (0.0, 0.0):
-            yield "packing.origin: places the disks in the ground, but [ground] has no size; give it"
+        if ground.origin != (0.0, 0.0):
+            yield "ground.origin: [ground] has no size, so that the disks fill it; give ground.size, or packing.origin"
         return
-    width, height = ground.size
-    left, bottom, right, top = packing.box
-    near = TYPED * max(width, height)
-    if left < -near or bottom < -near or right > width + near or top > height + near:
-        ground_is = corners(0.0, 0.0, width, height)
-        yield f"packing.origin: the box of disks is {corners(*packing.box)}, must lie in the ground, {ground_is}"
+    box = ground.box(packing)
+    near = TYPED * max(ground.size)
+    (lowest, lower), (left, bottom), right, top = box[:2], packing.box[:2], packing.box[2], packing.box[3]
+    if left < lowest - near or bottom < lower - near or right > box[2] + near or top > box[3] + near:
+        yield (f"packing.origin: the box of disks is {corners(*packing.box)}, must lie in the ground, {corners(*box)}")
         return
     brick = packing.brick_size[1]
-    for key, value in (("packing.origin", bottom), ("ground.size", height)):
-        rows = value / brick
+    for key, value, begins in (("packing.origin", bottom, lower), ("ground.size", ground.size[1], 0.0)):
+        rows = (value - begins) / brick
         if abs(rows - round(rows)) > TYPED * max(1.0, rows):
+            above = f" above ground.origin at {lower:.10g} m" if begins else ""
             yield (
-                f"{key}: its height, {value:.10g} m, is not a whole number of bricks of {brick:.10g} m; "
-                f"{int(rows) * brick:.10g} or {(int(rows) + 1) * brick:.10g} would be"
+                f"{key}: its height, {value - begins:.10g} m{above}, is not a whole number of bricks of {brick:.10g} m;"
+                f" {begins + int(rows) * brick:.10g} or {begins + (int(rows) + 1) * brick:.10g} would be"
             )
     highest = boundaries.get("top")
-    if highest is not None and highest.is_outside and abs(height - top) <= near:
+    if highest is not None and highest.is_outside and abs(box[3] - top) <= near:
         yield 'boundary.top.type: is "outside", but the disks reach the surface of the ground; it must be "free"'
-    for side, gap in packing.gaps(ground.size).items():
+    for side, gap in packing.gaps(box).items():
         table = boundaries.get(side)
         if not (side in boundaries and (table is None or table.is_outside)):
             yield f'boundary.{side}.type: the ground goes on {gap:g} m beyond this side, so it must be "outside"'
@@ -56,17 +68,17 @@ def reach(ground: Ground, packing: Packing, boundary: Mapping[str, Boundary | No
 
     Above disks that lie deep in the ground the continuum ends at its surface.
     """
-    width, height = ground.size or packing.extent
-    ends = {"left": 0.0, "bottom": 0.0, "right": width, "top": height}
+    box = ground.box(packing)
+    ends, below_surface = {side: plane_of(side, box) for side in SIDES}, "top" in packing.gaps(box)
     for side in SIDES:
         table = boundary.get(side)
-        below_surface = side == "top" and packing.box[3] < (1.0 - TYPED) * height
-        if side in boundary and (table is None or table.is_outside) and not below_surface:
-            ends[side] = float("-inf") if side in ("left", "bottom") else float("inf")
+        if side in boundary and (table is None or table.is_outside) and not (side == "top" and below_surface):
+            ends[side] = float("inf") if is_far(side) else float("-inf")
     return ends["left"], ends["bottom"], ends["right"], ends["top"]
 
 
 def is_in(box: Box, place: tuple[float, float]) -> bool:
-    """Whether a place (m) is in a box or on its rim."""
+    """Whether a place (m) is in a box or on its rim, to rounding."""
+    near = ROUNDING * max((abs(each) for each in box if math.isfinite(each)), default=0.0)
     left, bottom, right, top = box
-    return left <= place[0] <= right and bottom <= place[1] <= top
+    return left - near <= place[0] <= right + near and bottom - near <= place[1] <= top + near

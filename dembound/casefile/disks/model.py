@@ -18,6 +18,7 @@ from dembound.casefile.model import Case
 from dembound.holes import Hole
 from dembound.holes.floor import Floor
 from dembound.packings import Packing
+from dembound.table import Box
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -47,6 +48,16 @@ class DiskCase(Case):
     def size(self) -> tuple[float, float]:
         """Width and height (m) of the ground, or of the disks that fill all of it."""
         return self.packing.extent if self.ground.size is None else self.ground.size
+
+    @property
+    def box(self) -> Box:
+        """Left, bottom, right and top (m) of the ground, or of the disks that fill all of it."""
+        return self.ground.box(self.packing)
+
+    @property
+    def reaches_surface(self) -> bool:
+        """Whether the disks reach the top of the ground."""
+        return "top" not in self.packing.gaps(self.box)
 
     def hole_of(self, load: Load) -> Hole:
         """The hole on whose wall a pressure acts."""
@@ -102,4 +113,5 @@ class DiskCase(Case):
         """The first row of bricks of the disks in the ground, and the number of rows of the ground."""
         if self.ground.size is None:
             return 0, self.packing.copies[1]
-        return self.packing.first_row, round(self.ground.size[1] / self.packing.brick_size[1])
+        brick = self.packing.brick_size[1]
+        return round((self.packing.origin[1] - self.box[1]) / brick), round(self.ground.size[1] / brick)

@@ -22,6 +22,4 @@ class Monitor(Table):
     name: Annotated[FileName, AfterValidator(_is_no_twin)] = quantity(
         ..., unit="1", help="name of the history in the results"
     )
-    position: tuple[float, float] = quantity(
-        ..., unit="m", means="place", help="where, from the scene's lower left corner"
-    )
+    position: tuple[float, float] = quantity(..., unit="m", means="place", help="where, in the coordinates of the case")

@@ -199,7 +199,8 @@ def reference_point(case: DiskCase) -> tuple[float, float]:
     That is the lower one on the side that it comes from.
     """
     assert case.incident is not None
-    return case.incident.point or (0.0 if case.incident.angle >= 0.0 else case.size[0], 0.0)
+    left, bottom, right, _ = case.box
+    return case.incident.point or (left if case.incident.angle >= 0.0 else right, bottom)
 
 
 def _beyond(medium: Medium, table: IncidentWave) -> str:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.boundaries.sides import SIDES, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.hollowed import ON_IT
 from dembound.disks.beyond.settings import Settings, least_element, mesh_of, settings_of
@@ -28,9 +28,6 @@ NARROW = 2.0
 """Width, in elements, up to which waves only run straight away from a periodic body."""
 
 NO_FLOORS: Mapping[str, Floor] = MappingProxyType({})
-
-AT = (0, 2, 1, 3)
-"""Where the edges of the sides are in a box, in the order of `SIDES`."""
 
 
 class ElementSizes(NamedTuple):
@@ -136,9 +133,9 @@ class Rim(NamedTuple):
         low = body.origin + ground.brick.mass_offset
         mass = [*low.tolist(), *(low + size.box).tolist()]
         rim, box, skins, massless = box_of(body), [*mass], {}, {}
-        for number, side in zip(AT, SIDES, strict=True):
+        for side in SIDES:
             if case.side(side).is_free and _is_beside(side, sides):
-                outwards = 1.0 if number > 1 else -1.0
+                number, outwards = normal_axis(side) + 2 * is_far(side), 1.0 if is_far(side) else -1.0
                 skins[side] = ground.skin(side)
                 box[number] = inset(rim, skins)[number]
                 massless[side] = outwards * (mass[number] - box[number])
@@ -222,7 +219,7 @@ def _gap_above(case: DiskCase, body: Assembly) -> float:
     """Height (m) of the ground above a body, 0 if the ground is the body."""
     if case.ground.size is None:
         return 0.0
-    return case.ground.size[1] + 0.5 * float((body.extent - body.size)[1]) - box_of(body)[3]  # with rows that close it
+    return case.box[3] + 0.5 * float((body.extent - body.size)[1]) - box_of(body)[3]  # with rows that close it
 
 
 def _refuse_thin(gap: float, least: float) -> None:
@@ -248,7 +245,7 @@ def _refuse_low(rim: Rim, least: float) -> None:
     least_is = f"at least {least:.4g} m above it, the smallest useful element"
     for low, high in pairwise(order):
         apart = heights[high] - heights[low]
-        if WHOLE * rim.box[3] < apart < least:
+        if WHOLE * (rim.box[3] - rim.box[1]) < apart < least:
             raise CaseError(
                 [
                     f"hole: {high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}; must be "

@@ -119,8 +119,8 @@ class Buried(NamedTuple):
 
 def buried(case: DiskCase, box: Box, sides: Sequence[str]) -> list[Buried]:
     """The holes and forces of a case below its free surface, beside each of the sides left and right of a box, m."""
-    surface = case.size[1]
-    if "top" in sides and case.packing.box[3] > (1.0 - ROUNDING) * surface:
+    surface = case.box[3]
+    if "top" in sides and case.reaches_surface:
         return []
     places = [0.5 * (low + high) for low, high in extents(case)]
     edges = [box[2 * (side == "right")] for side in sides if normal_axis(side) == 0]
@@ -205,7 +205,7 @@ def expected_tops(case: DiskCase, box: Box) -> tuple[float, float] | None:
 
     Without what a skin takes off them.
     """
-    if not case.floors or box[3] < (1.0 - ROUNDING) * case.size[1]:
+    if not case.floors or case.box[3] - box[3] > ROUNDING * case.size[1]:
         return None
     left, right = (case.floors[side].height if side in case.floors else box[3] for side in ("left", "right"))
     return left, right

@@ -95,7 +95,8 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
     rows, copies[axis] = copies[axis], 1
     periodic = [case.side("left").is_periodic, case.side("bottom").is_periodic]
     periodic[axis] = True
-    row = tile(brick, (copies[0], copies[1]), (periodic[0], periodic[1]))
+    low = scene.low + np.eye(2)[axis] * (rows // 2) * brick.size
+    row = tile(brick, (copies[0], copies[1]), (periodic[0], periodic[1]), (float(low[0]), float(low[1])))
     like = _counterparts(scene.assembly, row, axis)
     if like is None or (np.bincount(like, minlength=len(row.radii)) != rows).any():
         return None

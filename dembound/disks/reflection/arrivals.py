@@ -9,7 +9,7 @@ from typing import get_args
 
 import numpy as np
 
-from dembound.boundaries import Motion, axis_of_motion, normal_axis
+from dembound.boundaries import Motion, axis_of_motion, normal_axis, plane_of
 from dembound.casefile.disks import DiskCase
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reflection.bricks import is_outwards
@@ -82,8 +82,8 @@ def _spreading(case: DiskCase, side: str) -> Iterator[Arrival]:
     for name, box in boxes.items():
         axis = normal_axis(side)
         centre = np.array([0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])])
-        away = case.size[axis] - centre[axis] if is_outwards(side) > 0 else centre[axis]
-        along = np.linspace(0.0, case.size[1 - axis], PLACES) - centre[1 - axis]
+        away = is_outwards(side) * (plane_of(side, case.box) - centre[axis])
+        along = np.linspace(case.box[1 - axis], case.box[3 - axis], PLACES) - centre[1 - axis]
         if away <= 0.0:
             continue
         angles = np.degrees(np.arctan2(np.abs(along), away))

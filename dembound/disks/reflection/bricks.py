@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.boundaries import Boundary, Periodic, normal_axis
+from dembound.boundaries import Boundary, Periodic, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
@@ -32,7 +32,7 @@ LAST = 2
 
 def is_outwards(side: str) -> int:
     """1 where a side's normal points along its axis, −1 elsewhere."""
-    return 1 if side in ("right", "top") else -1
+    return 1 if is_far(side) else -1
 
 
 class BrickInRow:
@@ -174,7 +174,7 @@ def end_scene(case: DiskCase, side: str) -> DiskScene:
     copies = [1, 1]
     copies[axis] = LAST
     ends: dict[str, Boundary] = {name: Periodic(type="periodic") for name in lateral}
-    ends[side] = case.side(side).stiffest(side, case.size).at_rest()
+    ends[side] = case.side(side).stiffest(side, case.box).at_rest()
     packing = case.packing.with_copies(*copies)
     return build(
         replace(case, packing=packing, boundary=ends, hole=(), load=(), monitor=(), wave={}, static=None, incident=None)

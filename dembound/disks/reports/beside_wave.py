@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dembound.boundaries import SIDES, Motion, normal_axis
+from dembound.boundaries import SIDES, Motion, is_far, normal_axis
 from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.matching import Held
 from dembound.disks.scene import DiskScene
@@ -99,7 +99,7 @@ class Grid:
     def row(self, side: str) -> np.ndarray:
         """The nodes of a side."""
         numbers = np.arange(self.nodes).reshape(self.cells[1] + 1, self.cells[0] + 1)
-        last = -1 if side in ("right", "top") else 0
+        last = -1 if is_far(side) else 0
         return numbers[last] if normal_axis(side) == self.axis else numbers[:, last]
 
     def weights(self, side: str) -> np.ndarray:
@@ -252,7 +252,7 @@ def _loads(grid: Grid, sides: Sequence[str], ground: Ground) -> dict[str, np.nda
     speed[1:] += ground.v[:-1]
     found = {}
     for side in sides:
-        end, outward = grid.ends[side], 1.0 if side in ("right", "top") else -1.0
+        end, outward = grid.ends[side], 1.0 if is_far(side) else -1.0
         motion = end.damping * 0.5 * speed + end.stiffness * ground.u
         found[side] = -(grid.weights(side) * motion + outward * traction)
     return found

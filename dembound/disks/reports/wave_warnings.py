@@ -176,13 +176,11 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
     factor = 1.0 if load.wave is None else scene.case.wave[load.wave].peak()
     if load.pressure is not None:
         return "its pressure", abs(load.pressure) * factor
-    low, high = np.zeros(2), scene.size
-    if load.region is not None:
-        low, high = np.array(load.region[:2]), np.array(load.region[2:])
+    size = scene.size if load.region is None else np.subtract(load.region[2:], load.region[:2])
     extent = np.abs(load.vector) * factor
     if load.acceleration is not None:
-        return "its stress ρaL", float(scene.ground.density * (extent * (high - low)).max())
-    widths = (high - low)[::-1] if load.region is not None else np.full(2, scene.ground.brick.mean_diameter)
+        return "its stress ρaL", float(scene.ground.density * (extent * size).max())
+    widths = size[::-1] if load.region is not None else np.full(2, scene.ground.brick.mean_diameter)
     return "its force over the width it acts on", float((extent / widths).max())
 
 

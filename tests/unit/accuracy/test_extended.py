@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.extended import extended
+from dembound.accuracy.of_disks.extended import _floors_beyond
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import checked, load
@@ -35,38 +36,66 @@ def field(bar):
     return make
 
 
-def at(scene, nodes, shift):
-    """Place of particles less a shift, and the disk of the brick."""
-    return scene.positions[nodes] - shift, scene.assembly.brick_particle[nodes]
+def at(scene, nodes):
+    """Place of particles, and the disk of the brick."""
+    return scene.positions[nodes], scene.assembly.brick_particle[nodes]
 
 
 @pytest.mark.parametrize("pattern", ["A", "B", "C"])
-def test_all_is_at_its_place_on_its_particles(field, pattern) -> None:
-    random = {"pattern": pattern, "size": [10.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+def test_all_stays_at_its_place_on_its_particles(field, pattern) -> None:
+    random = {"pattern": pattern, "size": [10.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 2.5]}
     if pattern == "C":
         random["edge_radius"] = 0.26
     case = field({} if pattern == "A" else {"packing": random})
-    small, large = build(case), build(checked(extended(case).case))
-    shift = large.size - small.size
-    right = large.positions[large.monitors["b"], 0] - small.positions[small.monitors["b"], 0]
-    shift[0] = right
+    found = extended(case)
+    small, large = build(case), build(checked(found.case))
+    beyond = np.concatenate([small.low - large.low, large.low + large.size - small.low - small.size])
 
-    assert 0.0 < shift[0] < large.size[0] - small.size[0]
-    assert shift[1] > 0.0
-    np.testing.assert_allclose(np.array(shift) / case.packing.brick_size % 1.0 % (1.0 - 1e-9), 0.0, atol=1e-9)
-    np.testing.assert_allclose(extended(case).inside, [*shift, *(shift + small.size)])
+    assert (beyond[:3] > 0.0).all()
+    assert beyond[3] == pytest.approx(0.0, abs=1e-9)  # the top is free
+    bricks = beyond / np.tile(case.packing.brick_size, 2)
+    np.testing.assert_allclose(bricks, np.rint(bricks), atol=1e-9)
+    assert found.inside == case.packing.box
+    for table in ("hole", "load", "boundary", "wave"):
+        assert getattr(found.case, table) == getattr(case, table)
+    assert found.case.monitor[0] == case.monitor[0]
+    # in the lower right corner new disks of a random packing are nearer than its own
+    assert (found.case.monitor[1] == case.monitor[1]) == (pattern != "B")
     for name, node in small.monitors.items():
-        (here, twin), (there, its) = at(small, node, 0.0), at(large, large.monitors[name], shift)
+        (here, twin), (there, its) = at(small, node), at(large, large.monitors[name])
         np.testing.assert_allclose(there, here, atol=1e-9)
         assert twin == its
     for table in ("drive", "drive_signal"):
         driven = getattr(small.supports, table), getattr(large.supports, table)
         np.testing.assert_allclose(np.sort(driven[0]), np.sort(driven[1]), rtol=1e-12)
-    inside = ((large.positions > shift - 1e-9) & (large.positions < shift + small.size + 1e-9)).all(axis=1)
+    inside = ((large.positions > -1e-9) & (large.positions < small.size + 1e-9)).all(axis=1)
     assert np.count_nonzero(inside) >= small.count  # disks that the cut severed are connected again
     assert np.count_nonzero(inside) - small.count <= 0.02 * small.count
-    source = extended(case).case.boundary["right"].source
-    assert source == pytest.approx((3.25 + shift[0], 2.25 + shift[1]), rel=1e-12)
+
+
+def test_rounding_does_not_decide_where_loads_and_monitors_are(field) -> None:
+    """Edges of a region on centres of disks, monitors half-way between two: the disks are the same in both scenes.
+
+    Disks of 0.1 m: sums of their places are rounded otherwise in every scene.
+    """
+    load = REGION | {"position": None, "region": [2.15, 1.05, 2.75, 1.65]}
+    places = [[0.1 * k, 0.1 * k + 0.05] for k in range(1, 25)]
+    case = field(
+        {
+            **{"packing": {"pattern": "A", "size": [3.0, 3.0], "radius": 0.05}, "hole": []},
+            "load": [{key: value for key, value in load.items() if value is not None}],
+            "boundary": {"left": {"type": "viscous"}, "bottom": {"type": "viscous"}, "right": {"type": "fixed"}},
+            "monitor": [{"name": f"m{k}", "position": place} for k, place in enumerate(places)],
+            "run.duration": 0.003,
+        }
+    )
+    scenes = build(case), build(checked(extended(case).case))
+    loaded = [np.unique(scene.supports.node[scene.supports.drive_row]) for scene in scenes]
+
+    assert scenes[1].low.max() < 0.0
+    assert len(loaded[0]) == len(loaded[1]) == 7 * 7
+    for name, place in scenes[0].monitored.items():
+        np.testing.assert_allclose(scenes[1].monitored[name], place, rtol=0.0, atol=1e-9)
 
 
 def test_other_sides_move_where_the_case_calls_them_artificial(bar) -> None:
@@ -91,7 +120,8 @@ def test_sides_that_are_physical_stay(bar) -> None:
     middle = build(found.case).positions[build(found.case).monitors["middle"], 0]
     needed = 0.5 * (50.0 + 10.0 * np.cbrt(50.0 * 0.25 / 8.0) + middle)
     assert wide == pytest.approx(0.5 * np.ceil(2.0 * needed), rel=1e-12)
-    assert found.case.monitor[0].position[0] == pytest.approx(middle, rel=1e-12)
+    assert middle == 4.75
+    assert found.case.monitor[0].position == (5.0, 0.5)  # half-way to the next disk
     assert found.sentence == (
         f"reference: the same scene {wide:g} m × 1 m, {int(4 * wide):,} particles, from which nothing returns "
         "before 0.05 s"
@@ -115,9 +145,11 @@ def test_a_scene_large_enough_is_left_alone_and_one_far_too_large_refused(bar) -
     with pytest.raises(CaseError, match=r"run\.duration: is 10 s.* only in a scene of 50..(\.5)? m × 1 m with 20,1"):
         extended(bar({"boundary.left": GRIP, "run.duration": 10.0}), most=1000)
     sides = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
-    said = r"^ground\.size: the scene cannot be extended, .* --reference finest, .* packing\.size = \[30, 5\]"
+    instead = r".* packing\.size = \[30, 5\], packing\.origin = \[-4, 2\], no \[ground\]"
+    said = r"^ground\.size: the scene cannot be extended, .* --reference finest," + instead
+    ground = {"ground.size": [30.0, 5.0], "ground.origin": [-4.0, 2.0], "packing.origin": [6.0, 2.0]}
     with pytest.raises(CaseError, match=said):
-        extended(bar({**FIELD, "boundary": sides, "ground.size": [30.0, 5.0], "packing.origin": [10.0, 0.0]}))
+        extended(bar({**FIELD, "boundary": sides, "monitor": [], **ground}))
 
 
 def test_where_waves_enter_a_side_stays_and_is_named(bar) -> None:
@@ -150,8 +182,8 @@ def test_sides_of_a_continuum_under_waves_from_below_move_as_free_fields_do(bar)
         extended(bar({**FIELD, "hole": [HOLE], "boundary": sides, "run.duration": 0.03}))
         for sides in (outside, free_field)
     )
-    assert around.inside == beside.inside
-    assert around.inside[0] > 0.0
+    assert around.case.packing.box == beside.case.packing.box
+    assert around.case.packing.box[0] < 0.0
     assert around.case.packing == beside.case.packing
     assert around.sentence.endswith(
         "bottom stays, as waves enter there, before a continuum, which returns next to nothing"
@@ -219,10 +251,18 @@ def test_monitors_and_loads_in_a_continuum_are_at_disks_of_the_larger_scene(bar)
     assert len(small.between) == 2
     assert not large.between
     for name, place in large.monitored.items():
-        np.testing.assert_allclose(place - found.inside[:2], small.monitored[name], atol=1e-9)
-    (load,) = found.case.load
-    np.testing.assert_allclose(np.reshape(load.region, (2, 2)) - found.inside[:2], [[9.0, 3.5], [11.5, 4.0]], atol=1e-9)
+        np.testing.assert_allclose(place, small.monitored[name], atol=1e-9)
+    assert found.case.load == case.load
     assert f"{large.disk_count:,} particles" in found.sentence
+
+
+def test_a_floor_goes_on_to_the_left(bar) -> None:
+    slope = {"name": "slope", "type": "polygon", "points": [[6.0, 11.0], [4.0, 6.0], [-1.0, 6.0], [-1.0, 11.0]]}
+    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    case = bar({"packing.size": [10.0, 10.0], "motion.held": [], "boundary": sides, "hole": [slope], "monitor": []})
+    (floor,) = _floors_beyond(case, (-7.0, -3.0, 12.0, 10.0))
+
+    assert floor.corners == pytest.approx((-7.0, 6.0, 0.0, 10.0), abs=1e-9)
 
 
 @pytest.mark.parametrize("stage", ["before", "after"])
@@ -241,15 +281,15 @@ def test_the_floor_of_a_slope_goes_on_beyond_a_continuum(bar, stage) -> None:
         changes["static"] = {"boundary": held}
     case = bar(changes)
     larger = extended(case)
-    left, bottom, right, _ = larger.inside
-    made = build(larger.case)
+    made, (left, bottom, right, _) = build(larger.case), larger.case.packing.box
 
-    assert right < larger.case.packing.extent[0]
+    assert right > 10.0
+    assert max(left, bottom) < 0.0
     x, y = made.assembly.positions.T
-    assert y[x > left + 6.0].max() < bottom + 6.0
-    assert y[x < left + 4.0].max() > bottom + 9.5
+    assert y[x > 6.0].max() < 6.0
+    assert y[x < 4.0].max() > 9.5
     assert checked(larger.case).floors.keys() == {"right"}
-    assert made.outside.levels["right"].surface == pytest.approx(bottom + 6.0, abs=1e-9)
+    assert made.outside.levels["right"].surface == pytest.approx(6.0, abs=1e-9)
     assert (made.before is None) == (stage == "before")
     if stage == "after":
         assert not made.before.outside.levels

@@ -99,7 +99,7 @@ def test_disks_that_a_side_cuts_loose_stand_in_the_column_and_others_are_refused
 
 def test_a_column_of_more_rows_than_the_body_has_its_twins_at_the_same_height(dense_brick):
     body = tile(dense_brick, (2, 3), OPEN, (30.0, 2 * dense_brick.size[1]))
-    joint, seam = with_column(dense_brick, body, BOTH, rows=(2, 7), left=-5.0)
+    joint, seam = with_column(dense_brick, body, BOTH, rows=(2, 7), beside=(-5.0, 0.0))
     count = seam.count
     assert count == joint.column.disks == len(tile(dense_brick, (1, 7), (True, False)).radii)
     assert joint.column.copies == (1, 7)

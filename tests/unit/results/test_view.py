@@ -9,9 +9,13 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib import image
+from small_cases import PUSHED, small
+from translated import translated
 
 from dembound.errors import CaseError, DemboundError
+from dembound.motion.simulation import Simulation
 from dembound.results import view as module
+from dembound.results.recorder import Recorder
 from dembound.results.view import (
     disk_mesh,
     extent_of,
@@ -22,6 +26,7 @@ from dembound.results.view import (
     require_rendering,
     view,
 )
+from dembound.running import plan
 
 
 def test_every_disk_is_a_polygon_as_wide_and_high_as_itself():
@@ -73,6 +78,15 @@ def test_without_a_continuum_the_extent_is_that_of_the_disks(small_run):
     with h5py.File(small_run) as file:
         assert len(meshes_of(file)) == 1
         np.testing.assert_array_equal(extent_of(file), [[0.0, 0.0], [10.0, 2.5]])
+
+
+def test_the_extent_begins_where_the_disks_do(tmp_path):
+    planned = plan(translated(small(PUSHED), (-3.0, 2.0)))
+    simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
+    with Recorder(tmp_path / "run.h5", simulation, planned.step_limit):
+        pass
+    with h5py.File(tmp_path / "run.h5") as file:
+        np.testing.assert_array_equal(extent_of(file), [[-3.0, 2.0], [7.0, 4.5]])
 
 
 def test_without_opengl_there_is_one_line_instead_of_a_crash(small_run, spalled_run, tmp_path, monkeypatch):

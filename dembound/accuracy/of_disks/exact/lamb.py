@@ -113,7 +113,7 @@ def _away(scene: DiskScene, load: LineLoad, name: str, place: np.ndarray) -> flo
     """Distance (m) of a monitor to the right of the load; raises CaseError where there is no solution."""
     if name not in scene.between:
         _must_be_on_top(scene, scene.monitors[name], f"monitor.{name}.position")
-    elif place[1] < scene.case.size[1] - scene.ground.brick.mean_diameter:
+    elif place[1] < scene.case.box[3] - scene.ground.brick.mean_diameter:
         raise CaseError([f"monitor.{name}.position: {ON_TOP}"])
     away = float(place[0]) - load.x
     if away == 0.0:
@@ -132,9 +132,9 @@ def _line_load(scene: DiskScene) -> LineLoad:
     node = int(forces_of(load, scene)[0][0])
     _must_be_on_top(scene, node, f"load.{load.name}.position")
     x, factor = float(scene.assembly.positions[node, 0]), 1.0
-    for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):
+    for side in ("left", "right"):
         if case.side(side).is_mirror and node in scene.edges[side].nodes:
-            x, factor = plane, 2.0
+            x, factor = scene.plane(side), 2.0
     return LineLoad(x, -factor * load.force[1], load.wave)
 
 
@@ -156,8 +156,8 @@ def _disturbed(case: DiskCase) -> Iterator[str]:
 def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:
     """Sides so near that the body is a quarter space with the load at its corner; a mirror side is at distance zero."""
     reach = np.abs(monitored(scene)[:, 0] - load.x).max(initial=0.0)
-    for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):
-        away = abs(plane - load.x)
+    for side in ("left", "right"):
+        away = abs(scene.plane(side) - load.x)
         if side in scene.edges and not scene.case.side(side).is_outside and 0.0 < away < CORNER * reach:
             yield (
                 f"load: is {away:.3g} m from the {side} side and {reach:.3g} m from a monitor, which makes a quarter "

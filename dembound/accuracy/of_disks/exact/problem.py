@@ -108,7 +108,7 @@ def surface_of(scene: DiskScene) -> float | None:
         surface = scene.outside.free_surface
         return None if surface is None else surface[0]
     top = scene.case.side("top")
-    return scene.case.size[1] if top.is_free and not top.is_artificial else None
+    return scene.case.box[3] if top.is_free and not top.is_artificial else None
 
 
 def hole_of(scene: DiskScene) -> Circle:

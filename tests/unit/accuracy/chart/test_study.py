@@ -239,11 +239,11 @@ def test_an_extended_scene_lets_waves_in_through_the_continuum_of_a_choice(bar, 
 
 
 def test_places_in_an_extended_scene_are_those_in_the_case() -> None:
-    found = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
-    shifted = reference._shifted(found, (200.0, 2.0, 240.0, 22.0), DiskJudge.places)
-    assert {name: value for name, (value, _) in shifted.items()} == {"break time": 0.1, "break x": 3.0, "break y": 3.0}
-    spall = {"spall place": Finding(1.5, "m")}
-    assert reference._shifted(spall, (1.0, 0.0, 2.0, 0.0), BarJudge.places)["spall place"].value == 0.5
+    broken = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
+    assert reference._from_own_end(broken, -8.0, DiskJudge.from_left_end) == broken  # disks stay at their places
+    spall = {"spall time": Finding(0.1, "s"), "spall place": Finding(1.5, "m")}
+    found = reference._from_own_end(spall, 1.0, BarJudge.from_left_end)
+    assert [value for value, _ in found.values()] == [0.1, 0.5]
 
 
 def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:

@@ -40,13 +40,28 @@ def problems(**words) -> list[str]:
 def test_a_box_in_the_ground() -> None:
     packing = case().packing
     assert packing.box == (20.0, 10.0, 40.0, 30.0)
-    assert packing.first_row == 1
+    assert case().column_rows == (1, 4)
     assert case().size == (60.0, 40.0)
     assert case(box="size = [20.0, 20.0]\n", ground="", sides=()).size == (20.0, 20.0)
 
 
-def test_an_origin_needs_ground() -> None:
-    assert problems(ground="") == ["packing.origin: places the disks in the ground, but [ground] has no size; give it"]
+def test_disks_and_ground_may_begin_anywhere() -> None:
+    filled = case(ground="", box="size = [20.0, 20.0]\norigin = [-30.0, 7.0]\n", sides=())
+    assert filled.box == filled.packing.box == (-30.0, 7.0, -10.0, 27.0)
+    assert filled.size == (20.0, 20.0)
+    assert filled.column_rows == (0, 2)
+
+    moved = case(box="size = [20.0, 20.0]\norigin = [-17.0, -23.0]\n", ground=GROUND + "origin = [-37.0, -33.0]\n")
+    assert moved.box == (-37.0, -33.0, 23.0, 7.0)
+    assert moved.column_rows == case().column_rows
+    assert not moved.reaches_surface
+    assert case(box="size = [20.0, 20.0]\norigin = [20.0, 20.0]\n", sides=ALL[:3]).reaches_surface
+
+
+def test_an_origin_of_the_ground_needs_its_size() -> None:
+    assert problems(ground="[ground]\norigin = [-5.0, 0.0]\n", sides=()) == [
+        "ground.origin: [ground] has no size, so that the disks fill it; give ground.size, or packing.origin"
+    ]
 
 
 def test_the_box_lies_in_the_ground() -> None:
@@ -63,6 +78,11 @@ def test_heights_are_whole_bricks() -> None:
     ]
     assert problems(ground="[ground]\nsize = [60.0, 45.0]\n") == [
         f"ground.size: its height, 45 {said}; 40 or 50 would be"
+    ]
+    moved = {"ground": GROUND + "origin = [0.0, -3.0]\n", "box": "size = [20.0, 20.0]\norigin = [20.0, 9.0]\n"}
+    assert problems(**moved) == [
+        "packing.origin: its height, 12 m above ground.origin at -3 m, is not a whole number of bricks of 10 m; "
+        "7 or 17 would be"
     ]
     assert case(box="size = [20.0, 20.0]\norigin = [17.3, 10.0]\n").packing.origin[0] == 17.3  # sideways it may be any
 
@@ -89,6 +109,10 @@ def test_the_reach_of_monitors_and_loads() -> None:
     assert found() == (-FAR, -FAR, FAR, 40.0)  # beside the ground too, above it nowhere
     assert found(box="size = [20.0, 20.0]\norigin = [0.0, 20.0]\n", sides=("right", "bottom")) == (0.0, -FAR, FAR, 40.0)
     assert found(box="size = [20.0, 20.0]\n", ground="", sides=("top",)) == (0.0, 0.0, 20.0, FAR)
+    away = "size = [20.0, 20.0]\norigin = [-30.0, -10.0]\n"
+    assert found(box=away, ground="", sides=("left",)) == (-FAR, -10.0, -10.0, 10.0)
+    assert found(box=away, ground=GROUND + "origin = [-50.0, -20.0]\n") == (-FAR, -FAR, FAR, 20.0)
     assert is_in((0.0, 0.0, 1.0, 2.0), (1.0, 2.0))
+    assert is_in((-0.9, 0.0, -0.9 + 1.2, 2.0), (0.3, 1.0))  # the sum is 0.29999999999999993
     assert not is_in((0.0, 0.0, 1.0, 2.0), (1.1, 2.0))
     assert not is_in((0.0, 0.0, 1.0, 2.0), (0.5, -0.1))

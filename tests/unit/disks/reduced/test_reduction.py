@@ -53,6 +53,7 @@ def test_rows_that_move_identically_are_stepped_as_one(scene, changes) -> None:
     assert row.whole is whole
     assert row.count == 20
     assert row.weight == pytest.approx(4.0, rel=1e-15)
+    assert row.low.tolist() == [0.0, 1.0]  # of the third of four rows
     assert row.reduced == ("rows: 4 identical rows are stepped as one, 20 of 80 disks",)
 
 

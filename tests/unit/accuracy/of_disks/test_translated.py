@@ -1,0 +1,157 @@
+"""What is derived from places of a case, without a run, is the same for a case that is moved as a whole."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_cases import Tables, small
+from translated import translated
+
+from dembound.accuracy.extended import extended
+from dembound.accuracy.of_disks.arrangements import _with_monitors
+from dembound.accuracy.of_disks.boxes import box_tables, boxes
+from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.exact import problem_of
+from dembound.accuracy.of_disks.exact.lamb import LambProblem
+from dembound.casefile import Case
+from dembound.disks.reflection.arrivals import arrivals_of
+from dembound.disks.scene import build
+from dembound.disks.trials import _reduced
+from dembound.errors import CaseError
+from dembound.kinds import checked, with_changes
+
+BY = np.array([-37.5, -11.25])
+"""m, not of whole diameters."""
+
+LAMB: Tables = {
+    "packing": {"pattern": "A", "size": [40.0, 30.0], "radius": 0.5},
+    "material": {"density": 2500.0, "p_wave_speed": 300.0, "fric": 0.5},
+    "boundary": {"left": {"type": "symmetry"}, "right": {"type": "viscous"}, "bottom": {"type": "viscous"}},
+    "wave": {"pulse": {"type": "cubic_spline", "amplitude": 1.0, "period": 0.1}},
+    "load": [{"name": "hammer", "force": [0.0, -2e5], "position": [0.0, 30.0], "wave": "pulse"}],
+    "monitor": [{"name": "receiver", "position": [10.5, 30.0]}, {"name": "other", "position": [25.5, 30.0]}],
+    "run": {"duration": 0.15},
+}
+SOURCE = {"type": "viscoelastic", "source": [20.0, 2.0]}
+FORCE = LAMB | {
+    "boundary": {"left": SOURCE, "right": {"type": "viscous"}, "bottom": {"type": "viscous"}},
+    "load": [{"name": "hammer", "force": [0.0, -2e5], "position": [20.0, 30.0], "wave": "pulse"}],
+}
+BLAST = FORCE | {
+    "hole": [{"name": "shaft", "type": "circle", "centre": [16.0, 14.0], "radius": 2.5}],
+    "load": [{"name": "blast", "pressure": 1e6, "hole": "shaft", "wave": "pulse"}],
+}
+
+
+@pytest.fixture(params=[LAMB, FORCE, BLAST], ids=["symmetry", "force", "blast"])
+def both(request) -> tuple[Case, Case]:
+    case = small(request.param)
+    return case, translated(case, tuple(BY))
+
+
+def places_of(case) -> np.ndarray:
+    """All places of a case (k, 2) m."""
+    values = [each.position for each in (*case.monitor, *case.load) if each.position is not None]
+    values += [load.region for load in case.load if load.region is not None]
+    values += [hole.box for hole in case.hole] + [case.packing.box, case.box]
+    return np.concatenate([np.reshape(value, (-1, 2)) for value in values])
+
+
+def test_the_same_scene_is_extended_by_as_much(both) -> None:
+    own, other = (extended(case) for case in both)
+
+    assert own.case.packing.copies == other.case.packing.copies
+    np.testing.assert_array_equal(places_of(other.case), places_of(own.case) + BY)
+    assert other.sentence == own.sentence
+    everywhere, there = (extended(replace(case, monitor=())).case.packing for case in both)
+    assert everywhere.copies == there.copies
+
+
+def test_larger_disks_are_at_the_same_places(both) -> None:
+    """In ground that they do not fill in whole cells, so that places move with its sides."""
+    wide = {"name": "wide", "force": [1e5, 0.0], "region": [3.0, 3.0, 9.0, 7.0], "wave": "pulse"}
+    case = with_changes(both[0], {"packing.size": [41.0, 31.0], "load": [wide]})
+    own, other = (coarser(each, build(each), 1e-4, 1.3).case for each in (case, translated(case, tuple(BY))))
+
+    assert own.size[1] != pytest.approx(31.0, rel=1e-3)
+
+    np.testing.assert_allclose(places_of(other), places_of(own) + BY, rtol=0.0, atol=1e-12)
+
+
+def test_exact_solutions_are_as_far_from_loads_and_hold_as_long(both) -> None:
+    own, other = (problem_of(build(case)) for case in both)
+
+    assert type(own) is type(other)
+    assert own.until == pytest.approx(other.until, rel=1e-12)
+    if isinstance(own, LambProblem):
+        assert isinstance(other, LambProblem)
+        assert other.away == own.away
+        assert own.load.force == (4e5 if both[0].side("left").is_mirror else 2e5)
+    else:
+        assert other.blast.surface == own.blast.surface + BY[1]
+
+
+def test_loads_near_a_side_have_no_exact_solution_wherever_they_are() -> None:
+    case = small(FORCE, changes={"load.hammer.position": [39.0, 30.0]})
+    for each in (case, translated(case, tuple(BY))):
+        with pytest.raises(CaseError, match=r"^load: is 1\.5 m from the right side"):
+            problem_of(build(each))
+
+
+def test_what_reaches_sides_and_how_stiff_they_are(both) -> None:
+    for side in ("left", "right", "bottom"):
+        own, other = (arrivals_of(case, side, build(case).ground) for case in both)
+        assert [each.name for each in own] == [each.name for each in other]
+        for one, another in zip(own, other, strict=True):
+            np.testing.assert_allclose(another.angles, one.angles, atol=1e-9)
+            np.testing.assert_allclose(another.shares, one.shares, atol=1e-12)
+    springs = [case.side("left").stiffest("left", case.packing.box) for case in both]
+    assert springs[0] == springs[1]
+    if both[0].side("left").type == "viscoelastic":
+        assert springs[0].distance == 20.0
+
+
+@pytest.mark.parametrize("height", [20.0, 50.0])
+def test_boxes_and_their_tables_are_in_the_ground_at_its_place(height) -> None:
+    """Deep in the ground, and so near its surface that the disks reach up to this."""
+    shaft = BLAST["hole"][0] | {"centre": [16.0, height]}
+    case = small(BLAST | {"packing": BLAST["packing"] | {"size": [80.0, 60.0]}, "hole": [shaft], "monitor": []})
+    watched = with_changes(case, {"monitor": [{"name": "corner", "position": [79.7, 59.7]}]})
+    moved = translated(case, tuple(BY))
+    own, other = (list(boxes(build(each))) for each in (case, moved))
+
+    assert own
+    assert [each[1:] for each in own] == [each[1:] for each in other]
+    for one, another in zip(own, other, strict=True):
+        np.testing.assert_array_equal(another.box, np.add(one.box, np.tile(BY, 2)))
+        both = ((watched, one.box), (translated(watched, tuple(BY)), another.box))
+        wide, there = (_with_monitors(*each) for each in both)
+        np.testing.assert_array_equal(there, np.add(wide, np.tile(BY, 2)))
+    tables, given = box_tables(moved, other[-1].box), box_tables(case, own[-1].box)
+    assert tables.keys() == given.keys()
+    assert ("boundary.top" in tables) == (height == 20.0)
+    assert tables["ground"] == {"size": [80.0, 60.0], "origin": BY.tolist()}
+    assert given["ground"] == {"size": [80.0, 60.0]}
+    packing = {f"packing.{key}": value for key, value in tables.pop("packing").items()}
+    made = checked(with_changes(moved, tables | packing))
+    assert made.box == moved.box
+    assert build(made).outside is not None
+
+
+def test_monitors_under_waves_from_a_side_are_at_the_same_places_of_larger_disks() -> None:
+    driven = {"left": {"type": "viscous_input", "wave_p": "pulse"}, "right": {"type": "viscous"}}
+    case = small(LAMB | {"packing": LAMB["packing"] | {"size": [41.0, 30.0]}, "boundary": driven, "load": []})
+    own, other = (Companions(each, build(each), 1e-3, 1e5) for each in (case, translated(case, tuple(BY))))
+
+    for name, place in own._places(own.scene).items():
+        np.testing.assert_allclose(other._places(other.scene)[name], place + BY, rtol=0.0, atol=1e-12)
+
+
+def test_a_trial_of_fewer_bricks_has_the_stiffest_springs_of_the_whole_side() -> None:
+    case = small(FORCE | {"packing": FORCE["packing"] | {"size": [300.0, 200.0]}, "load": [], "monitor": []})
+    own, other = (_reduced(each)[0] for each in (case, translated(case, tuple(BY))))
+
+    assert own.packing.copies == other.packing.copies != case.packing.copies
+    assert own.side("left") == other.side("left")
+    assert own.side("left").distance == 20.0
