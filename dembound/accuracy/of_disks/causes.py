@@ -20,7 +20,7 @@ from dembound.accuracy.runner import Runner
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
 from dembound.casefile.disks import DiskCase
-from dembound.disks.reports.continuum_facts import expected_errors
+from dembound.disks.reports.continuum_errors import expected_errors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.errors import DemboundError
@@ -87,7 +87,7 @@ class _Disks:
 
     def _without_formula(self) -> Iterator[str]:
         """Causes for which a formula needs more than the case has."""
-        if self.scene.outside is not None and expected_errors(self.scene) is None:
+        if self.scene.outside is not None and expected_errors(self.scene, {}) is None:
             yield "continuum: its elements are judged by the highest frequency of waves, and a wave that jumps has none"
         if not any(self._ways(own) for own in self.recorded.values()):
             yield "grid and time step: waves start everywhere"
@@ -129,9 +129,13 @@ class _Disks:
 
     def _sides(self) -> Iterator[Cause]:
         """The errors of sides beyond which there is a continuum, and of those that waves enter through."""
-        if (sizes := expected_errors(self.scene)) is not None:
-            same = {name: dict(zip(MOTIONS, sizes, strict=True)) for name in self.recorded}
-            yield Cause(CONTINUUM, "by the formulas of its elements, layers and ties", same)
+        places = {name: own.place for name, own in self.recorded.items()}
+        if (sizes := expected_errors(self.scene, places)) is not None:
+            yield Cause(
+                CONTINUUM,
+                "by the formulas of its elements, layers and ties",
+                {name: dict(zip(MOTIONS, each, strict=True)) for name, each in sizes.items()},
+            )
         for side, waves in self.case.driving.items():
             table = self.case.side(side)
             if not table.factors:
