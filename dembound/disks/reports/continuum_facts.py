@@ -112,7 +112,7 @@ def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -
     error = max(choice.element_error(signals, body.medium, order, side), near_error(scene, outside))
     return (
         f"{order * length / side:.3g} nodes in the shortest wavelength, {length:.3g} m ({100.0 * choice.SHARE:g} % of "
-        f"the energy is above {beyond:.3g} Hz); expected error of velocities {percent(min(error, 1.0))}"
+        f"the energy is above {beyond:.3g} Hz); error of velocities at most {percent(min(error, 1.0))}"
         f"{_as_small(scene, error)}"
     )
 
