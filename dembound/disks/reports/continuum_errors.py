@@ -57,11 +57,11 @@ SCATTERED = 0.5
 """Part of waves that enter through a continuum that leaves through it again."""
 
 UNEVEN = 0.002
-"""Error of displacements beside a random packing, whose stiffness varies from place to place."""
+"""Error of displacements round a load in a random packing, whose stiffness varies from place to place."""
 
 CONTINUUM_FACTOR = 3.0
-"""95 % of the true errors are within this factor of those here (benchmarks/continuum_errors.py): of 448 rows round loads
-and pressures 99 %; of 36 under waves whose errors are above 0.01 % 86 %, beside finer elements. Smaller ones of
+"""95 % of the true errors are within this factor of those here (benchmarks/continuum_errors.py): of 448 rows round
+loads and pressures 99 %; of 36 under waves whose errors are above 0.01 % 86 %, beside finer elements. Smaller ones of
 displacements under waves are overestimated, up to twenty times."""
 
 
@@ -75,7 +75,7 @@ def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[
     if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
         return None
     parts = [_parts(scene, outside, signals, lowest) for lowest in (math.inf, 1.0 / scene.case.run.duration)]
-    if not scene.case.packing.is_lattice:
+    if scene.case.load and not scene.case.packing.is_lattice:
         parts[1] = parts[1]._replace(alike=math.hypot(parts[1].alike, UNEVEN))
     leaving, depth = 1.0 if scene.case.load else SCATTERED, _shallow(outside, signals)
     found = {}
