@@ -4,9 +4,9 @@
 
 Boxes round a load and round a hole with a pressure, in the ground and under a free surface, flat and deep ones, and
 boxes of ground with a hole under waves from below and at an angle. The truth is the motion of the same disks where
-those of the box go on so far that nothing returns, or, under waves, in the same box with finer elements and more layers:
-in a larger one the disks would disperse the waves that come in over a longer way. RMS over RMS, of the component with
-the largest value.
+those of the box go on so far that nothing returns, or, under waves, in the same box with finer elements and more
+layers: in a larger one the disks would disperse the waves that come in over a longer way. RMS over RMS, of the component
+with the largest value.
 """
 
 import sys
@@ -177,6 +177,5 @@ if __name__ == "__main__":
     ratios = np.array([row["ratio"] for row in all_rows])
     known = ratios[[row["true"] >= LEAST for row in all_rows]]
     within = np.mean(np.abs(np.log(known)) <= np.log(3.0))
-    print(
-        f"\n{len(known)} rows from {LEAST:g} % on, {100.0 * within:.1f} % within a factor 3; median {np.median(known):.2f}"
-    )
+    found = f"{100.0 * within:.1f} % within a factor 3; median {np.median(known):.2f}"
+    print(f"\n{len(known)} rows from {LEAST:g} % on, {found}")
