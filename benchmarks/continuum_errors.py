@@ -5,8 +5,8 @@
 Boxes round a load and round a hole with a pressure, in the ground and under a free surface, flat and deep ones, and
 boxes of ground with a hole under waves from below and at an angle. The truth is the motion of the same disks where
 those of the box go on so far that nothing returns, or, under waves, in the same box with finer elements and more
-layers: in a larger one the disks would disperse the waves that come in over a longer way. RMS over RMS, of the component
-with the largest value.
+layers: in a larger one the disks would disperse the waves that come in over a longer way. RMS over RMS, of the
+component with the largest value.
 """
 
 import sys
