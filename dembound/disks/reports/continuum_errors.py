@@ -60,7 +60,7 @@ UNEVEN = 0.002
 """Error of displacements round a load in a random packing, whose stiffness varies from place to place."""
 
 CONTINUUM_FACTOR = 3.0
-"""95 % of the true errors are within this factor of those here (benchmarks/continuum_errors.py): of 448 rows round
+"""95 % of the true errors are within this factor of those here (benchmarks/continuum_errors.py): of 464 rows round
 loads and pressures 99 %, of 47 under waves whose errors are 0.01 % and more 94 %. Smaller ones of displacements under
 waves are overestimated, up to twelve times."""
 
