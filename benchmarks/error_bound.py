@@ -5,8 +5,8 @@
 
 The reference of a scene is a larger one, from whose sides nothing returns. It is run with its own disks and with a
 third of their diameter, whose particles include the places of the first. As the errors of both are in the ratio 9 : 1,
-the motion is extrapolated to (9 u_fine - u_own)/8. Where waves enter at particles of a side these are at another place
-with smaller disks, and times are shifted by the way between.
+the motion is extrapolated to (9 u_fine - u_own)/8; beside holes, whose walls err in the first order, to (3 u_fine -
+u_own)/2. Times count from when waves enter: with other disks, or beside a continuum, all motion is earlier or later.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from dembound.accuracy.advise import advise
 from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History, Motions, loud
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.entry import late_by
 from dembound.accuracy.of_disks.options import FACTORS, DiskOption, disk_options, with_diameter
 from dembound.accuracy.of_disks.search import COSTLIEST
 from dembound.accuracy.runner import SHORT, measure
-from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build
 from dembound.errors import DemboundError
@@ -44,28 +44,26 @@ QUANTITIES = ("velocity", "displacement")
 def reference(case: DiskCase) -> Motions:
     """The motion in the enlarged scene, extrapolated to small disks, at the times of the finer run."""
     own, fine = (far_motion(with_changes(case, {"packing.radius": 0.5 / k})) for k in (1, FINER))
-    found, lag = {}, _lag(case)
-    for name, late in fine.items():
-        gauge = replace(late, time=late.time - lag)
+    found = {}
+    for name, gauge in fine.items():
         coarse = own[name].at(gauge.time)
-        values = {q: each + (each - coarse.values[q]) / (FINER**2 - 1) for q, each in gauge.values.items()}
+        values = {
+            q: each + (each - coarse.values[q]) / (FINER ** (1 if case.hole else 2) - 1)
+            for q, each in gauge.values.items()
+        }
         found[name] = replace(gauge, values=values)
     return found
 
 
-def _lag(case: DiskCase) -> float:
-    """Time (s) by which waves come later with smaller disks, as they enter at particles nearer the plane."""
-    for side, waves in case.driving.items():
-        if not case.side(side).is_outside:
-            axis = normal_axis(side)
-            speed = build(case).ground.wave_speeds(axis)[0 if "p" in waves else 1]
-            return case.packing.radius * (1.0 - 1.0 / FINER) / speed
-    return 0.0
-
-
 def far_motion(case: Any) -> Motions:
     """The motion in the enlarged scene."""
-    return measure(extended(case).case, Progress())[0].motions
+    return timed(extended(case).case)
+
+
+def timed(case: Any) -> Motions:
+    """The motion of a run, at times from when its waves enter as through the planes of its sides."""
+    late = late_by(build(case))
+    return {name: replace(own, time=own.time - late) for name, own in measure(case, Progress())[0].motions.items()}
 
 
 def true_error(found: Motions, expected: Motions) -> float:
@@ -113,7 +111,7 @@ class Truth:
         """The largest error of a choice, RMS over RMS; infinite if it cannot run."""
         if choice.text not in self.known:
             try:
-                self.known[choice.text] = true_error(measure(choice, Progress())[0].motions, self.reference)
+                self.known[choice.text] = true_error(timed(choice), self.reference)
             except DemboundError:
                 self.known[choice.text] = math.inf
         return self.known[choice.text]

@@ -73,22 +73,20 @@ def _gauges(scene: Scene, case: Any) -> Mapping[str, Any]:
 
 
 def in_layer(case: Any, own: Any) -> dict[str, np.ndarray]:
-    """Exact motion of a layer with a free top under the wave of its bottom: upwards and back again.
-
-    Half cells end in the middle of their disks.
-    """
+    """Exact motion of a layer with a free top under the wave of its bottom, when it enters: upwards and back again."""
+    from dembound.accuracy.of_disks.entry import late_by
     from dembound.boundaries import axis_of_motion
     from dembound.disks.scene import build
 
     ((motion, name),) = case.driving["bottom"].items()
     wave, height = case.wave[name], case.packing.extent[1]
     speed = build(case).ground.wave_speeds(1)[0 if motion == "p" else 1]
-    below = case.packing.radius if case.side("bottom").half_mass else 0.0
+    late = late_by(build(case))
     found = {quantity: np.zeros((len(own.time), 2)) for quantity in ("velocity", "displacement")}
     column = axis_of_motion("bottom", motion)
     for way in (own.place[1], 2.0 * height - own.place[1]):
-        found["velocity"][:, column] += wave.velocity(own.time - (way - below) / speed)
-        found["displacement"][:, column] += wave.displacement(own.time - (way - below) / speed)
+        found["velocity"][:, column] += wave.velocity(own.time - late - way / speed)
+        found["displacement"][:, column] += wave.displacement(own.time - late - way / speed)
     return found
 
 

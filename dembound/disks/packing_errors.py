@@ -30,7 +30,9 @@ def _dispersion(scene: DiskScene, signals: Sequence[Signal]) -> str:
     accuracy = scene.case.outside.accuracy
     ties, across = lattice_errors(scene, signals)
     more = f"; more than outside.accuracy = {percent(accuracy)}" if max(ties, across) > accuracy else ""
-    return f"{percent(ties)} returned by the ties, {percent(across)} of the velocity over the scene's length{more}"
+    return (
+        f"up to {percent(ties)} returned by the ties, {percent(across)} of the velocity over the scene's length{more}"
+    )
 
 
 def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:

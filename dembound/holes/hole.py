@@ -12,8 +12,10 @@ from dembound.table import Box, FileName, Table, quantity
 Apart = Callable[[int, float], float]
 """How far (m) a wall across an axis, at a place (m), is from the nearest plane between disks."""
 
-WALL = 0.7
-"""Error beside a round hole times its disks along the radius (docs/charts.md): 7 to 0.7 % with 10 to 80 of them."""
+WALL = 0.4
+"""Error beside a round hole in a lattice under a pressure, times its disks along the radius: beside exact solutions the
+median of 0.41 with 3.5 to 20 of them and three places of the centre, at 1 to 2.5 radii (benchmarks/walls.py). The
+lattice acts as a hole that is larger by 0.2 D."""
 
 
 class Hole(Table, ABC):
@@ -41,7 +43,7 @@ class Hole(Table, ABC):
         """The smallest rectangle around it: x0, y0, x1, y1 in m."""
 
     def wall_error(self, diameter: float, apart: Apart) -> float:
-        """Error of the motion beside it, RMS over RMS, as its wall consists of disks of a diameter (m).
+        """Error of the motion that a pressure makes beside it in a lattice of disks of a diameter (m), RMS over RMS.
 
         By default that of a round hole, whose shape is known to a disk: `WALL` over the disks in its smaller half.
         """

@@ -1,5 +1,6 @@
 """A rectangular hole."""
 
+import math
 from typing import Literal, Self
 
 import numpy as np
@@ -9,9 +10,9 @@ from dembound.holes.hole import Apart, Hole
 from dembound.holes.outline import PolygonOutline
 from dembound.table import Box, quantity, shifted_box
 
-STRAIGHT = 0.45
-"""Error beside a rectangle, whose walls have no steps, times the square of the disks along its smaller half: 4.7 and
-0.47 % with 3 and 9 of them (benchmarks/error_bound.py)."""
+STRAIGHT = 0.2
+"""Error beside a rectangle between disks of a lattice under a pressure, times the disks along its smaller half: 0.22
+and 0.20 with 3 and 12 of them, of first order, beside disks 3 and 5 times smaller (benchmarks/walls.py)."""
 
 
 class Rectangle(Hole):
@@ -43,13 +44,13 @@ class Rectangle(Hole):
         return self.corners
 
     def wall_error(self, diameter: float, apart: Apart) -> float:
-        """That of walls between disks, and how far the walls are from there over the smaller half.
+        """That of walls between disks, and what walls elsewhere take off its width: half of that over the smaller half.
 
-        What a hole does to waves grows with its size, by as large a part.
+        What a hole does grows with its size, by as large a part; both may add or cancel.
         """
         along = self.smaller_half / diameter
         misfit = max(apart(k % 2, wall) for k, wall in enumerate(self.box)) / self.smaller_half
-        return STRAIGHT / along**2 + misfit
+        return math.hypot(STRAIGHT / along, 0.5 * misfit)
 
     @property
     def outline(self) -> PolygonOutline:

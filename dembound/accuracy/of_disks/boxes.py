@@ -89,7 +89,7 @@ def _in_words(scene: DiskScene, best: BoxOfDisks) -> str:
     return (
         f"{right - left:.10g} m × {top - bottom:.10g} m of disks at ({left:.10g}, {bottom:.10g}) m in [ground], a "
         f"continuum round them: {best.disks:,} disks and {best.nodes:,} nodes instead of {scene.count:,}, about "
-        f"{100.0 * share:.0f} % of the time of a step; expected error of velocities {error}"
+        f"{100.0 * share:.0f} % of the time of a step; error of velocities at most {error}"
     )
 
 

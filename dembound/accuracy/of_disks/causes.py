@@ -7,11 +7,15 @@ import math
 from dembound.accuracy.cause import SIDES, Cause, Causes
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.entry import late_by
 from dembound.accuracy.of_disks.formulas import USUAL, Formulas
 from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import DemboundError
+
+LEAST_LATE = 1e-4
+"""Shift of all motion over the duration of a run from which on it is said."""
 
 PLACES = "places"
 """Cause of errors: monitors and loads at other places than those given."""
@@ -33,11 +37,22 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
         try:
             companions.require_affordable()
             found = causes_of_choice(companions, scene, time_step, 0.0)
-            return found + Causes([], cost=companions.runner.work / work)
+            return found + Causes([], [], entry_notes(scene), companions.runner.work / work)
         except DemboundError as error:
             reason = "; ".join(str(error).splitlines())
     unknown = [Cause.unknown(SIDES, reason)] if reason else []
-    return Causes([*unknown, *Formulas(scene, time_step).causes(recorded)])
+    return Causes([*unknown, *Formulas(scene, time_step).causes(recorded)], [], entry_notes(scene))
+
+
+def entry_notes(scene: DiskScene) -> list[str]:
+    """By how much all motion is earlier or later than that of waves through the planes of sides, which is no error."""
+    late = late_by(scene)
+    if abs(late) < LEAST_LATE * scene.case.run.duration:
+        return []
+    return [
+        f"waves enter {abs(late):.2g} s {'later' if late > 0.0 else 'earlier'} than through the plane of their side; "
+        "errors are without this shift"
+    ]
 
 
 def quick_causes(scene: DiskScene) -> Causes:

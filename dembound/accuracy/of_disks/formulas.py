@@ -13,11 +13,11 @@ from dembound.accuracy.cause import CONTINUUM, GRID, NEAR, STEP, WALLS, Cause
 from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
-from dembound.accuracy.of_disks.near import NEAR_FACTOR, errors_near_loads, wall_error
+from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_error
 from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, delay_of
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
-from dembound.disks.reports.continuum_facts import expected_errors
+from dembound.disks.reports.continuum_errors import CONTINUUM_FACTOR, expected_errors
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import sources_of
 from dembound.motion.paths import Source
@@ -48,11 +48,12 @@ class Formulas:
 
     def without_motion(self, names: Sequence[str]) -> list[Cause]:
         """Those of them that do not depend on the motion, at monitors of these names."""
-        return [*self._continuum(names), *self._walls(names)]
+        places = {name: self.scene.monitored[name] for name in names}
+        return [*self._continuum(places), *self._walls(names)]
 
     def of_waves_in(self, motions: Motions) -> Iterator[Cause]:
         """A continuum, and sides with dashpots that waves enter through."""
-        yield from self._continuum(motions)
+        yield from self._continuum({name: own.place for name, own in motions.items()})
         for side, waves in self.scene.case.driving.items():
             table = self.scene.case.side(side)
             if table.is_artificial and not table.absorbs:
@@ -64,16 +65,17 @@ class Formulas:
                 words = "by the reflection of dashpots at normal incidence"
                 yield Cause(f"{side} side", words, parts, factor=USUAL)
 
-    def _continuum(self, names: Iterable[str]) -> Iterator[Cause]:
-        """The continuum beyond sides."""
+    def _continuum(self, places: Mapping[str, np.ndarray]) -> Iterator[Cause]:
+        """The continuum beyond sides, at places (2,) m of monitors."""
         if self.scene.outside is None:
             return
-        if (sizes := expected_errors(self.scene)) is None:
+        if (sizes := expected_errors(self.scene, places)) is None:
             reason = "its elements are judged by the highest frequency of waves, and a wave that jumps has none"
             yield Cause.unknown(CONTINUUM, reason)
             return
-        parts = {name: dict(zip(MOTIONS, sizes, strict=True)) for name in names}
-        yield Cause(CONTINUUM, "by the formulas of its elements, layers and ties", parts, factor=USUAL)
+        parts = {name: dict(zip(MOTIONS, each, strict=True)) for name, each in sizes.items()}
+        words = "by the formulas of its elements, layers and ties"
+        yield Cause(CONTINUUM, words, parts, factor=CONTINUUM_FACTOR)
 
     def _walls(self, names: Iterable[str]) -> Iterator[Cause]:
         """Walls of holes, which are made of disks."""
@@ -83,7 +85,7 @@ class Formulas:
         size = wall_error(case, self.scene.ground.brick.mean_diameter)
         parts = {name: dict.fromkeys(MOTIONS, size) for name in names}
         words = "by the disks along the radius of the smallest hole"
-        yield Cause(WALLS, words, parts, of_disks=True, factor=USUAL)
+        yield Cause(WALLS, words, parts, of_disks=True, factor=WALL_FACTOR)
 
     def _near(self, motions: Motions) -> Iterator[Cause]:
         """Disks near forces."""
@@ -119,7 +121,7 @@ class Formulas:
 
         A side that reflects R lets 1 − R of its wave in. What is sent back is the motion again, after the way to the
         far side, if that is a free surface or another one that sends back everything; else nothing comes back that
-        counts.
+        counts. What is kept back out of phase is the time at which the wave enters, which is no error (entry.py).
         """
         axis, far = normal_axis(side), self.scene.case.side(OPPOSITE[side])
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
@@ -129,10 +131,12 @@ class Formulas:
             if motion not in shares or not math.isfinite(speed):
                 continue
             later = own.time - 2.0 * self.scene.case.size[axis] / speed
-            sent = reflected_motion(own, column, shares[motion])
+            share = shares[motion]
+            sent = reflected_motion(own, column, share)
+            kept = reflected_motion(own, column, Reflected(abs(share.dashpots), share.dashpots))
             for quantity, values in sent.items():
                 back = 0.0 if far.is_artificial else np.interp(later, own.time, values, left=0.0)
-                errors[quantity][:, column] = back - values
+                errors[quantity][:, column] = back - kept[quantity]
         return dict(errors)
 
     def _delays(self, motions: Motions) -> Iterator[Cause]:

@@ -20,7 +20,7 @@ from dembound.accuracy.cause import SIDES, STEP, Causes, Truth
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.causes import causes_of_choice, of_ground
+from dembound.accuracy.of_disks.causes import causes_of_choice, entry_notes, of_ground
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
 from dembound.accuracy.of_disks.options import (
@@ -144,7 +144,7 @@ class _Search:
     def given(self) -> Proposal:
         """The case as it is."""
         scene, step = self.companions.scene, self.companions.time_step
-        causes = causes_of_choice(self.companions, scene, step, 0.0)
+        causes = causes_of_choice(self.companions, scene, step, 0.0) + Causes([], [], entry_notes(scene))
         budget = Budget(self.companions.recorded(scene), causes, self.of)
         return Proposal(Choice("the case as it is", {}, self.companions.case), self.own_cost, budget)
 

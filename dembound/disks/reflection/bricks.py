@@ -167,12 +167,12 @@ def end_of(scene: DiskScene, row: BrickInRow) -> Condensed:
     return last.condensed(mass, moves, damping, springs)
 
 
-def end_scene(case: DiskCase, side: str) -> DiskScene:
-    """A scene of `LAST` bricks in a row outwards, with the side of the case at its end, one brick wide and periodic."""
+def end_scene(case: DiskCase, side: str, bricks: int = LAST) -> DiskScene:
+    """A scene of bricks in a row outwards, with the side of the case at its end, one brick wide and periodic."""
     axis = normal_axis(side)
     lateral = ("bottom", "top") if axis == 0 else ("left", "right")
     copies = [1, 1]
-    copies[axis] = LAST
+    copies[axis] = bricks
     ends: dict[str, Boundary] = {name: Periodic(type="periodic") for name in lateral}
     ends[side] = case.side(side).stiffest(side, case.box).at_rest()
     packing = case.packing.with_copies(*copies)

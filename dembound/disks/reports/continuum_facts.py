@@ -13,7 +13,6 @@ from dembound.disks import step_cost
 from dembound.disks.beyond.settings import (
     ROUNDING,
     buried,
-    clearance,
     fastest,
     lasting_time,
     least_element,
@@ -21,7 +20,8 @@ from dembound.disks.beyond.settings import (
     signals_of,
 )
 from dembound.disks.beyond.surroundings import Surroundings
-from dembound.disks.packing_errors import lattice_errors, packing_facts
+from dembound.disks.packing_errors import packing_facts
+from dembound.disks.reports.continuum_errors import largest_element, near_error
 from dembound.disks.scene import DiskScene
 from dembound.outside import choice
 from dembound.outside.choice import Signal
@@ -103,16 +103,16 @@ def _less(depth: float) -> str:
 
 def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -> str:
     """Nodes in the shortest wave and the error of the elements."""
-    body, order, side = outside.body, outside.settings.order, _largest(outside)
+    body, order, side = outside.body, outside.settings.order, largest_element(outside)
     if any(choice.jumps(signal) for signal in signals):
         shortest = side * choice.NODES[order] / order
         return f"begin or end at once; elements return those shorter than {shortest:.3g} m"
     length = choice.shortest_wave(signals, body.medium)
     beyond = choice.slowest(body.medium) / length
-    error = max(choice.element_error(signals, body.medium, order, side), _near_error(scene, outside))
+    error = max(choice.element_error(signals, body.medium, order, side), near_error(scene, outside))
     return (
         f"{order * length / side:.3g} nodes in the shortest wavelength, {length:.3g} m ({100.0 * choice.SHARE:g} % of "
-        f"the energy is above {beyond:.3g} Hz); expected error of velocities {percent(min(error, 1.0))}"
+        f"the energy is above {beyond:.3g} Hz); error of velocities at most {percent(min(error, 1.0))}"
         f"{_as_small(scene, error)}"
     )
 
@@ -124,35 +124,6 @@ def _as_small(scene: DiskScene, error: float) -> str:
         return ""
     least = least_element(scene.case, scene.ground.brick.mean_diameter)
     return f", above outside.accuracy, as elements smaller than {least:.3g} m shorten the time step"
-
-
-def expected_errors(scene: DiskScene) -> tuple[float, float] | None:
-    """Errors of velocities and displacements by elements, layers and ties of a continuum, RMS over RMS.
-
-    None without a continuum, and for waves that jump. Displacements have longer waves than velocities, of which
-    elements and ties return less; those longer than the run are as one.
-    """
-    outside, signals = scene.outside, signals_of(scene.case)
-    if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
-        return None
-    settings, medium = outside.settings, outside.body.medium
-    floor = _near_error(scene, outside), choice.layer_error(settings.order, settings.layers)
-    found = []
-    for lowest in (math.inf, 1.0 / scene.case.run.duration):
-        elements = choice.element_error(signals, medium, settings.order, _largest(outside), lowest)
-        found.append(math.hypot(*floor, elements, lattice_errors(scene, signals, lowest)[0]))
-    return found[0], found[1]
-
-
-def _largest(outside: Surroundings) -> float:
-    """The largest side of its elements, m."""
-    return float(outside.body.mesh.element_sizes.max())
-
-
-def _near_error(scene: DiskScene, outside: Surroundings) -> float:
-    """Error of elements beside forces and holes."""
-    near = clearance(scene.case, outside.box, outside.sides)
-    return 0.0 if near == 0.0 else choice.near_error(near, outside.settings.order, _largest(outside))
 
 
 def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
@@ -235,7 +206,7 @@ def _is_flat(outside: Surroundings) -> bool:
 
 def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
     """Elements too large for waves or for what is near, or too small for the disks."""
-    order, side = keys.order, _largest(outside)
+    order, side = keys.order, largest_element(outside)
     signals, medium = signals_of(scene.case), outside.body.medium
     error = choice.element_error(signals, medium, order, side) if signals else 0.0
     if keys.element is None:
@@ -253,7 +224,7 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
                 f"outside.element: elements of {side:.4g} m return short waves, about {percent(error)} of the "
                 f"velocity, more than {asked}; {needed:.3g} m are small enough"
             )
-    if (error := _near_error(scene, outside)) > LEEWAY * keys.accuracy:
+    if (error := near_error(scene, outside)) > LEEWAY * keys.accuracy:
         yield (
             f"outside.element: elements of {side:.4g} m are too large beside a load or hole, with an error of about "
             f"{percent(min(error, 1.0))}, more than {asked}"

@@ -1,0 +1,205 @@
+"""Where waves enter disks: how much later than through the plane of a side they do, or earlier.
+
+A wave that enters at a side is to be v(t) on the plane of that side, of a body that is uniform from there on. Disks let
+it in elsewhere. Depths count from the plane inwards, and long waves see two of them: m, where the mass of the disks
+begins, and s, where the line through the displacements inside would meet that of what is moved at the side.
+
+- Prescribed disks have v(t) at s: all motion is early by s/c.
+- Dashpots Z and the force 2Zv move the disks they act on as the wave at s, and their mass from m on as the body's
+  impedance Z′ = ρc: 2Zv(t) = Z v′(t + s/c) + Z′ v′(t + m/c), so that the motion is early by (Z s + Z′ m)/(Z + Z′)/c. A
+  square lattice has m = 0 and s = D/2 for P waves, half cells m = s = D/2.
+- Through a continuum waves enter where its elements end, at their own time.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.boundaries import Motion, axis_of_motion, normal_axis
+from dembound.casefile.disks import DiskCase
+from dembound.disks.matching import factors_in, homogenised_beta
+from dembound.disks.material.homogenise import Network
+from dembound.disks.reflection.bricks import end_scene
+from dembound.disks.scene import DiskScene
+
+APART = 8.0
+"""Diameters, at least, of each third of the strip in which s is found: at the side, where displacements are taken, and
+where it is pulled. What a side changes decays with the depth y as exp(−2πy/brick), and over a disk without bricks."""
+
+FAINT = 1e-12
+"""Springs against single motions over those of the contacts: disks that hang by one contact may roll."""
+
+WITHIN = 0.01
+"""Diameters within which waves 100 disks long enter as late as said here: measured on columns of a lattice and of two
+seeds each of patterns B and C, P and S waves, prescribed velocities, dashpots, springs, half cells, free fields and
+continua (benchmarks/entries.py), beside how late they enter there through a continuum."""
+
+
+class Entry(NamedTuple):
+    """Where a wave enters at a side.
+
+    late : m by which its motion is behind that of a wave through the plane of the side, negative where it is ahead;
+    speed : m/s, of long waves.
+    """
+
+    late: float
+    speed: float
+
+    @property
+    def delay(self) -> float:
+        """The same in time, s."""
+        return self.late / self.speed
+
+
+def entries_of(scene: DiskScene) -> dict[str, dict[Motion, Entry]]:
+    """The entries of all waves that run in the packing, by driven side.
+
+    A wave at an angle has a point of the ground as its reference, and none.
+    """
+    found: dict[str, dict[Motion, Entry]] = {}
+    for side, waves in scene.case.driving.items():
+        axis = normal_axis(side)
+        speeds = dict(zip(("p", "s"), scene.ground.wave_speeds(axis), strict=True))
+        running: list[Motion] = [motion for motion in waves if math.isfinite(speeds[motion])]
+        if running:
+            late = _late(scene, side, running)
+            found[side] = {motion: Entry(late[motion], speeds[motion]) for motion in running}
+    return found
+
+
+def late_by(scene: DiskScene) -> float:
+    """Time (s) by which the motion is later than that of waves through the planes of sides; of several the largest."""
+    delays = [entry.delay for entries in entries_of(scene).values() for entry in entries.values()]
+    return max(delays, key=abs, default=0.0)
+
+
+def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, float]:
+    """How much later waves enter at a side, m."""
+    table = scene.case.side(side)
+    if table.is_outside:
+        beneath = scene.outside if scene.foot is None else scene.foot
+        assert beneath is not None
+        begins = dict(zip(("left", "bottom", "right", "top"), beneath.box, strict=True))[side]
+        return dict.fromkeys(motions, -_inwards(side) * begins)
+    end = _Strip.of(scene.case, side)
+    if not table.factors:
+        return {motion: -end.depth(motion, rigid=True) for motion in motions}
+    factors = factors_in(scene, side)
+    found = {}
+    for motion in motions:
+        matched = homogenised_beta(scene, side, motion)
+        share = factors[motion] / (factors[motion] + matched)
+        found[motion] = -(share * end.depth(motion, rigid=False) + (1.0 - share) * end.mass_begins)
+    return found
+
+
+def _inwards(side: str) -> float:
+    """Sign along its normal axis of the way from a side into the body."""
+    return -1.0 if side in ("right", "top") else 1.0
+
+
+@dataclass(frozen=True)
+class _Strip:
+    """A row of bricks, periodic sideways, with the side of a case at its end.
+
+    side : its name. scene : the strip. zone : (n,) third in which each disk is: 0 at the side, 1, 2 at the far end.
+    """
+
+    side: str
+    scene: DiskScene
+    zone: np.ndarray
+
+    @classmethod
+    def of(cls, case: DiskCase, side: str) -> _Strip:
+        """The strip of a case."""
+        axis = normal_axis(side)
+        third = math.ceil(APART * 2.0 * case.packing.radius / case.packing.brick_size[axis])
+        scene = end_scene(case, side, 3 * third)
+        tile = scene.assembly.tile[:, axis]
+        inwards = tile if _inwards(side) > 0.0 else scene.assembly.copies[axis] - 1 - tile
+        return cls(side, scene, np.clip(inwards // third, 0, 2))
+
+    @property
+    def _axis(self) -> int:
+        """Of the side's normal."""
+        return normal_axis(self.side)
+
+    @property
+    def _depths(self) -> np.ndarray:
+        """Of the centres (n,) below the side, m."""
+        plane = 0.0 if _inwards(self.side) > 0.0 else float(self.scene.assembly.extent[self._axis])
+        return _inwards(self.side) * (self.scene.assembly.positions[:, self._axis] - plane)
+
+    @cached_property
+    def mass_begins(self) -> float:
+        """m: depth below which a uniform body would have the same mass, m; what halves of cells lack counts.
+
+        By the moment of the middle third, whose mass that body has about the same centre.
+        """
+        mass = self.scene.mass
+        middle = self.zone == 1
+        centre = float(np.average(self._depths[middle], weights=mass[middle]))
+        per_length = float(mass[middle].sum()) / self._third
+        above = float(mass[self.zone == 0].sum()) / per_length
+        return centre - 0.5 * self._third - above
+
+    @property
+    def _third(self) -> float:
+        """Length of a third, m."""
+        return float(self.scene.assembly.size[self._axis]) / 3.0
+
+    def depth(self, motion: Motion, *, rigid: bool) -> float:
+        """s: depth (m) at which the line through the displacements inside meets that of the disks at the side.
+
+        The far third is pulled along its whole mass, the disks at the side are held (rigid), or pulled the other way by
+        the widths of their dashpots, whose mean displacement counts.
+        """
+        component = axis_of_motion(self.side, motion)
+        scene, edge = self.scene, self.scene.edges[self.side]
+        count, far, middle = scene.disk_count, self.zone == 2, self.zone == 1
+        across = float(scene.assembly.size[1 - self._axis])
+        force = np.zeros((3, count))
+        force[component, far] = across * scene.mass[far] / scene.mass[far].sum()
+        free = np.ones((3, count), dtype=bool)
+        free[list(scene.ground.held)] = False
+        weights = edge.widths / edge.widths.sum()
+        if rigid:
+            free[:2, edge.nodes] = False
+        else:
+            force[component, edge.nodes] -= across * weights
+            free[:2, np.flatnonzero(far)[0]] = False
+        moved = self._moved(force, free)[component]
+        at_side = 0.0 if rigid else float(weights @ moved[edge.nodes])
+        mean = partial(np.average, weights=scene.mass[middle])
+        strain = self._compliance(component)
+        return float(mean(self._depths[middle]) - (mean(moved[middle]) - at_side) / strain)
+
+    def _compliance(self, component: int) -> float:
+        """Gradient along the normal of a component under unit traction along it, 1/Pa."""
+        ground = self.scene.ground
+        entries = {0: (0, 3), 1: (2, 1)}[self._axis]  # of x and y, see homogenise.GRADIENTS
+        free = [axis for axis in (0, 1) if axis not in ground.held]
+        numbers = [entries[axis] for axis in free]
+        inverse = np.linalg.inv(ground.tensor[np.ix_(numbers, numbers)])
+        return float(inverse[free.index(component), free.index(component)])
+
+    def _moved(self, force: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """Displacements and rotations (3, n) at rest under forces (3, n), of components (3, n) bool that are free."""
+        from scipy.sparse import diags
+        from scipy.sparse.linalg import spsolve
+
+        assembly, ground = self.scene.assembly, self.scene.ground
+        halved, kind = np.divmod(assembly.contact_type, len(ground.brick.pairs))
+        stiffness = ground.stiffness.of(kind).times(np.where(halved > 0, 0.5, 1.0))
+        network = Network(len(assembly.radii), assembly.pairs, ground.brick.vectors[kind], stiffness)
+        ways = network.motion_matrix()[:, free.ravel()]
+        matrix = (ways.T @ diags(network.springs) @ ways).tocsc()
+        matrix += FAINT * diags(matrix.diagonal(), format="csc")
+        moved = np.zeros(force.shape)
+        moved[free] = spsolve(matrix, force[free])
+        return moved

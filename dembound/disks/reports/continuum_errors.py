@@ -1,0 +1,170 @@
+"""What a continuum adds to the motion at places in a body, RMS over RMS: central values by formula.
+
+Four parts, of which the first two depend on where a place is:
+
+- *elements* return a wave of the frequency f in full from f_p on, whose slowest waves have `PASSED` nodes in their
+  length, and (f/f_p)^`STEEP` of it below;
+- *ties* return (kD)² of a wave that meets them along the normal (`lattice_errors`), 1/cos θ as much at an angle. It has
+  spread from its source over a longer way than the motion beside which it counts, once over every side;
+  on a free surface there is `SURFACE` times as much of both beside a load on it;
+- *layers* return `KEPT` of R0, and have an error of their own for motion that varies in no less than the ground within
+  them is long; the displacement that stays after a pulse is such;
+- the *fields* of forces and holes beside elements (`choice.near_error`).
+
+Random packings scatter what a uniform continuum does not. Of waves that enter through a continuum holes scatter a part,
+which alone leaves again; the displacement that they leave behind is their own, and none of layers. All this is measured
+on 63 scenes (benchmarks/continuum_errors.py).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.boundaries.sides import normal_axis
+from dembound.disks.beyond.settings import ROUNDING, clearance, fastest, signals_of
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.packing_errors import lattice_errors
+from dembound.disks.scene import DiskScene
+from dembound.disks.sources import place_of
+from dembound.outside import choice
+from dembound.outside.choice import Signal
+
+PASSED, STEEP, RETURNED = 4.5, 8.0, 0.5
+"""Nodes in the length of the shortest wave that elements pass on, the power of f above which they return less, and the
+part of what they return that reaches a place."""
+
+TIES = 0.35
+"""Part of what ties return that reaches a place, beside a source as far away as its image in one side."""
+
+FLATTEST = 0.15
+"""Least cosine of the angle at which waves meet a side that counts."""
+
+SURFACE, SHALLOW = 1.6, 0.125
+"""How much more of what elements and ties return there is on a free surface beside a load on it, where Rayleigh waves
+run, which are slower and have more of the high frequencies; and down to which part of the mean length of waves."""
+
+KEPT = 0.45
+"""Part of R0 that layers return in all, as waves reach them at all angles."""
+
+LAYERS, STEEPEST = 0.4, 1e-4
+"""Part of `choice.LAYER_ERRORS`, which are bounds, that layers have with this R0; it grows as the square of log R0."""
+
+SCATTERED = 0.5
+"""Part of waves that enter through a continuum that leaves through it again."""
+
+UNEVEN = 0.002
+"""Error of displacements round a load in a random packing, whose stiffness varies from place to place."""
+
+CONTINUUM_FACTOR = 3.0
+"""95 % of the true errors are within this factor of those here (benchmarks/continuum_errors.py): of 464 rows round
+loads and pressures 99 %, of 47 under waves whose errors are 0.01 % and more 94 %. Smaller ones of displacements under
+waves are overestimated, up to twelve times."""
+
+
+def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[str, tuple[float, float]] | None:
+    """Errors of velocities and of displacements by a continuum, RMS over RMS, at places (2,) m by name.
+
+    None without a continuum, and for waves that jump. Displacements have longer waves than velocities, of which
+    elements and ties return less; those longer than the run are as one.
+    """
+    outside, signals = scene.outside, signals_of(scene.case)
+    if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
+        return None
+    parts = [_parts(scene, outside, signals, lowest) for lowest in (math.inf, 1.0 / scene.case.run.duration)]
+    if scene.case.load and not scene.case.packing.is_lattice:
+        parts[1] = parts[1]._replace(alike=math.hypot(parts[1].alike, UNEVEN))
+    leaving, depth = 1.0 if scene.case.load else SCATTERED, _shallow(outside, signals)
+    found = {}
+    for name, place in places.items():
+        source = _source(scene, place)
+        spread = 1.0 if source is None else _spread(scene, outside, source, place)
+        more = SURFACE if source is not None and _both_shallow(scene, outside, depth, source, place) else 1.0
+        velocity, displacement = (
+            leaving * math.hypot(each.alike, more * each.elements, more * spread * each.ties) for each in parts
+        )
+        found[name] = velocity, displacement
+    return found
+
+
+def largest_element(outside: Surroundings) -> float:
+    """The largest side of the elements of a continuum, m."""
+    return float(outside.body.mesh.element_sizes.max())
+
+
+def near_error(scene: DiskScene, outside: Surroundings) -> float:
+    """Error of elements beside forces and holes."""
+    near = clearance(scene.case, outside.box, outside.sides)
+    return 0.0 if near == 0.0 else choice.near_error(near, outside.settings.order, largest_element(outside))
+
+
+class _Parts(NamedTuple):
+    """What elements return, what ties return beside a single side, and what is the same at all places."""
+
+    elements: float
+    ties: float
+    alike: float
+
+
+def _parts(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal], lowest: float) -> _Parts:
+    """The parts; lowest : Hz, see `choice.energies`."""
+    settings, medium, mesh = outside.settings, outside.body.medium, outside.body.mesh
+    passed = settings.order * choice.slowest(medium) / (PASSED * largest_element(outside))
+    long = fastest(medium) / (2.0 * math.pi * mesh.inner)
+    elements, lasting = 0.0, 0.0
+    for signal in signals:
+        frequency, energy = choice.energies(signal, lowest)
+        returned = np.minimum(1.0, (frequency / passed) ** STEEP)
+        elements = max(elements, math.sqrt(float(energy @ returned**2 / energy.sum())))
+        lasting = max(lasting, math.sqrt(float(energy[frequency < long].sum() / energy.sum())))
+    reflection = settings.absorption.reflection
+    steep = (math.log(reflection) / math.log(STEEPEST)) ** 2
+    layers = LAYERS * choice.layer_error(settings.order, settings.layers) * steep * lasting
+    alike = math.hypot(KEPT * reflection, near_error(scene, outside))
+    if scene.case.load:
+        alike = math.hypot(alike, layers)
+    else:
+        alike *= 1.0 - lasting**2
+    return _Parts(RETURNED * elements, TIES * lattice_errors(scene, signals, lowest)[0], alike)
+
+
+def _source(scene: DiskScene, place: np.ndarray) -> np.ndarray | None:
+    """The middle (2,) m of the load that is nearest to a place; None where waves come from far away, or everywhere."""
+    boxes = [place_of(scene.case, load) for load in scene.case.load if load.wave is not None]
+    middles = [0.5 * np.array([x0 + x1, y0 + y1]) for x0, y0, x1, y1 in boxes if math.isfinite(x0)]
+    return min(middles, key=lambda middle: float(np.hypot(*(place - middle))), default=None)
+
+
+def _spread(scene: DiskScene, outside: Surroundings, source: np.ndarray, place: np.ndarray) -> float:
+    """What ties return at a place over what a single side returns to a source beside it.
+
+    A wave spreads as 1/√(way), so that with the way r from the source and that over its image in a side, r′, it is
+    √(r/r′)/cos θ from each side; those of several sides add as squares.
+    """
+    way = max(float(np.hypot(*(place - source))), scene.ground.brick.mean_diameter)
+    planes = dict(zip(("left", "bottom", "right", "top"), outside.box, strict=True))
+    total = 0.0
+    for side in outside.sides:
+        axis = normal_axis(side)
+        ray = place - source
+        ray[axis] = 2.0 * planes[side] - source[axis] - place[axis]
+        longer = float(np.hypot(*ray))
+        total += way / longer / max(abs(float(ray[axis])) / longer, FLATTEST) ** 2
+    return math.sqrt(total)
+
+
+def _shallow(outside: Surroundings, signals: Sequence[Signal]) -> float:
+    """Depth (m) down to which places count as on the surface."""
+    spectra = [choice.energies(signal) for signal in signals]
+    mean = min(float(frequency @ energy / energy.sum()) for frequency, energy in spectra)
+    return SHALLOW * choice.slowest(outside.body.medium) / mean
+
+
+def _both_shallow(scene: DiskScene, outside: Surroundings, depth: float, source: np.ndarray, place: np.ndarray) -> bool:
+    """Whether a source and a place are on a free surface, above a depth (m) below it."""
+    surface = scene.case.size[1]
+    is_free = "top" not in outside.sides or outside.box[3] < (1.0 - ROUNDING) * surface
+    return is_free and bool(min(source[1], place[1]) > surface - depth)
