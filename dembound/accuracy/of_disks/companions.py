@@ -23,6 +23,7 @@ from dembound.disks.contacts.breaks import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
+from dembound.packings import Packing
 
 QUANTITIES = ("velocity", "displacement")
 """Quantities whose errors are bounded."""
@@ -181,17 +182,8 @@ class Companions:
     ) -> dict[str, dict[str, np.ndarray]]:
         """The motion at the monitors of a scene with other sides of the companion, so much farther away."""
         own = replace(self._own, boundary=sides)
-        case = self.wider(build(own), self._needed, wider) if wider else own
+        case = enlarged(build(own), farther(own.packing, self._needed, wider))[0] if wider else own
         return self._motion(self._run(case), self._places(scene))
-
-    def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
-        """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
-        bricks = {side: min(count, self._bricks(scene, side, wider)) for side, count in needed.items()}
-        return enlarged(scene, bricks)[0]
-
-    def _bricks(self, scene: DiskScene, side: str, wider: float) -> int:
-        """Bricks by which a side moves."""
-        return math.ceil(wider * scene.case.packing.copies[normal_axis(side)] - 1e-9)
 
     def _run(self, case: DiskCase) -> Motions:
         """The motion of the monitors of a companion, until bonds break with far sides."""
@@ -205,6 +197,14 @@ class Companions:
 def _named(monitor: str, number: int) -> str:
     """The name of a monitor of a patch."""
     return f"{monitor}.{number}"
+
+
+def farther(packing: Packing, needed: Mapping[str, int], wider: float) -> dict[str, int]:
+    """Bricks by which sides move that become so much farther away, over the length across them.
+
+    needed : by side, the most that it moves, see `needed_by`.
+    """
+    return {side: min(count, math.ceil(wider * packing.copies[normal_axis(side)] - 1e-9)) for side, count in needed.items()}
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

@@ -1,7 +1,7 @@
 """The cheapest choice of disks and sides that keeps the error of all monitors within a bound.
 
-Choices are tried in the order of their predicted cost. None of them is run: what their sides send back is found with
-companions of larger disks, the rest by formulas.
+Choices are tried in the order of their counted cost, and only those are built whose error is to be found. None of them
+is run: what their sides send back is found with companions of larger disks, the rest by formulas.
 """
 
 from __future__ import annotations
@@ -21,16 +21,10 @@ from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.expected import of_ground, of_sides
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
-from dembound.accuracy.of_disks.options import (
-    FACTORS,
-    DiskOption,
-    cost_of,
-    disk_options,
-    may_change_diameter,
-    with_diameter,
-)
+from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
 from dembound.casefile.disks import DiskCase
@@ -86,13 +80,13 @@ def _best(
     moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
     if not _is_reached(planned) or not any(map(np.any, moved)):
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
-    search = _Search(companions, bound, kept, cost_of(planned), twin)
+    search = _Search(companions, Options(planned, bound, kept), bound, planned_cost(planned).seconds, twin)
     best = search.best()
-    words, error, cost = best.option.words, best.error, best.option.cost
+    words, error, cost = best.option.words, best.error, best.built.cost
     breaks = companions.first_break
     if breaks < case.run.duration:
         words += f"; the error is that before bonds break, after about {breaks:.3g} s"
-    choice = Choice.of(case, best.option.case, words)
+    choice = Choice.of(case, best.built.case, words)
     found = Best(case, choice, error.worst, error.by, bound, cost, search.own_cost, search.tried, SAFETY)
     if breaks < case.run.duration:
         return found
@@ -127,9 +121,14 @@ def _is_reached(planned: Plan[DiskScene]) -> bool:
 class _Found:
     """A choice with its error; recorded : the motion without it, by monitor; causes : of the error."""
 
-    option: DiskOption
+    built: Built
     recorded: Motions
     causes: list[Cause]
+
+    @property
+    def option(self) -> DiskOption:
+        """The choice before it was built."""
+        return self.built.option
 
     @cached_property
     def error(self) -> Expected:
@@ -150,28 +149,29 @@ class _Found:
 class _Search:
     """The search for a choice.
 
-    twin : the case, if its law is not that given. of_sides : by arrangement and distance the largest error of its
-    sides alone. of_disks : by factor of the diameter the error of its disks alone.
+    own_cost : CPU time (s) of the steps of the given case. twin : the case, if its law is not that given. of_sides : by
+    arrangement and distance the largest error of its sides alone. of_disks : by factor of the diameter, with a
+    continuum and without, the smallest error of disks alone: where waves enter the continuum, disks have other places.
     """
 
     companions: Companions
+    options: Options
     bound: float
-    kept: Sequence[str]
     own_cost: float
     twin: ElasticTwin | None
     tried: int = 0
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
-    of_disks: dict[float, float] = field(default_factory=dict)
+    of_disks: dict[tuple[float, bool], float] = field(default_factory=dict)
 
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
         found: list[_Found] = []
         left: list[DiskOption] = []
         for option in self._by_cost():
-            if not self._keeps(self.of_sides.get(_sides(option), 0.0)):
+            if not self._keeps(self._alone(option)):
                 left.append(option)
                 continue
-            found += self._with_error(option)
+            found += self._with_error(option, left)
             if found and self._keeps(found[-1].error.worst):
                 return found[-1]
         return self._most_accurate(found, left)
@@ -182,29 +182,26 @@ class _Search:
         These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
         below the smallest one found.
         """
-        for factor, error in self.of_disks.items():
-            if not self._keeps(error):
-                left += [each for each in self._of(factor) if each.cost <= COSTLIEST * self.own_cost]
         while left:
             left.sort(key=self._alone)
             if found and self._alone(left[0]) >= min(each.error.worst for each in found):
                 break
-            found += self._with_error(left.pop(0))
+            found += self._with_error(left.pop(0), None)
         if not found:
             raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each.error.worst)
 
     def _alone(self, option: DiskOption) -> float:
         """The larger one of the errors that sides and disks of a choice are known to have alone."""
-        return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(option.factor, 0.0))
+        return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(_disks(option), 0.0))
 
     def _keeps(self, error: float) -> bool:
         """Whether an error is within the bound, with its reserve."""
         return SAFETY * error <= self.bound
 
     def _by_cost(self) -> Iterator[DiskOption]:
-        """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
-        factors = list(FACTORS) if may_change_diameter(self.companions.case, self.kept) else [1.0]
+        """Choices by cost; those with the next smaller disks are only counted when their cost has been reached."""
+        factors = self.options.factors
         number, least = count(), 0.0
         waiting: list[tuple[float, int, DiskOption | float]] = [(0.0, next(number), factors.pop(0))]
         while waiting:
@@ -214,50 +211,51 @@ class _Search:
             if isinstance(item, DiskOption):
                 yield item
                 continue
-            made = self._of(item) if self._are_small_enough(item) else []
+            made = self._of(item)
             for each in made:
                 heapq.heappush(waiting, (each.cost, next(number), each))
-            if made:
-                least = min(each.cost for each in made)
+            least = min((each.cost for each in made), default=least)
             if factors:
                 heapq.heappush(waiting, (least, next(number), factors.pop(0)))
 
     def _of(self, factor: float) -> list[DiskOption]:
         """Choices with disks of one diameter."""
-        plain = self._with_diameter(factor)
-        return [] if plain is None else list(disk_options(self.companions, plain, factor, self.bound, self.kept))
-
-    def _with_diameter(self, factor: float) -> Plan[DiskScene] | None:
-        """The case with disks of another diameter, planned; None if it may not have them."""
         own = self.companions.scene.ground.brick.mean_diameter
         may_be = self.twin is None or self.twin.holds(factor * own)
-        return with_diameter(self.companions, factor) if may_be else None
+        return self.options.of(factor) if may_be else []
 
-    def _are_small_enough(self, factor: float) -> bool:
-        """Whether the error of disks of one diameter leaves some of the bound to sides."""
-        plain = self._with_diameter(factor)
-        if plain is None:
-            return False
-        disks, _ = of_ground(self.companions, plain.scene, plain.time_step)
-        self.of_disks[factor] = expected(disks, self.companions.recorded(plain.scene)).worst
-        return self._keeps(self.of_disks[factor])
+    def _with_error(self, option: DiskOption, left: list[DiskOption] | None) -> list[_Found]:
+        """A choice with its error; nothing if it, or a companion of it, cannot run.
 
-    def _with_error(self, option: DiskOption) -> list[_Found]:
-        """A choice with its error; nothing if a companion of it cannot run."""
-        scene, step = option.scene, option.planned.time_step
+        left : where it is left, without its companions, if the error of its disks alone is too large; None: nowhere.
+        """
+        built = self.options.build(option)
+        if built is None:
+            return []
+        scene, step = built.planned.scene, built.planned.time_step
         recorded = self.companions.recorded(scene)
-        self.tried += 1
         try:
             disks, others = of_ground(self.companions, scene, step)
+            error = expected(disks, recorded).worst
+            self.of_disks[_disks(option)] = min(error, self.of_disks.get(_disks(option), error))
+            if left is not None and not self._keeps(error):
+                left.append(option)
+                return []
+            self.tried += 1
             sides = [of_sides(self.companions, scene, step, option.wider)] if sides_of_pair(scene.case) else []
         except DemboundError:
             return []
         alone = expected(sides, recorded).worst
         self.of_sides[_sides(option)] = max(alone, self.of_sides.get(_sides(option), 0.0))
         law = [] if self.twin is None else self.twin.causes(scene, recorded)
-        return [_Found(option, recorded, [*disks, *others, *sides, *law])]
+        return [_Found(built, recorded, [*disks, *others, *sides, *law])]
 
 
 def _sides(option: DiskOption) -> tuple[str, float]:
     """What the sides of a choice are, and how much farther away."""
-    return option.arrangement.name, option.wider
+    return option.arrangement, option.wider
+
+
+def _disks(option: DiskOption) -> tuple[float, bool]:
+    """The size of the disks of a choice over that given, and whether they are in a continuum."""
+    return option.factor, bool(option.case.outside_sides)
