@@ -24,6 +24,7 @@ from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.expected import of_ground, of_sides
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
+from dembound.accuracy.of_disks.near import wall_error
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
@@ -37,6 +38,13 @@ from dembound.running import plan
 SAFETY = 1.4
 """Expected errors are below the bound by this factor: above 0.2 % true ones are at most 1.18 times these, below it they
 were up to 2.2 times (docs/error_bound.md)."""
+
+LONGEST, PART = 8.0, 0.2
+"""CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
+that it finds the same on every machine."""
+
+PER_CHOICE, PER_DISK, PER_STEP = 0.1, 5e-6, 2e-8
+"""CPU seconds of finding the error of a choice, of building it by disk, and of its companions by particle-step."""
 
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
@@ -149,7 +157,7 @@ class _Found:
 class _Search:
     """The search for a choice.
 
-    own_cost : CPU time (s) of the steps of the given case. twin : the case, if its law is not that given. of_sides : by
+    own_cost : CPU time (s) of the steps of the given case. spent : of building choices, as counted, s. twin : the case, if its law is not that given. of_sides : by
     arrangement and distance the largest error of its sides alone. of_disks : by factor of the diameter, with a
     continuum and without, the smallest error of disks alone: where waves enter the continuum, disks have other places.
     """
@@ -160,6 +168,7 @@ class _Search:
     own_cost: float
     twin: ElasticTwin | None
     tried: int = 0
+    spent: float = 0.0
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
     of_disks: dict[tuple[float, bool], float] = field(default_factory=dict)
 
@@ -168,6 +177,8 @@ class _Search:
         found: list[_Found] = []
         left: list[DiskOption] = []
         for option in self._by_cost():
+            if not self._affords(option):
+                break
             if not self._keeps(self._alone(option)):
                 left.append(option)
                 continue
@@ -182,7 +193,7 @@ class _Search:
         These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
         below the smallest one found.
         """
-        while left:
+        while left := [each for each in left if self._affords(each)]:
             left.sort(key=self._alone)
             if found and self._alone(left[0]) >= min(each.error.worst for each in found):
                 break
@@ -191,9 +202,18 @@ class _Search:
             raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each.error.worst)
 
+    def _affords(self, option: DiskOption) -> bool:
+        """Whether the search may go on with a choice; always with the first one."""
+        packing = option.case.packing
+        disks = packing.about(packing.extent)
+        spent = self.spent + PER_STEP * self.companions.runner.work
+        return self.tried == 0 or spent + PER_CHOICE + PER_DISK * disks <= max(LONGEST, PART * self.own_cost)
+
     def _alone(self, option: DiskOption) -> float:
-        """The larger one of the errors that sides and disks of a choice are known to have alone."""
-        return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(_disks(option), 0.0))
+        """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
+        case = option.case
+        walls = wall_error(case, 2.0 * case.packing.radius) if case.packing.is_lattice else 0.0
+        return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(_disks(option), 0.0), walls)
 
     def _keeps(self, error: float) -> bool:
         """Whether an error is within the bound, with its reserve."""
@@ -230,8 +250,10 @@ class _Search:
         left : where it is left, without its companions, if the error of its disks alone is too large; None: nowhere.
         """
         built = self.options.build(option)
+        self.spent += PER_CHOICE
         if built is None:
             return []
+        self.spent += PER_DISK * built.planned.scene.disk_count
         scene, step = built.planned.scene, built.planned.time_step
         recorded = self.companions.recorded(scene)
         try:
