@@ -11,7 +11,7 @@ import numpy as np
 
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.moved_sides import movable
-from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.coarser import Coarser, coarser
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
 from dembound.accuracy.of_disks.pair import Pair, pair_of, ratios, sides_of_pair
 from dembound.accuracy.of_disks.places import middle_of_loads, middles_of_loads, patch_around, weights_at
@@ -44,6 +44,7 @@ class Companions:
     time_step: float
     most: float
     runner: Runner = field(default_factory=Runner)
+    _made: dict[tuple[str, float], Coarser] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def pair(self) -> Pair | None:
@@ -168,7 +169,7 @@ class Companions:
 
         wider : how much farther away than in the case they are, over the scene's length across them.
         """
-        given = coarser(case, scene, time_step, self.diameter)
+        given = self._coarser(case, scene, time_step)
         own = self._with_sides(given.case.boundary, scene, wider)
         whole = self._with_sides(given.with_whole_cells.boundary, scene, wider) if given.weight > 0.0 else own
         far = self._motion(self.far, self._places(scene))
@@ -176,6 +177,13 @@ class Companions:
             name: {q: own[name][q] - far[name][q] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES}
             for name in far
         }
+
+    def _coarser(self, case: DiskCase, scene: DiskScene, time_step: float) -> Coarser:
+        """The case with disks of the companion, made once for all distances of its sides."""
+        key = case.text, time_step
+        if key not in self._made:
+            self._made[key] = coarser(case, scene, time_step, self.diameter)
+        return self._made[key]
 
     def _with_sides(
         self, sides: Mapping[str, Boundary], scene: DiskScene, wider: float
