@@ -212,7 +212,9 @@ def farther(packing: Packing, needed: Mapping[str, int], wider: float) -> dict[s
 
     needed : by side, the most that it moves, see `needed_by`.
     """
-    return {side: min(count, math.ceil(wider * packing.copies[normal_axis(side)] - 1e-9)) for side, count in needed.items()}
+    return {
+        side: min(count, math.ceil(wider * packing.copies[normal_axis(side)] - 1e-9)) for side, count in needed.items()
+    }
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

@@ -13,7 +13,7 @@ import numpy as np
 from dembound.accuracy.differences import keeps
 from dembound.accuracy.of_disks.arrangements import arrangements, may_widen
 from dembound.accuracy.of_disks.companions import farther, needed_by
-from dembound.accuracy.of_disks.cost import Cost, Counted, planned_cost
+from dembound.accuracy.of_disks.cost import Counted, planned_cost
 from dembound.accuracy.of_disks.extended import enlarged
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase

@@ -157,9 +157,10 @@ class _Found:
 class _Search:
     """The search for a choice.
 
-    own_cost : CPU time (s) of the steps of the given case. spent : of building choices, as counted, s. twin : the case, if its law is not that given. of_sides : by
-    arrangement and distance the largest error of its sides alone. of_disks : by factor of the diameter, with a
-    continuum and without, the smallest error of disks alone: where waves enter the continuum, disks have other places.
+    own_cost : CPU time (s) of the steps of the given case. twin : the case, if its law is not that given. tried, spent :
+    number of choices whose error was found; CPU time of building choices, as counted, s. of_sides : by arrangement and
+    distance the largest error of its sides alone. of_disks : by factor of the diameter, with a continuum and without,
+    the smallest error of disks alone: where waves enter the continuum, disks have other places.
     """
 
     companions: Companions

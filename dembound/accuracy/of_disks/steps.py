@@ -92,7 +92,9 @@ class Steps:
     def _inside(self, case: DiskCase) -> float:
         """Stability limit (s) of the given ground inside a body; of a narrow one also by its long sides."""
         least = max(1, math.ceil(LEAST / math.sqrt(len(self.ground.brick.radii))))
-        is_narrow = [count < NARROW and not wraps for count, wraps in zip(case.packing.copies, case.periodic, strict=True)]
+        is_narrow = [
+            count < NARROW and not wraps for count, wraps in zip(case.packing.copies, case.periodic, strict=True)
+        ]
         copies = [count if one else least for count, one in zip(case.packing.copies, is_narrow, strict=True)]
         if all(is_narrow) or len(self.ground.brick.radii) > 1:
             is_narrow, copies = [False, False], [least, least]
@@ -113,7 +115,8 @@ class Steps:
             Along(count, max(1, round(length / side))).shorter(each)
             for count, length, side, each in zip(packing.copies, packing.extent, element, brick, strict=True)
         ]
-        side = max(each.bricks * own / each.elements for each, own in zip(along, self.case.packing.brick_size, strict=True))
+        sizes = zip(along, self.case.packing.brick_size, strict=True)
+        side = max(each.bricks * own / each.elements for each, own in sizes)
         table = OutsideTable(
             order=outside.order,
             element=side * (1.0 + 1e-9),
@@ -131,7 +134,11 @@ class Steps:
         return self._limit(key, [each.bricks for each in along], sides, table)
 
     def _limit(
-        self, key: tuple[object, ...], copies: list[int], sides: Mapping[str, Boundary], outside: OutsideTable | None = None
+        self,
+        key: tuple[object, ...],
+        copies: list[int],
+        sides: Mapping[str, Boundary],
+        outside: OutsideTable | None = None,
     ) -> float:
         """Stability limit (s) of so many bricks of the given ground, found once; infinite if they make no scene."""
         if key not in self.limits:
