@@ -157,7 +157,7 @@ class _Found:
 class _Search:
     """The search for a choice.
 
-    own_cost : CPU time (s) of the steps of the given case. twin : the case, if its law is not that given. tried, spent :
+    own_cost : CPU time (s) of the steps of the given case. twin : its case, if its law is not that given. tried, spent :
     number of choices whose error was found; CPU time of building choices, as counted, s. of_sides : by arrangement and
     distance the largest error of its sides alone. of_disks : by factor of the diameter, with a continuum and without,
     the smallest error of disks alone: where waves enter the continuum, disks have other places.
