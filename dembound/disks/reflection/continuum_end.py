@@ -28,9 +28,14 @@ from dembound.packings.tiling import Assembly, tile
 
 def beside_elements(ground: PackedMaterial, side: str, outside: Surroundings) -> PackedMaterial:
     """The packing in bricks about as long along a side as elements, or as a brick if this is longer."""
+    count = copies_beside(ground, side, outside)
+    return ground if count == 1 else replace(ground, brick=copies_of(ground.brick, count, 1 - normal_axis(side)))
+
+
+def copies_beside(ground: PackedMaterial, side: str, outside: Surroundings) -> int:
+    """Number of bricks that are about as long along a side as elements."""
     along = 1 - normal_axis(side)
-    count = max(1, round(_element(outside, along) / float(ground.brick.size[along])))
-    return ground if count == 1 else replace(ground, brick=copies_of(ground.brick, count, along))
+    return max(1, round(_element(outside, along) / float(ground.brick.size[along])))
 
 
 def _element(outside: Surroundings, axis: int) -> float:
@@ -133,8 +138,7 @@ class ContinuumEnd:
         ahead = (elements.periods[wall.element] + beyond[:, None]).astype(int)
         row = (ties * np.arange(3)[:, None] + np.arange(ties))[:, :, None, None]
         row, numbers, ahead = (
-            np.broadcast_to(each, of_nodes.shape)
-            for each in (row, elements.numbers(wall.element), ahead[:, None, :])
+            np.broadcast_to(each, of_nodes.shape) for each in (row, elements.numbers(wall.element), ahead[:, None, :])
         )
         found = {}
         for periods in np.unique(ahead).tolist():
