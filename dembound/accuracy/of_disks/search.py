@@ -50,8 +50,10 @@ COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
 
 
-def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
+def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str], *, short: bool = False) -> Best:
     """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
+
+    short : whether the given case is taken where it keeps the bound and takes less time than the search.
 
     Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
     the companions.
@@ -62,14 +64,14 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
     runner = Runner()
     twin = elastic_twin(case, planned, most, kept, runner)
     if twin is None:
-        return _best(case, planned, bound, kept, most, runner)
-    found = _best(twin.case, twin.planned, bound, kept, most, runner, twin)
+        return _best(case, planned, bound, kept, most, runner, short=short)
+    found = _best(twin.case, twin.planned, bound, kept, most, runner, twin, short=short)
     own_cost = found.own_cost * planned.steps / twin.planned.steps  # steps of the given law cost as much: nothing opens
     choice = Choice.of(case, found.case, f"{twin.words}; {found.words}")
     found = replace(found, given=case, choice=choice, own_cost=own_cost)
     if found.holds or twin.stress == 0.0:
         return found
-    other = _best(case, planned, bound, kept, most, runner)
+    other = _best(case, planned, bound, kept, most, runner, short=short)
     other = replace(other, cost=other.cost * own_cost / other.own_cost, own_cost=own_cost)
     return min(found, other, key=lambda each: each.error)
 
@@ -82,6 +84,8 @@ def _best(
     most: float,
     runner: Runner,
     twin: ElasticTwin | None = None,
+    *,
+    short: bool,
 ) -> Best:
     """The best choice under the law of a case, planned; twin : the same, if it is not that of the given case."""
     companions = Companions(case, planned.scene, planned.time_step, most, runner)
@@ -89,7 +93,7 @@ def _best(
     if not _is_reached(planned) or not any(map(np.any, moved)):
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
     search = _Search(companions, Options(planned, bound, kept), bound, planned_cost(planned).seconds, twin)
-    best = search.best()
+    best = (search.given() if short else None) or search.best()
     words, error, cost = best.option.words, best.error, best.built.cost
     breaks = companions.first_break
     if breaks < case.run.duration:
@@ -157,10 +161,11 @@ class _Found:
 class _Search:
     """The search for a choice.
 
-    own_cost : CPU time (s) of the steps of the given case. twin : its case, if its law is not that given. tried, spent :
-    number of choices whose error was found; CPU time of building choices, as counted, s. of_sides : by arrangement and
-    distance the largest error of its sides alone. of_disks : by factor of the diameter, with a continuum and without,
-    the smallest error of disks alone: where waves enter the continuum, disks have other places.
+    own_cost : CPU time (s) of the steps of the given case. twin : its case, if its law is not that given. tried :
+    number of choices whose error was found. spent : CPU time of building choices, as counted, s. waiting : by cost,
+    what may come next: diameters, their choices, and those that are built and cost more than others may. of_sides : by
+    arrangement and distance the largest error of its sides alone. of_disks : by factor of the diameter, with a
+    continuum and without, the smallest error of disks alone: where waves enter the continuum, disks have other places.
     """
 
     companions: Companions
@@ -170,20 +175,35 @@ class _Search:
     twin: ElasticTwin | None
     tried: int = 0
     spent: float = 0.0
+    waiting: list[tuple[float, int, DiskOption | Built | float]] = field(default_factory=list)
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
     of_disks: dict[tuple[float, bool], float] = field(default_factory=dict)
+
+    def given(self) -> _Found | None:
+        """The given case, if it keeps the bound and takes less time than a search for a cheaper one; None if not."""
+        if self.own_cost > LONGEST or (built := self._built(self.options.own)) is None:
+            return None
+        found = self._with_error(built, [])
+        return found[0] if found and self._keeps(found[0].error.worst) else None
 
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
         found: list[_Found] = []
         left: list[DiskOption] = []
-        for option in self._by_cost():
+        for item in self._by_cost():
+            option = item.option if isinstance(item, Built) else item
             if not self._affords(option):
                 break
             if not self._keeps(self._alone(option)):
                 left.append(option)
                 continue
-            found += self._with_error(option, left)
+            built = item if isinstance(item, Built) else self._built(item)
+            if built is None:
+                continue
+            if built is not item and self.waiting and built.cost > self.waiting[0][0]:
+                self._wait(built.cost, built)
+                continue
+            found += self._with_error(built, left)
             if found and self._keeps(found[-1].error.worst):
                 return found[-1]
         return self._most_accurate(found, left)
@@ -194,21 +214,23 @@ class _Search:
         These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
         below the smallest one found.
         """
-        while left := [each for each in left if self._affords(each)]:
+        while left:
             left.sort(key=self._alone)
-            if found and self._alone(left[0]) >= min(each.error.worst for each in found):
+            option = left.pop(0)
+            if found and (self._alone(option) >= min(each.error.worst for each in found) or not self._affords(option)):
                 break
-            found += self._with_error(left.pop(0), None)
+            if (built := self._built(option)) is not None:
+                found += self._with_error(built, None)
         if not found:
             raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each.error.worst)
 
     def _affords(self, option: DiskOption) -> bool:
-        """Whether the search may go on with a choice; always with the first one."""
+        """Whether the search may go on with a choice, as always with the first one."""
         packing = option.case.packing
         disks = packing.about(packing.extent)
         spent = self.spent + PER_STEP * self.companions.runner.work
-        return self.tried == 0 or spent + PER_CHOICE + PER_DISK * disks <= max(LONGEST, PART * self.own_cost)
+        return self.spent == 0.0 or spent + PER_CHOICE + PER_DISK * disks <= max(LONGEST, PART * self.own_cost)
 
     def _alone(self, option: DiskOption) -> float:
         """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
@@ -220,24 +242,38 @@ class _Search:
         """Whether an error is within the bound, with its reserve."""
         return SAFETY * error <= self.bound
 
-    def _by_cost(self) -> Iterator[DiskOption]:
+    def _by_cost(self) -> Iterator[DiskOption | Built]:
         """Choices by cost; those with the next smaller disks are only counted when their cost has been reached."""
-        factors = self.options.factors
-        number, least = count(), 0.0
-        waiting: list[tuple[float, int, DiskOption | float]] = [(0.0, next(number), factors.pop(0))]
-        while waiting:
-            cost, _, item = heapq.heappop(waiting)
+        factors, least = self.options.factors, 0.0
+        self._wait(least, factors.pop(0))
+        while self.waiting:
+            cost, _, item = heapq.heappop(self.waiting)
             if cost > COSTLIEST * self.own_cost:
                 return
-            if isinstance(item, DiskOption):
+            if not isinstance(item, float):
                 yield item
                 continue
             made = self._of(item)
             for each in made:
-                heapq.heappush(waiting, (each.cost, next(number), each))
+                self._wait(each.cost, each)
             least = min((each.cost for each in made), default=least)
             if factors:
-                heapq.heappush(waiting, (least, next(number), factors.pop(0)))
+                self._wait(least, factors.pop(0))
+
+    def _wait(self, cost: float, item: DiskOption | Built | float) -> None:
+        """Put a choice, or the choices of a diameter, where its cost is reached."""
+        heapq.heappush(self.waiting, (cost, next(self._numbers), item))
+
+    @cached_property
+    def _numbers(self) -> Iterator[int]:
+        """Numbers by which choices of one cost keep their order."""
+        return count()
+
+    def _built(self, option: DiskOption) -> Built | None:
+        """A choice, built; None if it cannot run."""
+        built = self.options.build(option)
+        self.spent += PER_CHOICE + (0.0 if built is None else PER_DISK * built.planned.scene.disk_count)
+        return built
 
     def _of(self, factor: float) -> list[DiskOption]:
         """Choices with disks of one diameter."""
@@ -245,17 +281,12 @@ class _Search:
         may_be = self.twin is None or self.twin.holds(factor * own)
         return self.options.of(factor) if may_be else []
 
-    def _with_error(self, option: DiskOption, left: list[DiskOption] | None) -> list[_Found]:
-        """A choice with its error; nothing if it, or a companion of it, cannot run.
+    def _with_error(self, built: Built, left: list[DiskOption] | None) -> list[_Found]:
+        """A choice with its error; nothing if a companion of it cannot run.
 
         left : where it is left, without its companions, if the error of its disks alone is too large; None: nowhere.
         """
-        built = self.options.build(option)
-        self.spent += PER_CHOICE
-        if built is None:
-            return []
-        self.spent += PER_DISK * built.planned.scene.disk_count
-        scene, step = built.planned.scene, built.planned.time_step
+        option, scene, step = built.option, built.planned.scene, built.planned.time_step
         recorded = self.companions.recorded(scene)
         try:
             disks, others = of_ground(self.companions, scene, step)

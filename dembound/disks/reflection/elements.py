@@ -40,9 +40,9 @@ class Elements:
 
     Attributes
     ----------
-    nodes, periods : (E, N²) nodes of every element, and how many periods ahead of their own it has them, 0 or 1. count :
-    number of degrees of freedom, x of all nodes and then y. imaged : (i,) those of nodes that some element has a period
-    ahead. moving : (count,) bool, those that are not at rest.
+    nodes, periods : (E, N²) nodes of every element, and how many periods ahead of their own it has them, 0 or 1.
+    count : number of degrees of freedom, x of all nodes and then y. imaged : (i,) those of nodes that some element has
+    a period ahead. moving : (count,) bool, those that are not at rest.
     """
 
     def __init__(self, mesh: Mesh, medium: Medium, layer: Layer) -> None:
