@@ -43,7 +43,7 @@ LONGEST, PART = 8.0, 0.2
 """CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
 that it finds the same on every machine."""
 
-PER_CHOICE, PER_DISK, PER_STEP = 0.1, 5e-6, 2e-8
+PER_CHOICE, PER_DISK, PER_STEP = 0.1, 3e-6, 2e-8
 """CPU seconds of finding the error of a choice, of building it by disk, and of its companions by particle-step."""
 
 COSTLIEST = 64.0
@@ -217,8 +217,10 @@ class _Search:
         while left:
             left.sort(key=self._alone)
             option = left.pop(0)
-            if found and (self._alone(option) >= min(each.error.worst for each in found) or not self._affords(option)):
+            if found and self._alone(option) >= min(each.error.worst for each in found):
                 break
+            if found and not self._affords(option):
+                continue
             if (built := self._built(option)) is not None:
                 found += self._with_error(built, None)
         if not found:
