@@ -88,7 +88,9 @@ class Companions:
     @cached_property
     def _lattice(self) -> DiskScene:
         """The scene of the companion of the given case."""
-        return build(coarser(self.case, self.scene, self.time_step, self.diameter).case)
+        if self.pair is not None:
+            return self.pair.smaller
+        return build(self._coarser(self.case, self.scene, self.time_step).case)
 
     @cached_property
     def _patches(self) -> dict[str, np.ndarray]:
@@ -181,6 +183,8 @@ class Companions:
     def _coarser(self, case: DiskCase, scene: DiskScene, time_step: float) -> Coarser:
         """The case with disks of the companion, made once for all distances of its sides."""
         key = case.text, time_step
+        if self.pair is not None:
+            self._made.setdefault((self.case.text, self.time_step), self.pair.given)
         if key not in self._made:
             self._made[key] = coarser(case, scene, time_step, self.diameter)
         return self._made[key]
