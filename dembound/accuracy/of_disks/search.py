@@ -43,7 +43,7 @@ LONGEST, PART = 8.0, 0.2
 """CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
 that it finds the same on every machine."""
 
-PER_CHOICE, PER_DISK, PER_STEP = 0.1, 3e-6, 2e-8
+PER_CHOICE, PER_DISK, PER_STEP = 0.05, 3e-6, 2e-8
 """CPU seconds of finding the error of a choice, of building it by disk, and of its companions by particle-step."""
 
 COSTLIEST = 64.0
@@ -193,7 +193,7 @@ class _Search:
         for item in self._by_cost():
             option = item.option if isinstance(item, Built) else item
             if not self._affords(option):
-                break
+                continue
             if not self._keeps(self._alone(option)):
                 left.append(option)
                 continue
