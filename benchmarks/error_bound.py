@@ -25,11 +25,10 @@ from error_bound_scenes import scenes
 from dembound.accuracy.advise import advise
 from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History, Motions, loud
-from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.entry import late_by
-from dembound.accuracy.of_disks.options import FACTORS, DiskOption, disk_options, with_diameter
+from dembound.accuracy.of_disks.options import Built, Options
 from dembound.accuracy.of_disks.search import COSTLIEST
-from dembound.accuracy.runner import SHORT, measure
+from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build
 from dembound.errors import DemboundError
@@ -83,15 +82,11 @@ def _plane(history: History) -> History:
     return replace(history, values={quantity: each[:, :2] for quantity, each in history.values.items()})
 
 
-def every_choice(case: DiskCase, bound: float, most: float) -> list[DiskOption]:
+def every_choice(case: DiskCase, bound: float, most: float) -> list[Built]:
     """All choices for a bound that cost at most so much (s), whatever their error, the cheapest first."""
-    planned = plan(case)
-    companions = Companions(case, planned.scene, planned.time_step, SHORT)  # type: ignore[arg-type]
-    found: list[DiskOption] = []
-    for factor in FACTORS:
-        plain = with_diameter(companions, factor)
-        if plain is not None:
-            found += disk_options(companions, plain, factor, bound, ())
+    options = Options(plan(case), bound, ())  # type: ignore[arg-type]
+    counted = [each for factor in options.factors for each in options.of(factor) if each.cost <= most]
+    found = [built for each in counted if (built := options.build(each)) is not None]
     return sorted((each for each in found if each.cost <= most), key=lambda each: each.cost)
 
 
@@ -131,7 +126,7 @@ def every(names: list[str]) -> None:
             cells = [f"{choice.cost:.2g}", "", "", choice.choice.name] if holds else ["", "", "", "none"]
             if best is not None:
                 cells[1] = f"{best.cost:.2g}"
-                cells += [best.words, f"{100 * truth.of(best.case):.2g} %"]
+                cells += [best.option.words, f"{100 * truth.of(best.case):.2g} %"]
                 if holds:
                     ratios.append(choice.cost / best.cost)
                     cells[2] = f"{ratios[-1]:.2g}"

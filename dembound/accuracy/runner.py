@@ -113,7 +113,7 @@ class Runner:
         key = digest(case)
         if (found := self._kept.get(key)) is None:
             with self._shown(name) as progress:
-                found, _, _ = measure(case, progress, inside=inside)
+                found, _, _ = measure(case, progress, inside=inside, timed=False)
             self._kept.add(key, found)
             self.work += found.work
         return found
@@ -125,17 +125,18 @@ def at_step(case: AnyCase, step: float) -> AnyCase:
 
 
 def measure(
-    case: Case, progress: Progress, watched: bool = True, inside: Box | None = None
+    case: Case, progress: Progress, watched: bool = True, inside: Box | None = None, timed: bool = True
 ) -> tuple[Run, float, float]:
     """Run a case; returns its results without costs, CPU time while stepping and time of the whole run, s.
 
     The whole run is building, settling and stepping, without files and pictures. Times do not include compiling.
     watched : whether the energy ledger detects runs that gain energy; it interrupts the stepping a few hundred times,
     which takes longer than all steps of a short bar. inside : the part of the scene in which findings are looked for.
+    timed : whether the CPU time counts, which some systems take half a millisecond to tell; else it is elapsed time.
 
     Raises the errors of `running.plan` and of runs.
     """
-    wall, cpu = Clock(), Clock(time.process_time)
+    wall, cpu = Clock(), Clock(time.process_time) if timed else Clock()
     with wall.with_compiling(), wall.of("whole"):
         planned = plan(case)
         beginning = planned.kind.begin(planned.stepped, planned.time_step, progress.settling)

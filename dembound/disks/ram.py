@@ -56,8 +56,7 @@ class SceneSizes:
         packing = case.packing
         across, up = packing.copies
         disks = packing.expected_disks
-        lanes = LANES * columns_of(min(across, up), max(across, up)) / (across * up)  # slots for each disk
-        in_rows = across * up > 1 and lanes * LEAST_FILL <= 1.0
+        lanes, in_rows = _lanes(across, up), stands_in_rows(case)
         if case.column_sides:
             disks *= 1.0 + case.column_rows[1] / (across * up)
         everywhere = any(load.wave is not None and (load.is_everywhere or load.region) for load in case.load)
@@ -73,6 +72,17 @@ class SceneSizes:
             grid=_expected_grid(case),
             probes=_expected_probes(case),
         )
+
+
+def stands_in_rows(case: DiskCase) -> bool:
+    """Whether copies of a disk of the brick will stand side by side in memory, see contacts/layout.py."""
+    across, up = case.packing.copies
+    return across * up > 1 and _lanes(across, up) * LEAST_FILL <= 1.0
+
+
+def _lanes(across: int, up: int) -> float:
+    """Slots for each disk where copies stand side by side."""
+    return LANES * columns_of(min(across, up), max(across, up)) / (across * up)
 
 
 def _expected_grid(case: DiskCase) -> GridSizes | None:

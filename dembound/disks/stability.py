@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 
+from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, RunError
@@ -105,15 +106,15 @@ def _rounded_down(step: float) -> float:
     return float(np.floor(step / unit) * unit)
 
 
-def own_step(scene: DiskScene, limit: float) -> float:
+def own_step(case: DiskCase, limit: float) -> float:
     """The time step (s) of the case at a stability limit (s): a share of it, or the one given, even above it.
 
     Raises CaseError when the step is automatic and nothing can vibrate.
     """
-    wanted = scene.case.run.time_step
+    wanted = case.run.time_step
     if wanted != "auto":
         return float(wanted)
-    step = scene.case.run.safety * limit
+    step = case.run.safety * limit
     if not np.isfinite(step):
         raise CaseError(["run.time_step: is auto but nothing in the scene can vibrate, give a step in s"])
     return _rounded_down(step)
@@ -125,7 +126,7 @@ def choose_step(scene: DiskScene) -> tuple[float, float]:
     Raises CaseError when the case gives a step above the limit.
     """
     limit = step_limit(scene)
-    step = own_step(scene, limit)
+    step = own_step(scene.case, limit)
     if step > limit:
         raise CaseError([f"run.time_step: is {step:g} s, must not be above the stability limit {limit:.6g} s"])
     return step, limit

@@ -72,7 +72,7 @@ def _under(scene: DiskScene, name: str) -> Trial:
             start = Start(nothing, contact_lists(scene))  # what is locked in is balanced, also at cut faces
         return DiskSystem(scene, time_step, start, load=nothing)
 
-    return Trial(name, scene, limit, stability.own_step(scene, limit), system, is_linear=not scene.has_history)
+    return Trial(name, scene, limit, stability.own_step(scene.case, limit), system, is_linear=not scene.has_history)
 
 
 def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:

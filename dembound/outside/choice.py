@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -116,6 +117,7 @@ def jumps(signal: Signal) -> bool:
     return not math.isfinite(signal.wave.highest_frequency())
 
 
+@lru_cache(maxsize=256)
 def cutoff(signal: Signal, share: float = SHARE) -> float:
     """Frequency (Hz) above which there is a share of the energy of velocities; infinite for a wave that jumps."""
     if jumps(signal):
@@ -125,6 +127,7 @@ def cutoff(signal: Signal, share: float = SHARE) -> float:
     return float(frequency[min(np.searchsorted(below, (1.0 - share) * below[-1]), len(frequency) - 1)])
 
 
+@lru_cache(maxsize=64)
 def slowest(medium: Medium) -> float:
     """Speed (m/s) of the slowest plane waves of all directions."""
     return min(float(medium.plane_waves((math.cos(a), math.sin(a)))[0][0]) for a in np.linspace(0.0, math.pi, 37))

@@ -84,7 +84,7 @@ def cut_contacts(
     there = np.array([tops.get(side, np.inf) for axis in BEYOND for side in axis])[found.side] > _heights(
         found, brick, body
     )
-    return found.only(there & _is_absent(found, brick, body) & out.any(axis=1) & ~(out & ~allowed).any(axis=1))
+    return found.only(there & out.any(axis=1) & ~(out & ~allowed).any(axis=1))  # a body has no disks beyond its sides
 
 
 def contacts_into(brick: Brick, body: Assembly, hole: Hole) -> CutContacts:
@@ -93,9 +93,9 @@ def contacts_into(brick: Brick, body: Assembly, hole: Hole) -> CutContacts:
     reach = np.abs(brick.vectors).max(axis=0)
     near = ((body.positions >= np.array([x0, y0]) - reach) & (body.positions <= np.array([x1, y1]) + reach)).all(axis=1)
     found = _ends_at(brick, body, np.flatnonzero(near))
-    removed = hole.contains(body.positions[found.node] + found.vectors(brick)) & _is_absent(found, brick, body)
+    found = found.only(hole.contains(body.positions[found.node] + found.vectors(brick)))
     never_there = _beyond(found.tile, brick.edge_rows[found.other], body.copies).any(axis=1)
-    return found.only(removed & ~never_there)
+    return found.only(_is_absent(found, brick, body, near) & ~never_there)
 
 
 def _ends_at(
@@ -114,10 +114,10 @@ def _ends_at(
     return CutContacts(node, contact_type, is_second, other, place, image, np.full(len(node), -1))
 
 
-def _is_absent(found: CutContacts, brick: Brick, body: Assembly) -> np.ndarray:
-    """Whether the other disks of contacts (e,) are not in a body."""
-    where = body.tile.astype(np.int64)
-    return ~np.isin(_key(found.tile, found.other, brick), _key(where, body.brick_particle, brick))
+def _is_absent(found: CutContacts, brick: Brick, body: Assembly, near: np.ndarray) -> np.ndarray:
+    """Whether the other disks of contacts (e,), which are near (n,) bool if they are there, are not in a body."""
+    where = body.tile[near].astype(np.int64)
+    return ~np.isin(_key(found.tile, found.other, brick), _key(where, body.brick_particle[near], brick))
 
 
 def _heights(found: CutContacts, brick: Brick, body: Assembly) -> np.ndarray:

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.choice import Choice, changed, is_valid
-from dembound.accuracy.of_disks.boxes import box_tables, boxes, continuum_beyond, may_be_boxed
+from dembound.accuracy.choice import Choice, changed
+from dembound.accuracy.of_disks.boxes import box_tables, continuum_beyond, may_be_boxed, rectangles
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.settings import extents
-from dembound.disks.scene import DiskScene, build
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.errors import CaseError
 from dembound.table import Box
 
 CONTINUUM_SHARE = 0.3
@@ -33,14 +34,17 @@ def _silent(case: DiskCase) -> dict[str, Boundary]:
     return {side: table for side, table in case.boundary.items() if table.may_move}
 
 
-def arrangements(case: DiskCase, scene: DiskScene, bound: float) -> Iterator[Choice[DiskCase]]:
-    """Choices of sides for a case, its own first; valid ones only. scene : of the case; bound : error asked for."""
+def arrangements(case: DiskCase, ground: PackedMaterial, bound: float) -> Iterator[Choice[DiskCase]]:
+    """Choices of sides for a case, its own first: those whose tables are valid, none of which has been built.
+
+    ground : of the case. bound : error asked for.
+    """
     silent = _silent(case)
     yield Choice("sides as given", {}, case)
     if case.ground.size is None and case.incident is None and silent:
         yield from _dashpots(case, silent)
     if case.incident is None:
-        yield from _continuum(case, scene, silent, bound)
+        yield from _continuum(case, ground, silent, bound)
 
 
 def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice[DiskCase]]:
@@ -57,12 +61,11 @@ def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice
             for side in silent
         }
         changes = {f"boundary.{side}": table for side, table in tables.items()}
-        if is_valid(case, changes, build):
-            yield Choice(f"{kind} sides", changes, changed(case, changes))
+        yield from _if_valid(f"{kind} sides", case, changes)
 
 
 def _continuum(
-    case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float
+    case: DiskCase, ground: PackedMaterial, silent: Mapping[str, Boundary], bound: float
 ) -> Iterator[Choice[DiskCase]]:
     """A continuum beyond all artificial sides, or those without waves, and round boxes of disks."""
     coarse = CONTINUUM_SHARE * bound
@@ -76,26 +79,36 @@ def _continuum(
                 f"boundary.{side}": continuum_beyond(table) for side, table in sides.items() if not table.is_outside
             }
             changes = {**beyond, **accuracy}
-            if changes and sides and is_valid(case, changes):
-                yield Choice(f"a {name}continuum beyond {' and '.join(sides)}", changes, changed(case, changes))
+            words = f"a {name}continuum beyond {' and '.join(sides)}"
+            if changes and sides and (found := [*_if_valid(words, case, changes)]):
+                yield from found
                 break
-        yield from _boxes(case, accuracy, name)
+        yield from _boxes(case, ground, accuracy, name)
 
 
-def _boxes(case: DiskCase, accuracy: Mapping[str, Any], name: str) -> Iterator[Choice[DiskCase]]:
+def _boxes(
+    case: DiskCase, ground: PackedMaterial, accuracy: Mapping[str, Any], name: str
+) -> Iterator[Choice[DiskCase]]:
     """Boxes of disks of several sizes in a continuum."""
     if not may_be_boxed(case):
         return
     wanted = changed(case, accuracy)
-    small = [candidate.box for candidate in boxes(build(wanted))]
+    small = [*rectangles(wanted, ground)]
     for box in dict.fromkeys([*small, *(_with_monitors(case, each) for each in small)]):
         tables = box_tables(case, box)
         kept = {key: value for key, value in case.packing.given().items() if key != "bricks"}
-        ground = {f"ground.{key}": value for key, value in tables.pop("ground").items()}
-        changes = {**ground, "packing": kept | tables.pop("packing"), **tables}
+        whole = {f"ground.{key}": value for key, value in tables.pop("ground").items()}
+        changes = {**whole, "packing": kept | tables.pop("packing"), **tables}
         changes |= accuracy
-        if is_valid(case, changes):
-            yield Choice(f"a box of {_size(box)} in a {name}continuum", changes, changed(case, changes))
+        yield from _if_valid(f"a box of {_size(box)} in a {name}continuum", case, changes)
+
+
+def _if_valid(words: str, case: DiskCase, changes: Mapping[str, Any]) -> Iterator[Choice[DiskCase]]:
+    """The choice of some changes, if their tables have no mistake."""
+    try:
+        yield Choice(words, changes, changed(case, changes))
+    except CaseError:
+        return
 
 
 def _with_monitors(case: DiskCase, box: Box) -> Box:

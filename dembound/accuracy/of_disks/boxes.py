@@ -15,6 +15,7 @@ from dembound.disks import step_cost
 from dembound.disks.beyond.hollowed import BAND as FLOOR
 from dembound.disks.beyond.mesh import medium_of
 from dembound.disks.beyond.settings import expected_tops, extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.outside import choice
@@ -139,26 +140,30 @@ def _reaches(hole: Box, side: str, left: float, right: float) -> bool:
 
 def boxes(scene: DiskScene) -> Iterator[BoxOfDisks]:
     """Boxes of disks with elements of different sizes round them, in place of a scene that `may_be_boxed`."""
-    case, medium, diameter = scene.case, medium_of(scene.ground), scene.ground.brick.mean_diameter
-    order, accuracy = case.outside.order, case.outside.accuracy
-    side = choice.element_size(signals_of(case), medium, order, accuracy)
-    widest = max(side, least_element(case, diameter)) / choice.size_near(1.0, order, accuracy)
-    for part in NEARER:
-        box = _round(scene, max(part * widest, BAND * diameter))
-        if box[0] >= box[2] or box[1] >= box[3]:  # all that makes waves is on the continuum
-            continue
+    for box in rectangles(scene.case, scene.ground):
         try:
             yield _with_continuum(scene, box)
         except CaseError:  # no mesh
             continue
 
 
-def _round(scene: DiskScene, clearance: float) -> Box:
+def rectangles(case: DiskCase, ground: PackedMaterial) -> Iterator[Box]:
+    """The boxes (m) of disks of a ground in place of a case that `may_be_boxed`, with larger and smaller elements."""
+    diameter, order, accuracy = ground.brick.mean_diameter, case.outside.order, case.outside.accuracy
+    side = choice.element_size(signals_of(case), medium_of(ground), order, accuracy)
+    widest = max(side, least_element(case, diameter)) / choice.size_near(1.0, order, accuracy)
+    for part in NEARER:
+        box = _round(case, max(part * widest, BAND * diameter), diameter)
+        if box[0] < box[2] and box[1] < box[3]:  # else all that makes waves is on the continuum
+            yield box
+
+
+def _round(case: DiskCase, clearance: float, diameter: float) -> Box:
     """The box of whole bricks (m) with a clearance (m) from holes and loads, up to the surface if it is near."""
-    case, brick = scene.case, np.array(scene.case.packing.brick_size)
+    brick = np.array(case.packing.brick_size)
     lows, highs = (np.array(corners) for corners in zip(*extents(case), strict=True))
     ground, origin = np.array(case.box), np.array([case.packing.origin[0], case.box[1]])
-    least = least_element(case, scene.ground.brick.mean_diameter)
+    least = least_element(case, diameter)
     lowest = lows.min(axis=0) - clearance
     lowest[1] = min([lowest[1], *(floor.height - least for floor in case.floors.values())])
     low = origin + brick * np.floor((lowest - origin) / brick)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from dembound.accuracy.cause import SIDES, Cause, Causes
 from dembound.accuracy.history import Motions
@@ -64,9 +65,14 @@ def quick_causes(scene: DiskScene) -> Causes:
     return Causes(found)
 
 
-def causes_of_choice(companions: Companions, scene: DiskScene, time_step: float, wider: float) -> Causes:
-    """The causes of the error of a choice, from the far companion's motion; see `Companions.of_sides`."""
-    found = Causes(of_ground(companions, scene, time_step), motions=companions.recorded(scene))
+def causes_of_choice(
+    companions: Companions, scene: DiskScene, time_step: float, wider: float, ground: Sequence[Cause] | None = None
+) -> Causes:
+    """The causes of the error of a choice, from the far companion's motion; see `Companions.of_sides`.
+
+    ground : those of `of_ground`, if they are known.
+    """
+    found = Causes(ground or of_ground(companions, scene, time_step), motions=companions.recorded(scene))
     if sides_of_pair(scene.case):
         sides = of_sides(companions, scene, time_step, wider)
         found += Causes([sides], _breaks(companions), _echoes(companions), 0.0, companions.echo_free)

@@ -11,7 +11,7 @@ import numpy as np
 
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.moved_sides import movable
-from dembound.accuracy.of_disks.coarser import coarser
+from dembound.accuracy.of_disks.coarser import Coarser, coarser
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
 from dembound.accuracy.of_disks.pair import Pair, pair_of, ratios, sides_of_pair
 from dembound.accuracy.of_disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
@@ -23,6 +23,7 @@ from dembound.disks.contacts.breaks import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
+from dembound.packings import Packing
 
 QUANTITIES = ("velocity", "displacement")
 """Quantities whose errors are bounded."""
@@ -46,6 +47,7 @@ class Companions:
     time_step: float
     most: float
     runner: Runner = field(default_factory=Runner)
+    _made: dict[tuple[str, float], Coarser] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def pair(self) -> Pair | None:
@@ -94,7 +96,9 @@ class Companions:
     @cached_property
     def _lattice(self) -> DiskScene:
         """The scene of the companion of the given case."""
-        return build(coarser(self.case, self.scene, self.time_step, self.diameter).case)
+        if self.pair is not None:
+            return self.pair.smaller
+        return build(self._coarser(self.case, self.scene, self.time_step).case)
 
     @cached_property
     def _patches(self) -> dict[str, np.ndarray]:
@@ -190,7 +194,7 @@ class Companions:
 
         wider : how much farther away than in the case they are, over the scene's length across them.
         """
-        given = coarser(case, scene, time_step, self.diameter)
+        given = self._coarser(case, scene, time_step)
         own = self._with_sides(given.case.boundary, scene, wider)
         whole = self._with_sides(given.with_whole_cells.boundary, scene, wider) if given.weight > 0.0 else own
         far = self._motion(self.far, self._places(scene))
@@ -199,22 +203,22 @@ class Companions:
             for name in far
         }
 
+    def _coarser(self, case: DiskCase, scene: DiskScene, time_step: float) -> Coarser:
+        """The case with disks of the companion, made once for all distances of its sides."""
+        key = case.text, time_step
+        if self.pair is not None:
+            self._made.setdefault((self.case.text, self.time_step), self.pair.given)
+        if key not in self._made:
+            self._made[key] = coarser(case, scene, time_step, self.diameter)
+        return self._made[key]
+
     def _with_sides(
         self, sides: Mapping[str, Boundary], scene: DiskScene, wider: float
     ) -> dict[str, dict[str, np.ndarray]]:
         """The motion at the monitors of a scene with other sides of the companion, so much farther away."""
         own = replace(self._own, boundary=sides)
-        case = self.wider(build(own), self._needed, wider) if wider else own
+        case = enlarged(build(own), farther(own.packing, self._needed, wider)) if wider else own
         return self._motion(self._run(case), self._places(scene))
-
-    def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
-        """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
-        bricks = {side: min(count, self._bricks(scene, side, wider)) for side, count in needed.items()}
-        return enlarged(scene, bricks)
-
-    def _bricks(self, scene: DiskScene, side: str, wider: float) -> int:
-        """Bricks by which a side moves."""
-        return math.ceil(wider * scene.case.packing.copies[normal_axis(side)] - 1e-9)
 
     def _run(self, case: DiskCase) -> Motions:
         """The motion of the monitors of a companion, until bonds break with far sides."""
@@ -228,6 +232,16 @@ class Companions:
 def _named(monitor: str, number: int) -> str:
     """The name of a monitor of a patch."""
     return f"{monitor}.{number}"
+
+
+def farther(packing: Packing, needed: Mapping[str, int], wider: float) -> dict[str, int]:
+    """Bricks by which sides move that become so much farther away, over the length across them.
+
+    needed : by side, the most that it moves, see `needed_by`.
+    """
+    return {
+        side: min(count, math.ceil(wider * packing.copies[normal_axis(side)] - 1e-9)) for side, count in needed.items()
+    }
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

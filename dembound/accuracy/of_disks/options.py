@@ -1,24 +1,27 @@
-"""The choices that a case of disks leaves open, each with the time that it is predicted to take."""
+"""The choices that a case of disks leaves open, each with its cost, which is counted: nothing is built for them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.choice import Choice
 from dembound.accuracy.differences import keeps
 from dembound.accuracy.of_disks.arrangements import arrangements, may_widen
-from dembound.accuracy.of_disks.companions import Companions, needed_by
+from dembound.accuracy.of_disks.companions import farther, needed_by
+from dembound.accuracy.of_disks.cost import Counted, planned_cost
+from dembound.accuracy.of_disks.extended import enlarged
+from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
-from dembound.disks import step_cost
 from dembound.disks.loads import forces_of
-from dembound.disks.scene import DiskScene
-from dembound.errors import DemboundError
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.scene import DiskScene, ground_of
+from dembound.errors import CaseError, DemboundError
 from dembound.kinds import checked, with_changes
 from dembound.motion.kind import Plan
 from dembound.running import plan
@@ -35,78 +38,170 @@ NARROW = 10.0
 ROTATION = 2
 """Number of the rotation among the motions that are held."""
 
+SIZES = frozenset(("packing", "packing.size", "packing.origin", "packing.bricks"))
+"""Keys that sides farther away change."""
+
+ROUNDING = 1e-9
+"""Part of a brick by which a length may differ from whole ones."""
+
 EQUAL = 1e-6
 """Relative difference of forces, and of stiffnesses, that count as equal."""
 
 
 @dataclass(frozen=True)
 class DiskOption:
-    """A choice.
+    """A choice before it is built.
 
-    case : of the choice. planned : with its sides where they are in `arrangement`, if they are `wider`, too. factor :
-    its diameter over that given. cost : predicted CPU time of the steps, s.
+    case : with its sides where they are in the `arrangement` of this name, if they are `wider`, too. factor : its
+    diameter over that given. cost : counted, in seconds of CPU time of the steps.
     """
 
     case: DiskCase
-    planned: Plan[DiskScene]
-    arrangement: Choice[DiskCase]
+    arrangement: str
     factor: float
     wider: float
     cost: float
 
     @property
-    def scene(self) -> DiskScene:
-        """The scene that is planned."""
-        return self.planned.scene
-
-    @cached_property
     def words(self) -> str:
         """The choice in words."""
-        diameter = f"disks of {self.scene.ground.brick.mean_diameter:.4g} m"
         wider = f", {self.wider:g} times the scene farther away" if self.wider else ""
-        return f"{self.arrangement.name}{wider}, {diameter}"
+        return f"{self.arrangement}{wider}, disks of {2.0 * self.case.packing.radius:.4g} m"
 
 
-def cost_of(planned: Plan[DiskScene]) -> float:
-    """CPU time of the steps, s."""
-    return 1e-9 * planned.steps * sum(step_cost.of_scene(planned.stepped).values())
+@dataclass(frozen=True)
+class Built:
+    """A choice that can run.
 
-
-def with_diameter(companions: Companions, factor: float) -> Plan[DiskScene] | None:
-    """The given case with larger or smaller disks, planned; None if it cannot run or its loads have other forces."""
-    given = companions.case
-    try:
-        case = given if factor == 1.0 else with_changes(given, {"packing": _larger(given, factor)})
-        planned: Plan[DiskScene] = plan(case)
-    except DemboundError:
-        return None
-    if factor > 1.0 and _is_narrow(planned.scene):
-        return None
-    same = _same_ground(companions.scene, planned.scene) and _same_forces(companions.scene, planned.scene)
-    return planned if same else None
-
-
-def disk_options(
-    companions: Companions, plain: Plan[DiskScene], factor: float, bound: float, kept: Sequence[str]
-) -> Iterator[DiskOption]:
-    """All choices with disks of one diameter that keep the values of some keys; those that cannot run are left out.
-
-    plain : the plan with the given sides and these disks.
+    case : with its sides where they are to be. planned : with its sides where they are in its arrangement. cost : CPU
+    time of the steps by this plan, s.
     """
-    scene = plain.scene
-    for arrangement in arrangements(scene.case, scene, bound):
-        planned = _planned(scene.case, arrangement.changes)
-        if planned is None:
-            continue
-        found = DiskOption(planned.scene.case, planned, arrangement, factor, 0.0, cost_of(planned))
-        each = [found, *(_wider(found, companions) if may_widen(arrangement) else [])]
-        yield from (choice for choice in each if keeps(companions.case, choice.case, kept))
+
+    option: DiskOption
+    case: DiskCase
+    planned: Plan[DiskScene]
+    cost: float
 
 
-def may_change_diameter(case: DiskCase, kept: Sequence[str]) -> bool:
-    """Whether disks only stand for the ground, on a lattice whose bonds do not break, and their radius is not kept."""
-    sizes = {"packing", *(f"packing.{key}" for key in case.packing.scaled(1.0))}
-    return case.packing.is_lattice and not LAWS[case.material.law].has_history and sizes.isdisjoint(kept)
+@dataclass
+class Options:
+    """The choices of a case.
+
+    given : the case, planned. bound : error asked for. kept : keys that do not change.
+    """
+
+    given: Plan[DiskScene]
+    bound: float
+    kept: Sequence[str]
+
+    @property
+    def factors(self) -> list[float]:
+        """Diameters over the given one that are tried, the largest first."""
+        return list(FACTORS) if self._may_change_diameter else [1.0]
+
+    @cached_property
+    def own(self) -> DiskOption:
+        """The given case."""
+        return DiskOption(self._case, "sides as given", 1.0, 0.0, planned_cost(self.given).seconds)
+
+    def of(self, factor: float) -> list[DiskOption]:
+        """The choices with disks of one diameter; none if the case may not have them, or its tables have mistakes."""
+        if (found := self._with_diameter(factor)) is None:
+            return []
+        case, ground = found
+        return [
+            each
+            for arrangement in arrangements(case, ground, self.bound)
+            for each in self._each(arrangement.case, arrangement.name, factor, may_widen(arrangement))
+        ]
+
+    def build(self, option: DiskOption) -> Built | None:
+        """A choice, built and planned; None if it cannot run, changes a key that is kept, or has other forces."""
+        try:
+            planned: Plan[DiskScene] = plan(option.case)
+            case = planned.scene.case
+            if option.wider:
+                case = self._wider(planned.scene, option.wider)
+        except DemboundError:
+            return None
+        if not _same_forces(self.given.scene, planned.scene) or not keeps(self._case, case, self.kept):
+            return None
+        return Built(option, case, planned, planned_cost(planned).seconds * _area(case) / _area(planned.scene.case))
+
+    @property
+    def _case(self) -> DiskCase:
+        return self.given.scene.case
+
+    @cached_property
+    def _may_change_diameter(self) -> bool:
+        """Whether disks only stand for the ground, on a lattice of unbreakable bonds, and their radius is not kept."""
+        case = self._case
+        sizes = {"packing", *(f"packing.{key}" for key in case.packing.scaled(1.0))}
+        return case.packing.is_lattice and not LAWS[case.material.law].has_history and sizes.isdisjoint(self.kept)
+
+    def _with_diameter(self, factor: float) -> tuple[DiskCase, PackedMaterial] | None:
+        """The given case with larger or smaller disks, and their ground; None if its scene cannot be made of them."""
+        if factor == 1.0:
+            return self._case, self.given.scene.ground
+        try:
+            case = with_changes(self._case, {"packing": _larger(self._case, factor)})
+            ground = ground_of(case)
+        except DemboundError:
+            return None
+        if (factor > 1.0 and _is_narrow(case, ground)) or not _same_ground(self.given.scene.ground, ground):
+            return None
+        return case, ground
+
+    def _each(self, case: DiskCase, arrangement: str, factor: float, wider: bool) -> Iterator[DiskOption]:
+        """A case with its sides where they are, and if they may be there farther away, up to where nothing returns."""
+        try:
+            cost = self._counted.of(case).seconds
+        except CaseError:  # no mesh
+            return
+        if keeps(self._case, case, self.kept):
+            yield DiskOption(case, arrangement, factor, 0.0, cost)
+        last = case.packing.copies
+        for more in WIDER if wider and SIZES.isdisjoint(self.kept) else ():
+            copies = self._copies(case, more)
+            if copies == last:
+                return
+            last, (across, up) = copies, case.packing.copies
+            yield DiskOption(case, arrangement, factor, more, cost * copies[0] * copies[1] / (across * up))
+
+    def _copies(self, case: DiskCase, wider: float) -> tuple[int, int]:
+        """Numbers of bricks with sides so much farther away."""
+        copies, brick = list(case.packing.copies), case.packing.brick_size
+        for side, needed in self._needed.items():
+            if side in case.boundary and case.boundary[side].may_move:
+                axis = normal_axis(side)
+                most = math.ceil(needed / brick[axis] - ROUNDING)
+                copies[axis] += farther(case.packing, {side: most}, wider)[side]
+        return copies[0], copies[1]
+
+    @cached_property
+    def _needed(self) -> Mapping[str, float]:
+        """By side that may move, how much farther away (m) nothing returns from it; the same for disks of all sizes."""
+        brick = self._case.packing.brick_size
+        return {side: count * brick[normal_axis(side)] for side, count in needed_by(self.given.scene).items()}
+
+    @cached_property
+    def _counted(self) -> Counted:
+        return Counted(self.given)
+
+    def _wider(self, scene: DiskScene, wider: float) -> DiskCase:
+        """The case of a scene with sides farther away, up to where nothing returns; CaseError if its tables cannot."""
+        own = scene.case
+        case = enlarged(scene, farther(own.packing, needed_by(scene), wider))
+        extent, origin = (
+            tuple(round(length, 10) for length in lengths) for lengths in (case.packing.extent, case.packing.origin)
+        )
+        packing = case.packing.model_copy(update={"size": extent, "origin": origin, "bricks": None})
+        return checked(replace(case, packing=packing, run=own.run, name=own.name))
+
+
+def _area(case: DiskCase) -> float:
+    """Area (m²) of the disks' box."""
+    return case.packing.extent[0] * case.packing.extent[1]
 
 
 def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
@@ -117,54 +212,26 @@ def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
     return packing | {"size": size, **sizes}
 
 
-def _is_narrow(scene: DiskScene) -> bool:
+def _is_narrow(case: DiskCase, ground: PackedMaterial) -> bool:
     """Whether a body is so narrow that its stiffness depends on its disks: those of free edges turn more easily."""
-    if ROTATION in scene.ground.held:
+    if ROTATION in ground.held:
         return False
-    across = [length for axis, length in enumerate(scene.case.size) if not scene.case.periodic[axis]]
-    return min(across, default=np.inf) < NARROW * scene.ground.brick.mean_diameter
+    across = [length for axis, length in enumerate(case.size) if not case.periodic[axis]]
+    return min(across, default=np.inf) < NARROW * ground.brick.mean_diameter
 
 
-def _same_ground(given: DiskScene, scene: DiskScene) -> bool:
+def _same_ground(given: PackedMaterial, ground: PackedMaterial) -> bool:
     """Whether disks of another size make a ground of the same stiffness, as they need not under any law."""
-    own, other = (each.ground.material_tensor for each in (given, scene))
+    own, other = given.material_tensor, ground.material_tensor
     return np.allclose(own, other, rtol=0.0, atol=EQUAL * float(np.abs(own).max()))
 
 
 def _same_forces(given: DiskScene, scene: DiskScene) -> bool:
     """Whether loads have the same forces in all, as accelerations of disks do not on any lattice."""
     for load in given.case.load:
+        if load.acceleration is None or load.is_everywhere:
+            continue
         own, other = (forces_of(load, each)[1][:, :2].sum(axis=0) for each in (given, scene))
-        is_by_mass = load.acceleration is not None and not load.is_everywhere
-        if is_by_mass and not np.allclose(own, other, rtol=EQUAL, atol=0.0):
+        if not np.allclose(own, other, rtol=EQUAL, atol=0.0):
             return False
     return True
-
-
-def _planned(case: DiskCase, changes: Any) -> Plan[DiskScene] | None:
-    """The changed case, planned; None if it cannot run."""
-    try:
-        return plan(with_changes(case, changes) if changes else case)
-    except DemboundError:
-        return None
-
-
-def _wider(plain: DiskOption, companions: Companions) -> Iterator[DiskOption]:
-    """Variants of a choice with its sides farther away, up to where nothing returns from them."""
-    own, needed = plain.case, needed_by(plain.scene)
-    last = own.packing.extent
-    area = last[0] * last[1]
-    for wider in WIDER:
-        try:
-            case = companions.wider(plain.scene, needed, wider)
-            extent, origin = (
-                tuple(round(length, 10) for length in lengths) for lengths in (case.packing.extent, case.packing.origin)
-            )
-            packing = case.packing.model_copy(update={"size": extent, "origin": origin, "bricks": None})
-            case = checked(replace(case, packing=packing, run=own.run, name=own.name))
-        except DemboundError:
-            return
-        if case.packing.extent == last:
-            return
-        last = case.packing.extent
-        yield replace(plain, case=case, wider=wider, cost=plain.cost * last[0] * last[1] / area)

@@ -1,7 +1,7 @@
 """The cheapest choice of disks and sides that keeps the error of all monitors within a bound.
 
-Choices are tried in the order of their predicted cost. None of them is run: what their sides send back is found with
-companions of larger disks, the rest by formulas.
+Choices are tried in the order of their counted cost, and only those are built whose error is to be found. None of them
+is run: what their sides send back is found with companions of larger disks, the rest by formulas.
 """
 
 from __future__ import annotations
@@ -17,20 +17,15 @@ import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import SIDES, STEP, Causes, Truth
-from dembound.accuracy.choice import Choice, digest
+from dembound.accuracy.choice import OWN, Choice, digest
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.causes import causes_of_choice, entry_notes, of_ground
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
-from dembound.accuracy.of_disks.options import (
-    FACTORS,
-    DiskOption,
-    cost_of,
-    disk_options,
-    may_change_diameter,
-    with_diameter,
-)
+from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_error
+from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.proposal import Advice, Proposal
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
 from dembound.casefile.disks import DiskCase
@@ -40,6 +35,13 @@ from dembound.motion.kind import Plan
 from dembound.motion.silence import monitored
 from dembound.running import plan
 
+LONGEST, PART = 8.0, 0.2
+"""CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
+that it finds the same on every machine."""
+
+PER_CHOICE, PER_DISK, PER_STEP = 0.05, 3e-6, 2e-8
+"""CPU seconds of finding the error of a choice, of building it by disk, and of its companions by particle-step."""
+
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
 
@@ -47,8 +49,11 @@ COSTLIEST = 64.0
 def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
     """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
-    of : the truth that errors are those of; kept : keys that do not change. Raises CaseError for cases without waves
-    and where no choice keeps those values; the errors of building and running the companions.
+    of : the truth that errors are those of; kept : keys that do not change. Where one bound is asked for, which the
+    case keeps in less time than a search takes, this is the choice.
+
+    Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
+    the companions.
     """
     _require_known(case)
     planned: Plan[DiskScene] = plan(case)
@@ -57,12 +62,23 @@ def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: S
     moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
     if not _is_reached(planned) or not any(map(np.any, moved)):
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
-    searches = [_Search(companions, of, kept, cost_of(planned))]
+    given = _given(companions, of, planned_cost(planned).seconds)
+    if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
+        return Advice(given, {bounds[0]: given}, 1)
+    searches = [_Search(companions, planned, of, kept, given.cost)]
     if bounds and (twin := elastic_twin(case, planned, most, kept, companions.runner)) is not None:
         own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
-        searches.insert(0, _Search(own, of, kept, cost_of(twin.planned), twin))
+        searches.insert(0, _Search(own, twin.planned, of, kept, planned_cost(twin.planned).seconds, twin))
     best = {bound: _best(case, searches, bound) for bound in sorted(bounds, reverse=True)}
-    return Advice(searches[-1].given(), best, sum(search.tried for search in searches))
+    return Advice(given, best, sum(search.tried for search in searches))
+
+
+def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
+    """The case as it is."""
+    scene = companions.scene
+    causes = causes_of_choice(companions, scene, companions.time_step, 0.0) + Causes([], [], entry_notes(scene))
+    budget = Budget(companions.recorded(scene), causes, of)
+    return Proposal(Choice(OWN, {}, companions.case), cost, budget)
 
 
 def _best(given: DiskCase, searches: Sequence[_Search], bound: float) -> Proposal:
@@ -103,8 +119,13 @@ def _is_reached(planned: Plan[DiskScene]) -> bool:
 class _Found:
     """A choice with its error; budget : beside the motion without it."""
 
-    option: DiskOption
+    built: Built
     budget: Budget
+
+    @property
+    def option(self) -> DiskOption:
+        """The choice before it was built."""
+        return self.built.option
 
     @cached_property
     def upper(self) -> float:
@@ -126,48 +147,65 @@ class _Found:
 class _Search:
     """The search for a choice.
 
-    twin : the case, if its law is not that given. of_sides : by arrangement and distance the largest error of its
-    sides alone. of_disks : by factor of the diameter the error of its disks alone.
+    planned : the case; own_cost : CPU time (s) of its steps. twin : its case, if its law is not that given. tried :
+    number of choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut :
+    whether choices were left out for that. waiting : by cost, what may come next: diameters, their choices, and those
+    that are built and cost more than others may. of_sides : by arrangement and distance the largest error of its sides
+    alone. of_disks : by factor of the diameter, with a continuum and without, the smallest error of disks alone.
+    known : choices whose error was found for another bound, by the digest of their case.
     """
 
     companions: Companions
+    planned: Plan[DiskScene]
     of: Truth
     kept: Sequence[str]
     own_cost: float
     twin: ElasticTwin | None = None
     bound: float = 0.0
     tried: int = 0
+    spent: float = 0.0
+    was_cut: bool = False
+    waiting: list[tuple[float, int, DiskOption | Built | float]] = field(default_factory=list)
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
-    of_disks: dict[float, float] = field(default_factory=dict)
-    found: dict[str, list[_Found]] = field(default_factory=dict)
+    of_disks: dict[tuple[float, bool], float] = field(default_factory=dict)
+    known: dict[str, list[_Found]] = field(default_factory=dict)
 
-    def given(self) -> Proposal:
-        """The case as it is."""
-        scene, step = self.companions.scene, self.companions.time_step
-        causes = causes_of_choice(self.companions, scene, step, 0.0) + Causes([], [], entry_notes(scene))
-        budget = Budget(self.companions.recorded(scene), causes, self.of)
-        return Proposal(Choice("the case as it is", {}, self.companions.case), self.own_cost, budget)
+    def __post_init__(self) -> None:
+        self.options = Options(self.planned, self.bound, self.kept)
 
     def proposal(self, given: DiskCase, bound: float) -> Proposal:
         """The best choice for a bound; given : the case that it is a choice for."""
-        self.bound = bound
+        self.options = Options(self.planned, bound, self.kept)
+        self.bound, self.spent, self.was_cut, self.waiting = bound, 0.0, False, []
         best = self.best()
         words = best.option.words if self.twin is None else f"{self.twin.words}; {best.option.words}"
         breaks = self.companions.first_break
         if breaks < given.run.duration:
             words += f"; the error is that before bonds break, after about {breaks:.3g} s"
-        found = Proposal(Choice.of(given, best.option.case, words), best.option.cost, best.budget)
+        if self.was_cut and best.upper > bound:
+            words += "; the search ended early, as it had taken long beside the run"
+        found = Proposal(Choice.of(given, best.built.case, words), best.built.cost, best.budget)
         return found if breaks < given.run.duration else ended_earlier(found, given, bound, best.motion, self.kept)
 
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
         found: list[_Found] = []
         left: list[DiskOption] = []
-        for option in self._by_cost():
-            if not self._keeps(self.of_sides.get(_sides(option), 0.0)):
+        for item in self._by_cost():
+            option = item.option if isinstance(item, Built) else item
+            if not self._affords(option):
+                self.was_cut = True
+                continue
+            if not self._keeps(self._alone(option)):
                 left.append(option)
                 continue
-            found += self._with_error(option)
+            built = item if isinstance(item, Built) else self._built(item)
+            if built is None:
+                continue
+            if built is not item and self.waiting and built.cost > self.waiting[0][0]:
+                self._wait(built.cost, built)
+                continue
+            found += self._with_error(built, left)
             if found and self._keeps(found[-1].upper):
                 return found[-1]
         return self._most_accurate(found, left)
@@ -178,90 +216,109 @@ class _Search:
         These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
         below the smallest one found.
         """
-        for factor, error in self.of_disks.items():
-            if not self._keeps(error):
-                left += [each for each in self._of(factor) if each.cost <= COSTLIEST * self.own_cost]
         while left:
             left.sort(key=self._alone)
-            if found and self._alone(left[0]) >= min(each.upper for each in found):
+            option = left.pop(0)
+            if found and self._alone(option) >= min(each.upper for each in found):
                 break
-            found += self._with_error(left.pop(0))
+            if found and not self._affords(option):
+                continue
+            if (built := self._built(option)) is not None:
+                found += self._with_error(built, None)
         if not found:
             raise CaseError(["advise: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each.upper)
 
+    def _affords(self, option: DiskOption) -> bool:
+        """Whether the search may go on with a choice, as always with the first one."""
+        packing = option.case.packing
+        disks = packing.about(packing.extent)
+        spent = self.spent + PER_STEP * self.companions.runner.work
+        return self.spent == 0.0 or spent + PER_CHOICE + PER_DISK * disks <= max(LONGEST, PART * self.own_cost)
+
     def _alone(self, option: DiskOption) -> float:
-        """The larger one of the errors that sides and disks of a choice are known to have alone."""
-        return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(option.factor, 0.0))
+        """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
+        case = option.case
+        walls = WALL_FACTOR * wall_error(case, 2.0 * case.packing.radius) if self.of == "rock" else 0.0
+        return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(_disks(option), 0.0), walls)
 
     def _keeps(self, error: float) -> bool:
         """Whether an error is within the bound."""
         return error <= self.bound
 
-    def _by_cost(self) -> Iterator[DiskOption]:
-        """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
-        factors = list(FACTORS) if may_change_diameter(self.companions.case, self.kept) else [1.0]
-        number, least = count(), 0.0
-        waiting: list[tuple[float, int, DiskOption | float]] = [(0.0, next(number), factors.pop(0))]
-        while waiting:
-            cost, _, item = heapq.heappop(waiting)
+    def _by_cost(self) -> Iterator[DiskOption | Built]:
+        """Choices by cost; those with the next smaller disks are only counted when their cost has been reached."""
+        factors, least = self.options.factors, 0.0
+        self._wait(least, factors.pop(0))
+        while self.waiting:
+            cost, _, item = heapq.heappop(self.waiting)
             if cost > COSTLIEST * self.own_cost:
                 return
-            if isinstance(item, DiskOption):
+            if not isinstance(item, float):
                 yield item
                 continue
-            made = self._of(item) if self._are_small_enough(item) else []
+            made = self._of(item)
             for each in made:
-                heapq.heappush(waiting, (each.cost, next(number), each))
-            if made:
-                least = min(each.cost for each in made)
+                self._wait(each.cost, each)
+            least = min((each.cost for each in made), default=least)
             if factors:
-                heapq.heappush(waiting, (least, next(number), factors.pop(0)))
+                self._wait(least, factors.pop(0))
+
+    def _wait(self, cost: float, item: DiskOption | Built | float) -> None:
+        """Put a choice, or the choices of a diameter, where its cost is reached."""
+        heapq.heappush(self.waiting, (cost, next(self._numbers), item))
+
+    @cached_property
+    def _numbers(self) -> Iterator[int]:
+        """Numbers by which choices of one cost keep their order."""
+        return count()
+
+    def _built(self, option: DiskOption) -> Built | None:
+        """A choice, built; None if it cannot run."""
+        built = self.options.build(option)
+        self.spent += PER_CHOICE + (0.0 if built is None else PER_DISK * built.planned.scene.disk_count)
+        return built
 
     def _of(self, factor: float) -> list[DiskOption]:
         """Choices with disks of one diameter."""
-        plain = self._with_diameter(factor)
-        return [] if plain is None else list(disk_options(self.companions, plain, factor, self.bound, self.kept))
-
-    def _with_diameter(self, factor: float) -> Plan[DiskScene] | None:
-        """The case with disks of another diameter, planned; None if it may not have them."""
         own = self.companions.scene.ground.brick.mean_diameter
         may_be = self.twin is None or self.twin.holds(factor * own)
-        return with_diameter(self.companions, factor) if may_be else None
+        return self.options.of(factor) if may_be else []
 
-    def _are_small_enough(self, factor: float) -> bool:
-        """Whether the error of disks of one diameter leaves some of the bound to sides."""
-        plain = self._with_diameter(factor)
-        if plain is None:
-            return False
-        found = of_ground(self.companions, plain.scene, plain.time_step)
-        disks = Causes([cause for cause in found if cause.of_disks or cause.name == STEP])
-        self.of_disks[factor] = Budget(self.companions.recorded(plain.scene), disks, self.of).worst().share.upper
-        return self._keeps(self.of_disks[factor])
+    def _with_error(self, built: Built, left: list[DiskOption] | None) -> list[_Found]:
+        """A choice with its error; nothing if a companion of it cannot run.
 
-    def _with_error(self, option: DiskOption) -> list[_Found]:
-        """A choice with its error; nothing if a companion of it cannot run."""
-        if (known := self.found.get(key := digest(option.case))) is not None:
+        left : where it is left, without its companions, if the error of its disks alone is too large; None: nowhere.
+        """
+        if (known := self.known.get(key := digest(built.case))) is not None:
             return known
-        self.tried += 1
-        found = self.found[key] = self._found(option)
-        return found
-
-    def _found(self, option: DiskOption) -> list[_Found]:
-        """A choice with its error, if its companions can run."""
-        scene = option.scene
+        option, scene, step = built.option, built.planned.scene, built.planned.time_step
         motions = self.companions.recorded(scene)
         try:
-            causes = causes_of_choice(self.companions, scene, option.planned.time_step, option.wider)
+            ground = of_ground(self.companions, scene, step)
+            of_disks = Causes([cause for cause in ground if cause.of_disks or cause.name == STEP])
+            error = Budget(motions, of_disks, self.of).worst().share.upper
+            self.of_disks[_disks(option)] = min(error, self.of_disks.get(_disks(option), error))
+            if left is not None and not self._keeps(error):
+                left.append(option)
+                return []
+            self.tried += 1
+            causes = causes_of_choice(self.companions, scene, step, option.wider, ground)
         except DemboundError:
             return []
         sides = Causes([cause for cause in causes.found if cause.name == SIDES])
         alone = Budget(motions, sides, self.of).worst().share.upper
         self.of_sides[_sides(option)] = max(alone, self.of_sides.get(_sides(option), 0.0))
         law = [] if self.twin is None else self.twin.causes(scene, motions)
-        return [_Found(option, Budget(motions, causes + Causes(law), self.of))]
+        self.known[key] = [_Found(built, Budget(motions, causes + Causes(law), self.of))]
+        return self.known[key]
 
 
 def _sides(option: DiskOption) -> tuple[str, float]:
     """What the sides of a choice are, and how much farther away."""
-    return option.arrangement.name, option.wider
+    return option.arrangement, option.wider
+
+
+def _disks(option: DiskOption) -> tuple[float, bool]:
+    """The size of the disks of a choice over that given, and whether they are in a continuum."""
+    return option.factor, bool(option.case.outside_sides)

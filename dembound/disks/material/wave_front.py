@@ -1,10 +1,11 @@
 """How far waves in a packing can have come at a time: speed of the fastest waves, and the precursors ahead of them."""
 
-from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.laws import Law, Moduli
 from dembound.motion.paths import Front
 from dembound.packings.square import Square
 
@@ -31,9 +32,19 @@ def front_of(ground: PackedMaterial, safety: float) -> Front:
     grain, speed = float(np.hypot(*ground.brick.vectors.T).max()), largest_phase_speed(ground)
     if speed == 0.0:
         return Front(0.0, grain)
-    lattice = replace(ground, brick=Square(bricks=(1, 1), radius=0.5 * ground.brick.mean_diameter).pack(1.0))
-    ratio = largest_group_speed(lattice, min(safety, SHARE)) / largest_phase_speed(lattice)
+    ratio = _largest_ratio(
+        ground.density, ground.moduli, ground.law, ground.held, 0.5 * ground.brick.mean_diameter, min(safety, SHARE)
+    )
     return Front(max(1.0, ratio) * speed, grain)
+
+
+@lru_cache(maxsize=64)
+def _largest_ratio(
+    density: float, moduli: Moduli, law: Law, held: tuple[int, ...], radius: float, safety: float
+) -> float:
+    """Largest group speed of all waves of the square lattice of a material over the speed of its fastest long waves."""
+    lattice = PackedMaterial(Square(bricks=(1, 1), radius=radius).pack(1.0), density, moduli, law, held)
+    return largest_group_speed(lattice, safety) / largest_phase_speed(lattice)
 
 
 def slowest_speed(ground: PackedMaterial) -> float:

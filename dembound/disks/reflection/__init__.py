@@ -13,7 +13,7 @@ from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.reflection.arrivals import Arrival, arrivals_of
 from dembound.disks.reflection.bricks import BrickInRow, end_of, end_scene
-from dembound.disks.reflection.continuum_end import ContinuumEnd, beside_elements
+from dembound.disks.reflection.continuum_end import ContinuumEnd, beside_elements, copies_beside
 from dembound.disks.reflection.meter import End, Meter, Reflections
 from dembound.disks.reflection.smeared import by_smeared_supports
 from dembound.disks.scene import DiskScene, build, with_boundaries
@@ -141,7 +141,8 @@ def _is_narrow(scene: DiskScene) -> bool:
 def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:
     """A meter of the continuum of a scene beyond a side, at time steps of a run, s."""
     assert scene.outside is not None
-    row = BrickInRow(beside_elements(scene.ground, side, scene.outside), side)
+    copies = copies_beside(scene.ground, side, scene.outside)
+    row = BrickInRow(beside_elements(scene.ground, side, scene.outside), side, copies)
     return Meter(row, time_step, ContinuumEnd(scene.outside, row))
 
 

@@ -40,13 +40,14 @@ class BrickInRow:
 
     Attributes
     ----------
-    ground, side : the packing, and the side at the end of the row. disks : (p,) those of the brick at its interface
+    ground, side : the packing, and the side at the end of the row. copies : of a smaller brick along the side that the
+    brick consists of, by whose waves those of the row are found. disks : (p,) those of the brick at its interface
     inwards. components, places : of the interface's degrees of freedom (count,) 0 x, 1 y, 2 rotation, and the centres
     (count, 2) m of their disks. condensed : to this interface and the next brick's.
     """
 
-    def __init__(self, ground: PackedMaterial, side: str) -> None:
-        self.ground, self.side = ground, side
+    def __init__(self, ground: PackedMaterial, side: str, copies: int = 1) -> None:
+        self.ground, self.side, self.copies = ground, side, copies
         brick, axis = ground.brick, normal_axis(side)
         outwards = is_outwards(side) * brick.images[:, axis]
         is_next = np.stack([outwards < 0, outwards > 0], axis=1)  # which disk of a contact is in the next brick
@@ -68,6 +69,15 @@ class BrickInRow:
         self.components = own // every
         self.places = brick.positions[own % every]
         self.condensed = Condensed(body, np.concatenate([own, following]))
+
+    def shifts(self, phase: complex) -> np.ndarray:
+        """Motions (c, k, k/c) of the interface whose phase grows evenly from copy to copy, to this one in c copies."""
+        copies = self.copies
+        each = phase ** (1.0 / copies) * np.exp(2j * np.pi * np.arange(copies) / copies)
+        turn = each[:, None] ** np.arange(copies) / np.sqrt(copies)
+        moving, disks = len(np.unique(self.components)), len(self.disks) // copies  # numbered by component, then copy
+        one = np.eye(moving * disks).reshape(moving, 1, disks, -1)
+        return (turn[:, None, :, None, None] * one).reshape(copies, self.count, -1)
 
 
 def _split(

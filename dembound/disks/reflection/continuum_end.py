@@ -6,8 +6,8 @@ along its normal with their layers. The ties of the bonds that the side cuts are
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,15 +25,17 @@ from dembound.packings.brick import Brick
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, tile
 
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
-
 
 def beside_elements(ground: PackedMaterial, side: str, outside: Surroundings) -> PackedMaterial:
     """The packing in bricks about as long along a side as elements, or as a brick if this is longer."""
+    count = copies_beside(ground, side, outside)
+    return ground if count == 1 else replace(ground, brick=copies_of(ground.brick, count, 1 - normal_axis(side)))
+
+
+def copies_beside(ground: PackedMaterial, side: str, outside: Surroundings) -> int:
+    """Number of bricks that are about as long along a side as elements."""
     along = 1 - normal_axis(side)
-    count = max(1, round(_element(outside, along) / float(ground.brick.size[along])))
-    return ground if count == 1 else replace(ground, brick=copies_of(ground.brick, count, along))
+    return max(1, round(_element(outside, along) / float(ground.brick.size[along])))
 
 
 def _element(outside: Surroundings, axis: int) -> float:
@@ -92,60 +94,107 @@ class ContinuumEnd:
         place = np.full(mass.size, -1)
         place[self._body.interface] = np.arange(len(self._body.interface))
         self._tied, self._count = place[tied], row.count
-        self._oscillation = Oscillation(0.0, 0.0)
+        self._grid = Grid(self._elements, self._by_nodes())
+        self._by_disks = self._elongated_by_disks()
+        self._springs = self._wall.bonds.stiffness.ravel()
+        self._lagging = 0.0j
 
     def at(self, oscillation: Oscillation) -> None:
         """Condense at a frequency."""
         self._body.at(oscillation)
-        self._oscillation = oscillation
+        self._grid.at(oscillation)
+        self._lagging = self._wall.lag * oscillation.lagging
 
     def stiffness(self, phase: complex) -> np.ndarray:
         """Dynamic stiffness (k, k) of the interface if the motion a period along the side is this one's times phase."""
-        from scipy.sparse import diags
-        from scipy.sparse.linalg import splu
-
-        body, moving, inner = self._body.stiffness(phase), self._elements.moving, self._count
-        of_disks, of_nodes = self._elongations(phase, len(body))
-        of_nodes = of_nodes[:, moving]
-        springs = diags(self._wall.bonds.stiffness.ravel() * (1.0 + self._wall.lag * self._oscillation.lagging))
-        grid = self._elements.stiffness(self._oscillation, phase)[moving][:, moving]
-        grid = (grid + of_nodes.conj().T @ springs @ of_nodes).tocsc()
-        pulled = np.flatnonzero(of_nodes.getnnz(axis=0))  # the nodes that ties act on
-        unit = np.zeros((grid.shape[0], len(pulled)), dtype=complex)
-        unit[pulled, np.arange(len(pulled))] = 1.0
-        yielding = splu(grid).solve(unit)[pulled]
-        of_nodes = of_nodes[:, pulled]
+        body, inner, by_disks = self._body.stiffness(phase), self._count, self._by_disks
+        springs = (self._springs * (1.0 + self._lagging))[:, None]
+        by_nodes, yielding = self._grid.yielding(phase, springs)
         there = np.unique(self._tied[self._tied >= 0])
-        of_disks = of_disks[:, there]
-        by_disks = (of_nodes.conj().T @ springs @ of_disks).toarray()
-        on_disks = (of_disks.T @ springs @ of_nodes).toarray()
-        body[np.ix_(there, there)] += (of_disks.T @ springs @ of_disks).toarray() - on_disks @ yielding @ by_disks
+        pulled = by_nodes.conj().T @ (springs * by_disks)
+        pulling = by_disks.T @ (springs * by_nodes)
+        body[np.ix_(there, there)] += by_disks.T @ (springs * by_disks) - pulling @ yielding @ pulled
         if len(body) == inner:
             return body
         return body[:inner, :inner] - body[:inner, inner:] @ np.linalg.solve(body[inner:, inner:], body[inner:, :inner])
 
-    def _elongations(self, phase: complex, kept: int) -> tuple[csr_matrix, csr_matrix]:
-        """Elongations (3t) of the ties per motion of the kept disks, (3t, kept), and of all nodes."""
-        from scipy.sparse import coo_matrix
-
-        wall, elements, along = self._wall, self._elements, 1 - self._axis
-        of_disks, of_nodes = wall.elongations
-        ties = len(wall.element)
-        row = (ties * np.arange(3)[:, None] + np.arange(ties))[:, :, None]
+    def _elongated_by_disks(self) -> np.ndarray:
+        """Elongations (3t, k) of the ties per motion of the kept disks that they act on, in their order."""
+        of_disks, _ = self._wall.elongations
+        ties = len(self._wall.element)
+        row = np.broadcast_to((ties * np.arange(3)[:, None] + np.arange(ties))[:, :, None], of_disks.shape)
         column = np.broadcast_to(self._tied.T, of_disks.shape)
         there = column >= 0
-        by_disks = coo_matrix(
-            (of_disks[there], (np.broadcast_to(row, of_disks.shape)[there], column[there])), shape=(3 * ties, kept)
-        )
-        mesh = wall.mesh
+        found = np.zeros((3 * ties, int(self._tied.max(initial=-1)) + 1))
+        np.add.at(found, (row[there], column[there]), of_disks[there])
+        return found[:, np.unique(self._tied[self._tied >= 0])]
+
+    def _by_nodes(self) -> dict[int, np.ndarray]:
+        """Elongations (3t, count) of the ties per motion of nodes so many periods ahead, by this number."""
+        wall, elements, along = self._wall, self._elements, 1 - self._axis
+        _, of_nodes = wall.elongations
+        ties, mesh = len(wall.element), wall.mesh
         beyond = np.floor((wall.bonds.point[:, along] - mesh.origin[along]) / mesh.size[along])
-        turn = phase ** (elements.periods[wall.element] + beyond[:, None])
-        values = of_nodes * turn[:, None, :]
-        numbers = np.broadcast_to(elements.numbers(wall.element), values.shape)
-        rows = np.broadcast_to(row[..., None], values.shape)
-        shape = 3 * ties, elements.count
-        by_nodes = coo_matrix((values.ravel(), (rows.ravel(), numbers.ravel())), shape=shape)
-        return by_disks.tocsr(), by_nodes.tocsr()
+        ahead = (elements.periods[wall.element] + beyond[:, None]).astype(int)
+        row = (ties * np.arange(3)[:, None] + np.arange(ties))[:, :, None, None]
+        row, numbers, ahead = (
+            np.broadcast_to(each, of_nodes.shape) for each in (row, elements.numbers(wall.element), ahead[:, None, :])
+        )
+        found = {}
+        for periods in np.unique(ahead).tolist():
+            found[periods] = np.zeros((3 * ties, elements.count))
+            chosen = ahead == periods
+            np.add.at(found[periods], (row[chosen], numbers[chosen]), of_nodes[chosen])
+        return found
+
+
+class Grid:
+    """The elements condensed to the nodes that ties act on.
+
+    Parameters
+    ----------
+    elements : one period of them. by_nodes : periods ahead -> elongations (3t, count) of the ties per motion of nodes.
+    """
+
+    def __init__(self, elements: Elements, by_nodes: Mapping[int, np.ndarray]) -> None:
+        self._elements, moving = elements, elements.moving
+        acted = np.logical_or.reduce([each.any(axis=0) for each in by_nodes.values()]) & moving
+        pulled, imaged = np.flatnonzero(acted), elements.imaged[moving[elements.imaged]]
+        base = np.concatenate([pulled, np.setdiff1d(imaged, pulled)])
+        others = np.setdiff1d(np.flatnonzero(moving), base)
+        images = elements.count + np.flatnonzero(moving[elements.imaged])
+        self._by_nodes = {periods: each[:, pulled] for periods, each in by_nodes.items()}
+        self._pulled, self._base, self._inner = len(pulled), len(base), len(others)
+        self._order = np.concatenate([others, base, images])
+        place = np.full(elements.count, -1)
+        place[base] = np.arange(len(base))
+        self._imaged = place[imaged]
+        self._fixed = np.zeros((0, 0), dtype=complex)
+
+    def at(self, oscillation: Oscillation) -> None:
+        """Condense at a frequency to the nodes that ties act on, those that have images, and these."""
+        from scipy.sparse.linalg import splu
+
+        matrix = self._elements.stiffness(oscillation)[self._order][:, self._order]
+        inner = self._inner
+        self._fixed = matrix[inner:, inner:].toarray()
+        if inner:
+            solved = splu(matrix[:inner, :inner].tocsc()).solve(matrix[:inner, inner:].toarray())
+            self._fixed -= matrix[inner:, :inner] @ solved
+
+    def yielding(self, phase: complex, springs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Elongations (3t, p) of the ties per motion of the nodes they act on, and motion (p, p) of these by forces.
+
+        phase : of the motion a period along the side over this one. springs : (3t, 1) of the ties.
+        """
+        of_ties = sum((phase**periods * each for periods, each in self._by_nodes.items()), np.zeros((1, 1)))
+        base, pulled = self._base, self._pulled
+        columns = self._fixed[:, :base].copy()
+        columns[:, self._imaged] += phase * self._fixed[:, base:]
+        matrix = columns[:base]
+        matrix[self._imaged] += np.conj(phase) * columns[base:]
+        matrix[:pulled, :pulled] += of_ties.conj().T @ (springs * of_ties)
+        return of_ties, np.linalg.solve(matrix, np.eye(base, pulled))[:pulled]
 
 
 def _mesh(outside: Surroundings, row: BrickInRow, assembly: Assembly) -> Mesh:

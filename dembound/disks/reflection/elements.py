@@ -1,4 +1,4 @@
-"""Elements of a continuum in steady oscillation, under a wave of a phase from period to period along them.
+"""Elements of a continuum in steady oscillation, with the images of nodes a period along them.
 
 Exact for the steps of its kernels (kernels/grid.py): with z = e^{iωΔt} a velocity half a step behind is (1 − 1/z)/Δt
 times the displacement, and a memory ψ makes of a derivative and of a force 1 + A/(1 − B/z) times as much
@@ -40,38 +40,43 @@ class Elements:
 
     Attributes
     ----------
-    nodes, periods : (E, N²) nodes of every element, and how many periods ahead of their own it has them. count : number
-    of degrees of freedom, x of all nodes and then y. moving : (m,) those that are not at rest.
+    nodes, periods : (E, N²) nodes of every element, and how many periods ahead of their own it has them, 0 or 1.
+    count : number of degrees of freedom, x of all nodes and then y. imaged : (i,) those of nodes that some element has
+    a period ahead. moving : (count,) bool, those that are not at rest.
     """
 
     def __init__(self, mesh: Mesh, medium: Medium, layer: Layer) -> None:
         self._mesh, self._medium, self._layer = mesh, medium, layer
-        count = len(mesh.elements)
-        self.nodes = mesh.nodes.reshape(count, -1)
+        elements = len(mesh.elements)
+        self.nodes = mesh.nodes.reshape(elements, -1)
         periodic = 1 - layer.axis
         lines = mesh.order * mesh.elements[:, periodic, None] + np.arange(mesh.order + 1)
         passed = lines // mesh.axes[periodic].lines
         across = passed[:, None, :] if periodic == 0 else passed[:, :, None]
-        self.periods = np.broadcast_to(across, mesh.nodes.shape).reshape(count, -1)
+        self.periods = np.broadcast_to(across, mesh.nodes.shape).reshape(elements, -1)
         self.count = 2 * mesh.count
-        self.moving = np.flatnonzero(np.tile(~mesh.held, 2))
+        self.moving = np.tile(~mesh.held, 2)
+        own = self.numbers(np.arange(elements)).reshape(elements, -1)
+        ahead = np.tile(self.periods, 2) > 0
+        self.imaged = np.unique(own[ahead])
+        self._places = np.where(ahead, self.count + np.searchsorted(self.imaged, own), own)
 
     def numbers(self, elements: np.ndarray) -> np.ndarray:
         """Degrees of freedom (k, 2, N²) of some elements (k,)."""
         return np.stack([self.nodes[elements], self._mesh.count + self.nodes[elements]], axis=1)
 
-    def stiffness(self, oscillation: Oscillation, phase: complex) -> csc_matrix:
-        """Dynamic stiffness (count, count) at a frequency, with a phase from period to period."""
+    def stiffness(self, oscillation: Oscillation) -> csc_matrix:
+        """Dynamic stiffness (count + i, count + i) at a frequency; the last degrees of freedom are the images."""
         from scipy.sparse import coo_matrix
 
         across = self._mesh.elements[:, self._layer.axis]
         _, first, kind = np.unique(across, return_index=True, return_inverse=True)
         each = np.stack([self._of_element(element, oscillation) for element in first])[kind.ravel()]
-        turn = np.tile(phase**self.periods, 2)
-        each = each * turn.conj()[:, :, None] * turn[:, None, :]
-        numbers = self.numbers(np.arange(len(turn))).reshape(len(turn), -1)
-        rows, columns = (np.broadcast_to(of, each.shape).ravel() for of in (numbers[:, :, None], numbers[:, None, :]))
-        return coo_matrix((each.ravel(), (rows, columns)), shape=(self.count, self.count)).tocsc()
+        rows, columns = (
+            np.broadcast_to(of, each.shape).ravel() for of in (self._places[:, :, None], self._places[:, None, :])
+        )
+        every = self.count + len(self.imaged)
+        return coo_matrix((each.ravel(), (rows, columns)), shape=(every, every)).tocsc()
 
     def _of_element(self, element: int, oscillation: Oscillation) -> np.ndarray:
         """Dynamic stiffness (2N², 2N²) of one element."""

@@ -19,7 +19,7 @@ from dembound.disks.material.homogenise import GRADIENTS
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reflection.bricks import BrickInRow, end_of, is_outwards
 from dembound.disks.reflection.condensed import Oscillation
-from dembound.disks.reflection.modes import Modes, modes_of, sent_back
+from dembound.disks.reflection.modes import Modes, modes_of, modes_of_copies, sent_back
 from dembound.disks.scene import DiskScene
 
 Kind = Literal["p", "s"]
@@ -106,6 +106,7 @@ class Meter:
     def __init__(self, row: BrickInRow, time_step: float, *ends: End) -> None:
         self.side, self.ground, self._step = row.side, row.ground, time_step
         self._row, self._ends = row, ends
+        self._waves: dict[tuple[str | float, ...], HomogenisedWave | None] = {}
 
     @classmethod
     def of(cls, side: str, time_step: float, *scenes: DiskScene) -> Meter:
@@ -131,7 +132,7 @@ class Meter:
         ground = self.ground
         if set(ground.held) & {0, 1}:
             angles = [angle for angle in angles if angle == 0.0]
-        kinds = [kind for kind in kinds if homogenised_wave(ground, kind, self._direction(0.0)) is not None]
+        kinds = [kind for kind in kinds if self._plane_wave(kind, self._direction(0.0)) is not None]
         shape = 2, len(self._ends), len(frequencies), len(angles)
         shares = {kind: np.full(shape, np.nan) for kind in kinds}
         for f, frequency in enumerate(frequencies):
@@ -149,6 +150,13 @@ class Meter:
             for end in range(len(self._ends))
         ]
 
+    def _plane_wave(self, kind: Kind, direction: np.ndarray) -> HomogenisedWave | None:
+        """`homogenised_wave` of the packing, found once for each direction."""
+        key = kind, *direction.tolist()
+        if key not in self._waves:
+            self._waves[key] = homogenised_wave(self.ground, kind, direction)
+        return self._waves[key]
+
     def _direction(self, angle: float) -> np.ndarray:
         """Unit vector (2,) of a wave towards the side at an angle (degrees)."""
         axis, way = normal_axis(self.side), np.radians(angle)
@@ -158,13 +166,14 @@ class Meter:
 
     def _at(self, oscillation: Oscillation, kind: Kind, angle: float) -> np.ndarray:
         """Energy (2, e) that the ends send back as the same and as the other type."""
-        wave = homogenised_wave(self.ground, kind, self._direction(angle))
+        wave = self._plane_wave(kind, self._direction(angle))
         assert wave is not None
         trace = wave.slowness[1 - normal_axis(self.side)]
         period = self.ground.brick.size[1 - normal_axis(self.side)]
         phase = complex(np.exp(-1j * oscillation.omega * trace * period))
         stiffness = self._row.condensed.stiffness(phase)
-        modes = modes_of(stiffness)
+        row = self._row
+        modes = modes_of(stiffness) if row.copies == 1 else modes_of_copies(stiffness, row.shifts(phase))
         likeness = np.where(modes.outgoing, self._likeness(modes, wave, oscillation.omega), 0.0)
         incident = int(np.argmax(likeness))
         if not likeness[incident] > ALIKE:
@@ -178,7 +187,7 @@ class Meter:
         """Likeness (m,) of waves with the wave of a type that runs inwards with a slowness (s/m) along the side."""
         axis, sign = normal_axis(self.side), is_outwards(self.side)
         direction = -self._direction(0.0)
-        wave = homogenised_wave(self.ground, kind, direction)
+        wave = self._plane_wave(kind, direction)
         for _ in range(ROUNDS):
             if wave is None:
                 return np.zeros(len(modes.factor))
@@ -187,7 +196,7 @@ class Meter:
                 return np.zeros(len(modes.factor))
             direction = np.empty(2)
             direction[axis], direction[1 - axis] = -sign * math.sqrt(1.0 - sine**2), sine
-            wave = homogenised_wave(self.ground, kind, direction)
+            wave = self._plane_wave(kind, direction)
         assert wave is not None
         return self._likeness(modes, wave, omega)
 

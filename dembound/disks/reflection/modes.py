@@ -78,6 +78,43 @@ def modes_of(stiffness: np.ndarray) -> Modes:
     return Modes(factor, x, y, motion, power, v)
 
 
+def modes_of_copies(stiffness: np.ndarray, shifts: np.ndarray) -> Modes:
+    """The same for bricks of several copies side by side, from the waves of each growth of phase from copy to copy.
+
+    shifts : (c, k, k/c) orthonormal motions of an interface for each of these, which contacts do not couple.
+    """
+    k = len(stiffness) // 2
+    across = shifts.conj().swapaxes(1, 2)
+    blocks = [[across @ stiffness[a : a + k, b : b + k] @ shifts for b in (0, k)] for a in (0, k)]
+    left_side, sizes, right_side = np.linalg.svd(blocks[0][1])
+    rank = int(np.count_nonzero(sizes > RANK * sizes.max(), axis=1).max(initial=1))
+    root = np.sqrt(sizes[:, None, :rank])
+    u, v = left_side[:, :, :rank] * root, right_side.conj().swapaxes(1, 2)[:, :, :rank] * root
+    by_u, by_v = np.split(np.linalg.solve(blocks[0][0] + blocks[1][1], np.concatenate([u, v], axis=2)), 2, axis=2)
+    one, none = np.broadcast_to(np.eye(rank), (len(u), rank, rank)), np.zeros((len(u), rank, rank))
+    to_u, to_v = u.conj().swapaxes(1, 2), v.conj().swapaxes(1, 2)
+    left = np.block([[one, to_v @ by_v], [none, to_u @ by_v]])
+    right = np.block([[to_v @ by_u, none], [to_u @ by_u, one]])
+    inverse, shapes = np.linalg.eig(np.linalg.solve(left + APART * right, right))
+    finite = np.abs(inverse) > SMALLEST
+    factor = APART - 1.0 / np.where(finite, inverse, 1.0)
+    x, y = np.split(shapes, 2, axis=1)
+    motion = shifts @ -(by_u @ (x * factor[:, None]) + by_v @ y)
+    power = np.where(np.abs(np.abs(factor) - 1.0) < PROPAGATES, np.imag(np.sum(x.conj() * y, axis=1)), 0.0)
+    apart = [_beside(each)[:, finite.ravel()] for each in (x, y)]
+    found = finite.ravel()
+    every = np.concatenate([*motion], axis=1)[:, found], power.ravel()[found], np.concatenate([*(shifts @ v)], axis=1)
+    return Modes(factor.ravel()[found], apart[0], apart[1], *every)
+
+
+def _beside(each: np.ndarray) -> np.ndarray:
+    """Matrices (c, m, n) along the diagonal of one (c m, c n)."""
+    count, rows, columns = each.shape
+    found = np.zeros((count, rows, count, columns), dtype=each.dtype)
+    found[np.arange(count), :, np.arange(count)] = each
+    return found.reshape(count * rows, count * columns)
+
+
 def sent_back(modes: Modes, incident: int, stiffness: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Power (m,) that an end sends back in each of the waves, over that of the incident one.
 

@@ -112,6 +112,15 @@ def test_where_bonds_break_the_error_is_that_before() -> None:
     assert choice.holds
 
 
+def test_a_given_case_that_takes_less_time_than_a_search_may_be_taken_at_once() -> None:
+    case = bar()
+    taken = of_disks.best_of_disks(case, 0.6, (), short=True)
+    assert taken.holds
+    assert taken.choice.toml == []
+    assert taken.tried == 1
+    assert of_disks.best_of_disks(case, 0.6, ()).choice.toml != []  # larger disks cost less
+
+
 def test_what_cannot_be_chosen_for_is_refused() -> None:
     shake = {"name": "shake", "acceleration": [1.0, 0.0], "wave": "push"}
     steady = {"name": "foot", "force": [1.0, 0.0], "region": [5.0, 1.0, 6.0, 1.5]}

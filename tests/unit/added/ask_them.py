@@ -21,11 +21,10 @@ from dembound.accuracy.history import History
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
 from dembound.accuracy.of_disks.near import wall_error
-from dembound.accuracy.of_disks.options import may_change_diameter, with_diameter
+from dembound.accuracy.of_disks.options import Options
 from dembound.accuracy.runner import Runner, at_step
 from dembound.disks.matching import Held
 from dembound.disks.scene import build
@@ -128,9 +127,9 @@ def other_draw(made: Any) -> dict[str, Any]:
 
 def larger(made: Any) -> list[Any]:
     """Whether disks only stand for the ground, and the radius of disks half as large that make the same one."""
-    planned = plan(made)
-    found = with_diameter(Companions(made, planned.scene, planned.time_step, 1e6), 0.5)
-    return [may_change_diameter(made, ()), None if found is None else found.scene.case.packing.radius]
+    options = Options(plan(made), 0.01, ())
+    found = options.of(0.5)
+    return [0.5 in options.factors, found[0].case.packing.radius if found else None]
 
 
 springs = {"stiffness": 0.5 * 1e9 / 10.0 * 0.5}  # those of α = ½, E = 2 GPa, ν = 0 and L = 10 m on disks of 0.5 m

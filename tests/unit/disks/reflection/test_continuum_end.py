@@ -55,14 +55,17 @@ def test_copies_of_a_brick_as_one_brick_are_the_same_packing(name) -> None:
     case = small(GRAINS, changes={"boundary": {name: {"type": "free"}}})
     ground, axis = ground_of(case), 1 if name == "right" else 0
     single = BrickInRow(ground, name)
-    triple = BrickInRow(replace(ground, brick=copies_of(ground.brick, 3, axis)), name)
+    rows = [BrickInRow(replace(ground, brick=copies_of(ground.brick, 3, axis)), name, copies) for copies in (1, 3)]
     outside = build(
         small(GRAINS, changes={"boundary": {name: {"type": "outside"}}, "outside": {"element": 4.0}})
     ).outside
-    found = [Meter(row, 1e-4, ContinuumEnd(outside, row)).measure([30.0], ANGLES)[0] for row in (single, triple)]
-    for kind in found[0].kinds:
-        np.testing.assert_allclose(found[1].same[kind], found[0].same[kind], rtol=1e-6)
-        np.testing.assert_allclose(found[1].converted[kind], found[0].converted[kind], rtol=1e-6, atol=1e-20)
+    expected, *found = (
+        Meter(row, 1e-4, ContinuumEnd(outside, row)).measure([30.0], ANGLES)[0] for row in (single, *rows)
+    )
+    for each in found:
+        for kind in expected.kinds:
+            np.testing.assert_allclose(each.same[kind], expected.same[kind], rtol=1e-6)
+            np.testing.assert_allclose(each.converted[kind], expected.converted[kind], rtol=1e-6, atol=1e-20)
 
 
 def test_beside_a_narrow_body_only_waves_along_the_normal_are_measured() -> None:
