@@ -129,10 +129,11 @@ class Boundary(Table):
         """The side with half cells or with whole ones; as it is if it may not have half cells."""
         return self
 
-    def equal_springs(self, own: Place, other: Place) -> "Boundary | None":
-        """The side on one place with springs as stiff per length as those of this table on another place.
+    def equal_supports(self, own: Place, other: Place) -> "Boundary | None":
+        """The side on one place with supports as strong per length as those of this table on another place.
 
-        None, by default, of a type that has no springs, or that does not know.
+        Springs, dampers and forces of waves. None, by default, of a type that does not know: it is then taken as it is
+        where it is as strong, and else refused.
         """
         return None
 

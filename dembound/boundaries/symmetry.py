@@ -20,7 +20,7 @@ class Symmetry(Boundary):
 
     type: Literal["symmetry"]
 
-    def equal_springs(self, own: Place, other: Place) -> Self:
+    def equal_supports(self, own: Place, other: Place) -> Self:
         """The same side, as its springs are those of the contacts."""
         return self
 

@@ -21,7 +21,7 @@ from dembound.accuracy.of_disks.search import best_of_disks
 from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.reference import Exact
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.types import LAWS
+from dembound.casefile.types import LAWS, require_linear
 from dembound.disks.contacts.breaks import BREAK_TIME, BREAK_X, BREAK_Y
 from dembound.disks.scene import DiskScene
 from dembound.words import Entries
@@ -40,6 +40,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def causes(self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
         """Sides, by companions; dispersion, steps, continuum and walls, by formulas."""
+        require_linear(case.material.law)
         return causes_of_disks(case, recorded, time_step, work, most)
 
     def of_another_seed(self, case: DiskCase, recorded: Motions, work: float) -> Causes:
@@ -48,7 +49,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def notes(self, case: DiskCase, summary: Mapping[str, Any]) -> Iterator[str]:
         """How near the motion came to the limit of the elastic law."""
-        if LAWS[case.material.law].has_history:
+        if not LAWS[case.material.law].is_linear:
             return
         limit = summary.get("load_factor")
         if limit is None:
@@ -60,6 +61,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def best(self, case: DiskCase, bound: float, kept: Sequence[str]) -> Best:
         """The cheapest disks, sides and boxes in a continuum."""
+        require_linear(case.material.law)
         return best_of_disks(case, bound, kept)
 
     def extended(self, case: DiskCase, most: int) -> Extended:
@@ -94,4 +96,4 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def proposals(self, scene: DiskScene) -> Entries:
         """The smallest box of disks with a continuum round it, if it saves much."""
-        return box_facts(scene)
+        return box_facts(scene) if scene.has_history or scene.ground.law.is_linear else iter(())

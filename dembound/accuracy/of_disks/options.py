@@ -104,9 +104,9 @@ def disk_options(
 
 
 def may_change_diameter(case: DiskCase, kept: Sequence[str]) -> bool:
-    """Whether disks only stand for the ground, on a lattice whose bonds do not break, and their radius is not kept."""
+    """Whether disks only stand for the ground, on a lattice under a linear law, and their radius is not kept."""
     sizes = {"packing", *(f"packing.{key}" for key in case.packing.scaled(1.0))}
-    return case.packing.is_lattice and not LAWS[case.material.law].has_history and sizes.isdisjoint(kept)
+    return case.packing.is_lattice and LAWS[case.material.law].is_linear and sizes.isdisjoint(kept)
 
 
 def _larger(case: DiskCase, factor: float) -> dict[str, Any]:

@@ -115,6 +115,19 @@ def held(made: Any) -> list[list[float]]:
     return [Held.of(each, "right").stiffness.tolist() for each in (scene, larger)]
 
 
+def companion(**changes: object) -> list[Any]:
+    """Dashpots per metre of the right side of a strip with disks three times as large, and its table; or why not.
+
+    Also the part of what whole cells add, see `coarser.Coarser`.
+    """
+    made = case(**STRIP, **changes)
+    try:
+        found = coarser(made, build(made), plan(made).time_step, 1.5)
+    except CaseError as error:
+        return list(error.problems)
+    return [Held.of(build(found.case), "right").damping.tolist(), found.case.boundary["right"].given(), found.weight]
+
+
 def other_draw(made: Any) -> dict[str, Any]:
     """How the motion of another packing was found, and its share; or why not."""
     motions, work = run(made)
@@ -141,6 +154,8 @@ sides = {
     "viscous": {"type": "viscous"},
 }
 late = {"monitor.middle.position": [17.25, 1.25], "run.duration": 0.07}  # after the wave has come back
+uneven = late | {"boundary.right": {"type": "heather", **springs}}
+one = {"damper": 0.5 * 2500.0 * build(case(**STRIP)).ground.wave_speeds(0)[1]}  # ρc_s D
 of_sides = {name: case(**STRIP, **late, **{"boundary.right": table}) for name, table in sides.items()}
 hexagons, unsaid = case(**HEXAGONS), case(**HEXAGONS | {"packing.pattern": "unsaid"})
 drawn, b = case(**DRAWN), case(**DRAWN | {"packing": B})
@@ -167,10 +182,15 @@ def twin_of(made: Any) -> str | None:
 
 json.dump(
     {
-        "held": {name: held(made) for name, made in of_sides.items()},
+        "held": {name: held(made) for name, made in of_sides.items()} | {"heather": held(case(**STRIP, **uneven))},
         "sides": {name: estimated(made) for name, made in of_sides.items()},
         "calibrated": {name: calibrate(made, "right").result for name, made in of_sides.items()},
         "whisper": estimated(whisper),
+        "shock": companion(**{"boundary.right": {"type": "shock", **one}}),
+        "soft shock": companion(**{"boundary.right": {"type": "shock", "damper": 0.5 * one["damper"]}}),
+        "like shock": companion(**{"boundary.right": {"type": "viscous", "beta_s": 1.0}}),
+        "pads": companion(**{"boundary.right": {"type": "pads", **one}}),
+        "shout": companion(**{"boundary.left": {"type": "shout", "wave_s": "bell"}}),
         "twins": [twin_of(brittle), twin_of(brittle_hexagons)],
         "linear": calibrate(brittle, "right").shortened,
         "hexagonal": estimated(hexagons),

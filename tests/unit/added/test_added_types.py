@@ -33,7 +33,7 @@ def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: added\nVersion: 1.0\n")
     groups = [f"[dembound.{group}]\nx = added_types:{name}\n" for group, name in REGISTERED.items()]
     groups[-1] += "y = added_types:Absent\nz = added_types:Stranger\n"
-    for name in ("LateInput", "Mattress", "Quilt", "Whisper"):
+    for name in ("LateInput", "Mattress", "Quilt", "Heather", "Shock", "Pads", "Whisper", "Shout"):
         groups[2] += f"{name} = added_types:{name}\n"
     for name in ("Unsaid", "Drawn"):
         groups[3] += f"{name} = added_types:{name}\n"
@@ -158,15 +158,41 @@ def test_a_side_with_springs_of_its_own_is_estimated_as_one_of_this_package(aske
     assert quilt["causes"]["sides"]["middle"] > 1.5 * asked["sides"]["viscous"]["causes"]["sides"]["middle"]
 
 
-def test_springs_that_do_not_say_how_stiff_they_are_on_other_disks_are_refused(asked) -> None:
-    (line,) = asked["held"]["mattress"][0]
-    assert line == (
-        'boundary.right.type: "mattress" has springs, which are not known for disks of another size; a type with '
-        "springs needs the method equal_springs()"
-    )
-    assert asked["sides"]["mattress"]["missing"] == [f"sides: {line}"]
-    assert "sides" not in asked["sides"]["mattress"]["causes"]
+def test_coefficients_per_disk_are_those_per_metre_on_other_disks(asked) -> None:
+    """Springs with none of the methods that know of larger disks: estimated as those of the type that has them."""
+    np.testing.assert_allclose(asked["held"]["mattress"][1], asked["held"]["mattress"][0], rtol=1e-12)
     assert asked["calibrated"]["mattress"] == asked["calibrated"]["viscoelastic"]
+    assert asked["sides"]["mattress"]["missing"] == []
+    for cause, errors in asked["sides"]["quilt"]["causes"].items():
+        assert asked["sides"]["mattress"]["causes"][cause]["middle"] == pytest.approx(errors["middle"], rel=1e-9), cause
+
+
+def test_springs_that_differ_along_a_side_are_refused(asked) -> None:
+    assert asked["held"]["heather"] == [
+        [
+            'boundary.right.type: "heather" has springs, which are not known for disks of another size; a type with '
+            "springs other than in proportion to edge.widths needs the method equal_supports()"
+        ]
+    ]
+
+
+def test_dampers_without_factors_have_half_cells_on_larger_disks(asked) -> None:
+    """ρc_s D on each disk is what "viscous" has with β_S = 1: the same companion, and the same part of whole cells."""
+    (damping, table, weight), (known, viscous, of_viscous) = asked["shock"], asked["like shock"]
+    assert table["half_mass"]
+    assert viscous["half_mass"]
+    assert damping[1] == pytest.approx(known[1], rel=1e-9)
+    assert weight == pytest.approx(of_viscous, rel=1e-9)
+    assert 0.1 < weight < 0.5  # cells a third as large
+    # half as strong they reflect a third; with the mass of whole cells, out of phase, 2 % of the dampers more
+    assert asked["soft shock"][0][1] == pytest.approx(0.5 * damping[1], rel=0.05)
+
+
+def test_what_acts_on_single_disks_is_refused_where_it_is_not_known_on_larger_ones(asked) -> None:
+    known = "which are not known for disks of another size; a type with"
+    needs = "other than in proportion to edge.widths needs the method equal_supports()"
+    assert asked["pads"] == [f'boundary.right.type: "pads" has dampers, {known} dampers {needs}']
+    assert asked["shout"] == [f'boundary.left.type: "shout" has forces, {known} forces {needs}']
 
 
 def test_a_side_that_lets_waves_in_without_dashpots_is_not_estimated(asked) -> None:
