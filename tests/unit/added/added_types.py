@@ -12,7 +12,7 @@ from dembound.holes import Hole
 from dembound.laws import Elastic
 from dembound.methods import Peridynamics
 from dembound.methods.bonds import Bonds
-from dembound.packings import Packing, RandomBrick
+from dembound.packings import Packing, RandomBrick, Square
 from dembound.packings.brick import Brick
 from dembound.table import quantity
 from dembound.waves.wave import Shape
@@ -53,6 +53,20 @@ class Forgetful(Linear):
 
     name: ClassVar[str] = "forgetful"
     has_history: ClassVar[bool] = True
+
+
+class Rubber(Linear):
+    """Says that it is not linear, and names no law that is; its kernel plays no part here."""
+
+    name: ClassVar[str] = "rubber"
+    is_linear: ClassVar[bool] = False
+
+
+class Cork(Rubber):
+    """The same, and names the law of its stiffness at rest."""
+
+    name: ClassVar[str] = "cork"
+    linear = "linear"
 
 
 class Cone(Peridynamics):
@@ -194,6 +208,22 @@ class Hexagonal(Packing):
             stress=np.zeros(3),
             residual_ratio=0.0,
         )
+
+
+class Storeys(Square):
+    """Equal disks that touch along x, and are bonded across gaps along y."""
+
+    pattern: Literal["storeys"]
+
+    @property
+    def brick_size(self):
+        """A cell higher than wide."""
+        return 2.0 * self.radius, 2.4 * self.radius
+
+    def pack(self, contact_modulus):
+        """A disk in the middle of its cell."""
+        size = np.array(self.brick_size)
+        return replace(super().pack(contact_modulus), size=size, positions=0.5 * size[None, :])
 
 
 class Unsaid(Hexagonal):

@@ -35,9 +35,10 @@ def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
     groups[-1] += "y = added_types:Absent\nz = added_types:Stranger\n"
     for name in ("LateInput", "Mattress", "Quilt", "Heather", "Shock", "Pads", "Whisper", "Shout"):
         groups[2] += f"{name} = added_types:{name}\n"
-    for name in ("Unsaid", "Drawn"):
+    for name in ("Unsaid", "Drawn", "Storeys"):
         groups[3] += f"{name} = added_types:{name}\n"
     groups[0] += "y = added_types:Namesake\nb = added_types:Brittle\n"
+    groups[0] += "r = added_types:Rubber\nc = added_types:Cork\n"
     groups[0] += "f = added_types:Forgetful\ng = added_types:Graded\n"
     groups[4] += "y = added_types:Nameless\n"
     (info / "entry_points.txt").write_text("".join(groups))
@@ -131,7 +132,7 @@ def test_what_cannot_be_used_is_said_and_left_out(found) -> None:
     assert stranger == "dembound.holes: z (added_types:Stranger) is not derived from Hole"
     assert nameless.startswith("dembound.waves: y (added_types:Nameless) lacks _displacement_shape, _velocity_shape, ")
     assert namesake == 'dembound.laws: y (added_types:Namesake) is called "elastic", which is taken'
-    said = 'dembound.laws: "forgetful" names "forgetful" as its linear law, which must be a law without history'
+    said = 'dembound.laws: "forgetful" names "forgetful" as its linear law, which must be a linear law without history'
     assert forgetful == said
 
 
@@ -253,3 +254,30 @@ def test_a_law_that_breaks_is_its_own_linear_law_where_nothing_breaks(asked) -> 
     """Found with companions of a square lattice: not for others, whose contacts are loaded otherwise."""
     assert asked["twins"] == ["linear", None]
     assert asked["linear"][-1] == "the linear law"
+
+
+def test_a_law_that_is_not_linear_is_refused_where_that_is_assumed(asked) -> None:
+    """In one line each; where its stiffness at rest is sufficient, the linear law it names takes its place."""
+    no_name = ['material.law: is "rubber", which is not linear, and names no linear law of its stiffness']
+    assert {name: asked["rubber"][name] for name in ("calibrate", "boundary", "stability")} == dict.fromkeys(
+        ("calibrate", "boundary", "stability"), no_name
+    )
+    assert asked["cork"].keys() == {"library", "estimate", "advise"}
+    for law in ("rubber", "cork"):
+        unknown = [f'material.law: is "{law}", which is not linear; errors are known of linear laws alone']
+        assert asked[law]["estimate"] == asked[law]["advise"] == unknown
+        (line,) = asked[law]["library"]
+        assert line.startswith(f'material.law: is "{law}", which is not linear; a library adds up motion, so "')
+        assert law not in line.removeprefix(f'material.law: is "{law}"')
+    assert asked["corks"][0] == asked["corks"][1]
+    assert asked["about cork"] == "the linear law"
+
+
+def test_a_mirror_image_is_as_far_away_as_disks_of_its_lattice(asked) -> None:
+    """Half a body is the whole one to rounding, with contacts across the gaps of the lattice; touching, 20 % off."""
+    assert asked["mirrored"] < 1e-11
+    # lattices without neighbours straight across a side are warned of, random packings are mirrored disk by disk
+    storeys, hexagonal, unsaid = asked["mirrors"]
+    assert storeys == unsaid == []
+    (line,) = hexagonal
+    assert line.startswith("boundary.bottom: the disks of pattern hexagonal have no neighbours straight across this ")
