@@ -29,9 +29,11 @@ from dembound.accuracy.of_disks.law import elastic_twin
 from dembound.accuracy.of_disks.near import wall_error
 from dembound.accuracy.of_disks.options import may_change_diameter, with_diameter
 from dembound.accuracy.runner import Runner, at_step
+from dembound.boundaries.words import side_in_words
 from dembound.disks.matching import Held
 from dembound.disks.reflection import measure_side
 from dembound.disks.reports.side_warnings import side_warnings
+from dembound.disks.reports.summary import describe_side
 from dembound.disks.scene import build
 from dembound.disks.trials import trials_of_disks
 from dembound.errors import CaseError
@@ -250,6 +252,10 @@ json.dump(
         ],
         "plane": [ExactPlaneWave.of(each) is not None for each in rows],
         "mirrored": mirrored(),
+        "described": [
+            side_in_words(describe_side(build(case(**STRIP, **{"boundary.right": table})), "right"))
+            for table in ({"type": "shock", "damper": 5e5}, sides["mattress"])
+        ],
         "mirrors": [
             list(side_warnings(build(kinds.with_changes(made, {"boundary.bottom": {"type": "symmetry"}}))))
             for made in (case(**ROCK, **STOREYS), hexagons, unsaid)

@@ -281,3 +281,9 @@ def test_a_mirror_image_is_as_far_away_as_disks_of_its_lattice(asked) -> None:
     assert storeys == unsaid == []
     (line,) = hexagonal
     assert line.startswith("boundary.bottom: the disks of pattern hexagonal have no neighbours straight across this ")
+
+
+def test_sides_are_described_with_their_own_numbers(asked) -> None:
+    shock, mattress = asked["described"]
+    assert shock == "shock, damper = 500000"
+    assert mattress.endswith(", stiffness = 2.5e+07")

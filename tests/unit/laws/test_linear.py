@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.casefile.types import LAWS
+from dembound.casefile.types import LAWS, _usable
+from dembound.laws import Elastic
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
 
@@ -40,6 +41,24 @@ def is_linear(law: str) -> bool:
 @pytest.mark.parametrize("law", [name for name, law in LAWS.items() if law.is_linear])
 def test_laws_are_linear_that_say_so(law: str) -> None:
     assert is_linear(law)
+
+
+class Rubber(Elastic):
+    name = "rubber"
+    is_linear = False
+
+
+class Brittle(Elastic):
+    name = "brittle"
+    has_history = True
+    linear = "rubber"
+
+
+def test_the_linear_law_of_a_law_is_linear() -> None:
+    """A law that is not may stand for itself; another one cannot take it for linear."""
+    with pytest.warns(UserWarning, match='"brittle" names "rubber" as its linear law, which must be a linear law'):
+        found = _usable({law.name: law for law in (Elastic(), Rubber(), Brittle())})
+    assert list(found) == ["elastic", "rubber"]
 
 
 def test_contacts_that_open_are_found_not_to_be() -> None:
