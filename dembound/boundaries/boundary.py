@@ -129,10 +129,11 @@ class Boundary(Table):
         """The side with half cells or with whole ones; as it is if it may not have half cells."""
         return self
 
-    def equal_springs(self, own: Place, other: Place) -> "Boundary | None":
-        """The side on one place with springs as stiff per length as those of this table on another place.
+    def equal_supports(self, own: Place, other: Place) -> "Boundary | None":
+        """The side on one place with supports as strong per length as those of this table on another place.
 
-        None, by default, of a type that has no springs, or that does not know.
+        Springs, dampers and forces of waves. None, by default, of a type that does not know: it is then taken as it is
+        where it is as strong, and else refused.
         """
         return None
 
@@ -157,8 +158,21 @@ class Boundary(Table):
         return self
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
-        """The side in numbers for reports: key -> value, SI units; matched_p and matched_s are β0, null where held."""
+        """The side in numbers for reports: key -> value, SI units; matched_p and matched_s are β0, null where held.
+
+        By default also the numbers among the keys of all classes that have no such method of their own.
+        """
         matched = medium.matched(edge) if self.factors else {}
-        return {f"beta_{motion}": factor for motion, factor in self.factors_at(edge, medium).items()} | {
-            f"matched_{motion}": None if math.isnan(matched[motion]) else matched[motion] for motion in self.factors
+        own = {
+            key: getattr(self, key)
+            for each in type(self).__mro__
+            if issubclass(each, Table) and "describe" not in vars(each)
+            for key in each.model_fields
+            if not any(key in base.model_fields for base in each.__bases__ if issubclass(base, Table))
         }
+        numbers = {key: value for key, value in own.items() if isinstance(value, float) or type(value) is int}
+        return (
+            numbers
+            | {f"beta_{motion}": factor for motion, factor in self.factors_at(edge, medium).items()}
+            | {f"matched_{motion}": None if math.isnan(matched[motion]) else matched[motion] for motion in self.factors}
+        )

@@ -81,7 +81,7 @@ class Springs(Boundary):
         factors = [along_normal, across] if edge.axis == 0 else [across, along_normal]
         return np.outer(factors, self.shear_modulus(medium) * edge.widths / self.distances(edge))
 
-    def equal_springs(self, own: Place, other: Place) -> Self:
+    def equal_supports(self, own: Place, other: Place) -> Self:
         """With other factors α."""
         mine, theirs = (self.shear_modulus(medium) * edge.diameter_sum_ratio for edge, medium in (own, other))
         ratio = theirs / mine

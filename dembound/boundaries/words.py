@@ -61,7 +61,8 @@ def _beside_matched(side: Mapping[str, Any], key: str) -> str:
 
 def _others(side: Mapping[str, Any]) -> str:
     """All other numbers; types of other packages may have some."""
-    return "".join(f", {key} = {value}" for key, value in side.items() if key not in IN_WORDS)
+    others = {key: value for key, value in side.items() if key not in IN_WORDS}
+    return "".join(f", {key} = {f'{value:g}' if isinstance(value, float) else value}" for key, value in others.items())
 
 
 def _springs_in_words(side: Mapping[str, Any]) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from dembound import boundaries, holes, laws, methods, packings, waves
 from dembound.boundaries import Boundary
+from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.laws import Law
 from dembound.methods import Method
@@ -25,14 +26,20 @@ WAVES = with_registered("dembound.waves", Wave, waves.TYPES)
 
 
 def _usable(found: Mapping[str, Law]) -> dict[str, Law]:
-    """Laws by name, without those with a history that name no law of the same stiffness without one."""
-    usable = {
-        name: law for name, law in found.items() if (at_rest := found.get(law.linear)) and not at_rest.has_history
-    }
+    """Laws by name, without those with a history that name no linear law of the same stiffness."""
+
+    def is_usable(law: Law) -> bool:
+        at_rest = found.get(law.linear)
+        if law.linear == law.name:
+            return not law.has_history
+        return at_rest is not None and at_rest.is_linear and not at_rest.has_history
+
+    usable = {name: law for name, law in found.items() if is_usable(law)}
     for name, law in found.items():
         if name not in usable:
             said = (
-                f'dembound.laws: "{name}" names "{law.linear}" as its linear law, which must be a law without history'
+                f'dembound.laws: "{name}" names "{law.linear}" as its linear law, which must be a linear law without '
+                "history"
             )
             warnings.warn(said, UnusableTypeWarning, stacklevel=2)
     return usable
@@ -40,6 +47,27 @@ def _usable(found: Mapping[str, Law]) -> dict[str, Law]:
 
 LAWS = _usable({law.name: law() for law in with_registered("dembound.laws", Law, laws.TYPES)})
 """Name in a case file -> law."""
+
+
+def linear_law(name: str) -> str:
+    """Name of the linear law that has the same stiffness at rest as a law.
+
+    Raises CaseError for a law that is not linear and names none.
+    """
+    linear = LAWS[name].linear
+    if not LAWS[linear].is_linear:
+        raise CaseError([f'material.law: is "{name}", which is not linear, and names no linear law of its stiffness'])
+    return linear
+
+
+def require_linear(name: str) -> None:
+    """Raise CaseError for a law without a history that is not linear: its motion is not that of a linear medium.
+
+    Laws with a history are linear until something opens, slides or breaks, which runs find out.
+    """
+    if not (LAWS[name].is_linear or LAWS[name].has_history):
+        raise CaseError([f'material.law: is "{name}", which is not linear; errors are known of linear laws alone'])
+
 
 BoundaryTable, HoleTable, MethodTable = one_of("type", BOUNDARIES), one_of("type", HOLES), one_of("type", METHODS)
 PackingTable, WaveTable = one_of("pattern", PACKINGS), one_of("type", WAVES)

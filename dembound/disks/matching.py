@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.boundaries import Motion, axis_of_motion
-from dembound.boundaries.support import SupportBuilder, Supports
+from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.boundaries.words import reflected
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.errors import CaseError
@@ -30,6 +31,37 @@ def supports_of(scene: DiskScene, side: str) -> Supports:
     medium = boundary_medium(scene.case, scene.ground, edge.axis)
     scene.case.side(side).support(edge, medium, scene.case.wave, builder)
     return builder.table()
+
+
+def per_metre(scene: DiskScene, side: str, table: Boundary) -> dict[tuple[str, int, int], float]:
+    """What acts on the disks of a side of a type, per metre of it, with matched factors of its dashpots.
+
+    By kind, component (0 x, 1 y, 2 rotation) and number of the signal (−1 for none): "dampers" N·s/m², "springs" N/m²,
+    and "forces" of waves, N/m per unit of their signal. Prescribed motion is left out.
+    """
+    edge = scene.edges[side]
+    medium = boundary_medium(scene.case, scene.ground, edge.axis)
+    builder = SupportBuilder(held=scene.ground.held)
+    matched = table.with_factors(dict.fromkeys(table.factors, "matched")).with_numbers(edge, medium)
+    matched.support(edge, medium, scene.case.wave, builder)
+    supports, length = builder.table(), _length(edge)
+    free = ~supports.prescribed
+    found: dict[tuple[str, int, int], float] = {}
+    for component in range(3):
+        rows = free & (supports.component == component)
+        for kind, values in (("dampers", supports.damping), ("springs", supports.stiffness)):
+            if values[rows].any():
+                found[kind, component, -1] = float(values[rows].sum()) / length
+        drives = rows[supports.drive_row]
+        for number in np.unique(supports.drive_signal[drives]).tolist():
+            forces = supports.drive[drives & (supports.drive_signal == number)]
+            found["forces", component, number] = float(forces.sum()) / length
+    return found
+
+
+def _length(edge: Edge) -> float:
+    """Length (m) of the side on which its disks are, those at its corners that are halved there as whole ones."""
+    return edge.length * float(np.sum(edge.widths) / np.sum(edge.diameters))
 
 
 def require_dashpots_alone(scene: DiskScene, side: str) -> None:
@@ -58,10 +90,9 @@ class Held(NamedTuple):
     def of(cls, scene: DiskScene, side: str) -> "Held":
         """The sums over the particles of a side; disks at its corners that are halved there count as whole ones."""
         edge, table = scene.edges[side], supports_of(scene, side)
-        length = edge.length * float(np.sum(edge.widths) / np.sum(edge.diameters))
         return cls(
             *(
-                np.array([np.sum(values[table.component == axis]) for axis in (0, 1)]) / length
+                np.array([np.sum(values[table.component == axis]) for axis in (0, 1)]) / _length(edge)
                 for values in (table.damping, table.stiffness)
             )
         )

@@ -22,6 +22,7 @@ from dembound.disks.body_sides import sides_of, tied_of
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.loads import drive, steady
+from dembound.disks.material.mirrored import with_images
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.monitors import monitors_of
 from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
@@ -278,7 +279,7 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
         s_speed = float(np.sqrt(ground.material_tensor[s_gradient, s_gradient] / ground.density))
 
     def mirror_stiffness(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        between = ground.law.stiffness(ground.moduli, 0.5 * diameters, 0.5 * diameters, diameters)
+        between = with_images(ground, axis, diameters)
         return between.normal, between.bending
 
     return BoundaryMedium(

@@ -8,7 +8,7 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.casefile.types import LAWS
+from dembound.casefile.types import LAWS, linear_law
 from dembound.disks import stability
 from dembound.disks.scene import DiskScene, build, ground_of
 from dembound.disks.stepping.contact_lists import contact_lists
@@ -31,7 +31,7 @@ UNLOADED = (
 
 
 def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
-    """A body of disks under the linear law, and under the case's own if that has a history.
+    """A body of disks under the linear law, and under the case's own if that is another.
 
     Returns also how they differ from the case, one sentence each. full : the whole scene, instead of fewer copies of
     the brick. Raises the errors of building a scene.
@@ -46,7 +46,7 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
         plain, about = _reduced(plain)
         words = [*about, *words]
     own = LAWS[case.material.law]
-    linear = plain.material.model_copy(update={"law": own.linear})
+    linear = plain.material.model_copy(update={"law": linear_law(own.name)})
     scene = build(replace(plain, material=linear))
     size = f"{scene.size[0]:.4g} m × {scene.size[1]:.4g} m, {scene.disk_count:,} disks"
     if scene.continua:
@@ -54,8 +54,8 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
     if scene.seam is not None:
         size += ", with the free-field column"
     found = [_under(scene, own.linear)]
-    if own.has_history:
-        opens = scene.ground.moduli.emod > 0.0 and case.material.locked_in is None
+    if not own.is_linear:
+        opens = own.has_history and scene.ground.moduli.emod > 0.0 and case.material.locked_in is None
         found.append(_under(build(plain), f"{own.name}{', unloaded' if opens else ''}"))
         words += [f"noise of {NOISE:g} m/s, in which no bond breaks", *([UNLOADED] if opens else [])]
     return found, [size, *words]
@@ -72,7 +72,8 @@ def _under(scene: DiskScene, name: str) -> Trial:
             start = Start(nothing, contact_lists(scene))  # what is locked in is balanced, also at cut faces
         return DiskSystem(scene, time_step, start, load=nothing)
 
-    return Trial(name, scene, limit, stability.own_step(scene.case, limit), system, is_linear=not scene.has_history)
+    linear = scene.ground.law.is_linear
+    return Trial(name, scene, limit, stability.own_step(scene.case, limit), system, is_linear=linear)
 
 
 def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:

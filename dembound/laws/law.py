@@ -57,15 +57,20 @@ class Law(ABC):
     Attributes
     ----------
     name : value of `material.law`.
-    has_history : whether contacts open, slide and break (kernels/contacts.py); else forces are linear (elastic.py).
+    has_history : whether contacts open, slide and break (kernels/contacts.py).
     """
 
     name: ClassVar[str]
     has_history: ClassVar[bool] = False
 
     @property
+    def is_linear(self) -> bool:
+        """Whether forces are linear in displacements; by default those of a law without a history (elastic.py)."""
+        return not self.has_history
+
+    @property
     def linear(self) -> str:
-        """Name of the law without history that has the same stiffness at rest; required for a history-dependent law."""
+        """Name of the linear law that has the same stiffness at rest; required for a history-dependent law."""
         return self.name
 
     @abstractmethod

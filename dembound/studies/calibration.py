@@ -250,7 +250,9 @@ def calibrated_motion(case: DiskCase, side: str, motion: Motion | None = None) -
     table = case.side(side)
     if not table.factors:
         usable = ", ".join(name for name, other in case.boundary.items() if other.factors) or "none"
-        raise CaseError([f"boundary.{side}: is {table.type}, only viscous sides can be calibrated; here: {usable}"])
+        raise CaseError(
+            [f"boundary.{side}: is {table.type}, only sides with dashpots can be calibrated; here: {usable}"]
+        )
     motion = motion or default_motion(case, side)
     _must_move(case, side, motion)
     return motion

@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.boundaries import OPPOSITE, Motion, Periodic, Velocity, normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.types import LAWS
+from dembound.casefile.types import linear_law
 from dembound.disks.scene import ground_of
 from dembound.errors import CaseError
 from dembound.waves import Cosine
@@ -51,9 +51,11 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
 
     Springs reflect for any β; seam forces of a column depend on the wave; holes scatter; loads, a static stage and a
     history-dependent law cause motion that does not belong to the wave.
+
+    Raises CaseError for a law of no linear medium.
     """
     boundary = {side: table.dashpots_alone() for side, table in case.boundary.items()}
-    material = case.material.model_copy(update={"law": LAWS[case.material.law].linear})
+    material = case.material.model_copy(update={"law": linear_law(case.material.law)})
     left_out = {
         **{table.beyond_dashpots: True for table in case.boundary.values() if table.beyond_dashpots},
         "no holes": bool(case.hole),

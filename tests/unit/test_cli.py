@@ -485,7 +485,7 @@ def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, 
     other = path.with_name("bar_calibrated.toml")
     other.write_text("# another case, whose side is not looked for first")
     answer = dembound("calibrate", path, "--boundary", "top")
-    assert answer == (2, "", "boundary.top: is free, only viscous sides can be calibrated; here: left, right\n")
+    assert answer == (2, "", "boundary.top: is free, only sides with dashpots can be calibrated; here: left, right\n")
     assert not (tmp_path / "results").exists()
     other.unlink()
 

@@ -5,7 +5,11 @@ import re
 from pathlib import Path
 from typing import get_args
 
-from dembound import errors
+import h5py
+import pytest
+import tomli_w
+
+from dembound import errors, kinds, laws
 from dembound.casefile.bar.bar import Bar
 from dembound.casefile.bar.load import BarLoad
 from dembound.casefile.bar.monitor import BarMonitor
@@ -29,9 +33,11 @@ from dembound.casefile.types import (
     StaticSide,
     WaveTable,
 )
+from dembound.cli import app
 from dembound.cli.app import EXIT_CODES
 from dembound.exact import cells_per_wavelength, courant_limit
-from dembound.running import SECTIONS
+from dembound.results import new_record
+from dembound.running import SECTIONS, plan
 
 ROOT = Path(__file__).parents[2]
 REFERENCE = ROOT / "docs" / "case_file.md"
@@ -76,6 +82,59 @@ def test_every_type_stands_in_the_reference() -> None:
             field = table.model_fields.get("type") or table.model_fields["pattern"]
             (name,) = get_args(field.annotation)
             assert f'"{name}"' in reference(of_bar)
+
+
+def test_every_law_stands_in_the_reference() -> None:
+    assert not [law.name for law in laws.TYPES if f'"{law.name}"' not in reference(of_bar=False)]
+
+
+def test_every_command_stands_in_the_readme_or_a_page() -> None:
+    pages = "\n".join(page.read_text() for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")))
+    names = [command.name or command.callback.__name__ for command in app.registered_commands]
+    assert not [name for name in names if not re.search(rf"dembound {name}\b", pages)]
+
+
+def asked_for() -> dict[str, object]:
+    """Keys of ``[output]`` with which everything is recorded: what is off is on, rectangles are inside the scene."""
+    keys = {name: field.default for name, field in Output.model_fields.items()}
+    rectangle = [0.1, 0.2, 0.3, 0.4]
+    switched = {name: True for name, default in keys.items() if default is False}
+    return switched | {
+        name: rectangle for name in keys if str(Output.model_fields[name].annotation).startswith("tuple[float")
+    }
+
+
+DISKS = {
+    "packing": {"pattern": "A", "size": [3.0, 3.0], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.02}},
+    "load": [{"name": "push", "force": [0.0, 1e6], "position": [1.25, 1.25], "wave": "pulse"}],
+    "monitor": [{"name": "top", "position": [1.25, 2.75]}],
+    "run": {"duration": 0.01},
+    "output": asked_for(),
+}
+BAR = {
+    "bar": {"length": 1.0, "spacing": 0.05, "density": 2500.0, "wave_speed": 2000.0},
+    "method": {"type": "finite_difference"},
+    "monitor": [{"name": "end", "position": 1.0}],
+    "run": {"duration": 1e-4},
+}
+
+
+@pytest.mark.parametrize("tables", [DISKS, BAR], ids=["disks", "bar"])
+def test_every_dataset_of_a_record_stands_in_the_reference(tables, tmp_path) -> None:
+    """Those that the new record of a case has that asks for all of them, and those of its snapshots."""
+    scene = plan(kinds.loads(tomli_w.dumps(tables))).scene
+    found: set[str] = set(scene.in_snapshots)
+    with h5py.File(tmp_path / "layout.h5", "w") as file:
+        new_record._lay_out(file, scene, list(scene.edges), list(scene.edges))
+        file.visititems(lambda name, item: found.add(name) if isinstance(item, h5py.Dataset) else None)
+    page = re.sub(r"```.*?```", "", (ROOT / "docs" / "results.md").read_text(), flags=re.DOTALL)
+    rows = page.split("\n## `run.h5`\n")[1].split("\n## ")[0]
+    words = {word for code in re.findall(r"`([^`]+)`", page) for word in re.findall(r"\w+", code)}
+    named = [path.split("/") for path in found if not path.startswith("inputs/")]  # whose names are numbers
+    assert not [path for path in named if path[-1] not in words or (path[1:] and f"\n| `{path[0]}/" not in rows)]
 
 
 def test_exit_codes_are_the_same_wherever_they_are_told():

@@ -2,31 +2,39 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from dembound.accuracy.of_disks.matched_sides import Reflected, factor_for, reflected
+from dembound.accuracy.of_disks.plain_sides import with_plain_sides
 from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
-from dembound.disks.matching import homogenised_beta, supports_of
+from dembound.disks.matching import homogenised_beta, per_metre
 from dembound.disks.scene import DiskScene, boundary_medium, build
 from dembound.errors import CaseError
+
+EQUAL = 1e-3
+"""Largest relative difference between dampers, springs and forces per metre that count as equally strong; dashpots that
+differ by so much reflect half as much more or less."""
 
 
 def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dict[str, Boundary], float]:
     """Sides of a coarser case that reflect as much, with springs as stiff, as those of the scene of the finer case.
 
     time_step : s, of the finer case. Returns also the weight of what whole cells add, see `coarser.Coarser`. Raises
-    CaseError for springs that are not known.
+    CaseError for dampers, springs or forces of waves that are not known on disks of another size.
     """
+    scene = with_plain_sides(scene)
+    case = replace(case, boundary={side: scene.case.boundary[side] for side in case.boundary})
     own = build(case)
     shares = {side: reflected(scene, side, time_step) for side, table in case.boundary.items() if table.factors}
     halved = {side: found for side, found in shares.items() if case.boundary[side].may_halve}
     weight = _weight_of_mass(halved, build(with_whole_cells(case)), time_step)
-    boundary = {side: _equal_springs(table, side, own, scene) for side, table in case.boundary.items()}
+    boundary = {side: _equal_supports(table, side, own, scene) for side, table in case.boundary.items()}
     boundary |= {
         side: _equal_dashpots(boundary[side], side, found, weight > 0.0, own) for side, found in shares.items()
     }
@@ -69,17 +77,34 @@ def _equal_dashpots(
     return table.with_factors(factors).with_half_cells(True)
 
 
-def _equal_springs(table: Boundary, side: str, own: DiskScene, finer: DiskScene) -> Boundary:
-    """A side with springs as stiff per length as those of the finer scene, if it has springs.
+def _equal_supports(table: Boundary, side: str, own: DiskScene, finer: DiskScene) -> Boundary:
+    """A side whose springs, and forces of waves, are as strong per length as those of the finer scene.
 
-    Raises CaseError for a type that has some, and does not know which those are.
+    Raises CaseError where what the type says is none, or its dampers differ.
     """
-    if side not in own.edges or not supports_of(own, side).stiffness.any():
+    if side not in own.edges:
         return table
     axis = normal_axis(side)
     here, there = ((each.edges[side], boundary_medium(each.case, each.ground, axis)) for each in (own, finer))
-    found = table.equal_springs(here, there)
-    if found is None:
-        what = f'"{table.type}" has springs, which are not known for disks of another size'
-        raise CaseError([f"boundary.{side}.type: {what}; a type with springs needs the method equal_springs()"])
+    answered = table.equal_supports(here, there)
+    found = table if answered is None else answered
+    ratios = np.array([_impedances(own, axis), _impedances(finer, axis)])
+    given, wanted = per_metre(own, side, found), per_metre(finer, side, table)
+    for kind, component, number in sorted({*given, *wanted}):
+        if kind != "dampers" and answered is not None:
+            continue  # the type knows, such as those of mirror images, which are stiffer per length
+        larger, smaller = (each.get((kind, component, number), 0.0) for each in (given, wanted))
+        allowed = [smaller]
+        if kind != "springs" and component < 2:
+            allowed.append(smaller * ratios[0, component] / ratios[1, component])
+        if not any(math.isnan(each) or math.isclose(larger, each, rel_tol=EQUAL) for each in allowed):
+            what = f'"{table.type}" has {kind}, which are not known for disks of another size'
+            why = f"a type with {kind} other than in proportion to edge.widths needs the method equal_supports()"
+            raise CaseError([f"boundary.{side}.type: {what}; {why}"])
     return found
+
+
+def _impedances(scene: DiskScene, axis: int) -> np.ndarray:
+    """ρc (2,) Pa·s/m of waves along an axis that move disks along x and y; nan where none run."""
+    p, s = scene.ground.wave_speeds(axis)
+    return scene.ground.density * np.array([p, s] if axis == 0 else [s, p])

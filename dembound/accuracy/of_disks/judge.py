@@ -20,7 +20,7 @@ from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.proposal import Advice
 from dembound.accuracy.reference import Exact
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.types import LAWS
+from dembound.casefile.types import LAWS, require_linear
 from dembound.disks.contacts.breaks import BREAK_TIME
 from dembound.disks.scene import DiskScene
 
@@ -37,6 +37,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def causes(self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
         """Sides, by companions; dispersion, steps, continuum and walls, by formulas."""
+        require_linear(case.material.law)
         return causes_of_run(case, recorded, time_step, work, most)
 
     def truth(self, case: DiskCase) -> Truth:
@@ -50,7 +51,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def notes(self, case: DiskCase, summary: Mapping[str, Any]) -> Iterator[str]:
         """How near the motion came to the limit of the elastic law."""
-        if LAWS[case.material.law].has_history:
+        if not LAWS[case.material.law].is_linear:
             return
         limit = summary.get("load_factor")
         if limit is None:
@@ -62,6 +63,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def advise(self, case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
         """The cheapest disks, sides and boxes in a continuum."""
+        require_linear(case.material.law)
         return advice_for_disks(case, bounds, of, kept)
 
     def extended(self, case: DiskCase, most: int) -> Extended:

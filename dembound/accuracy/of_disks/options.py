@@ -134,10 +134,10 @@ class Options:
 
     @cached_property
     def _may_change_diameter(self) -> bool:
-        """Whether disks only stand for the ground, on a lattice of unbreakable bonds, and their radius is not kept."""
+        """Whether disks only stand for the ground, on a lattice under a linear law, and their radius is not kept."""
         case = self._case
         sizes = {"packing", *(f"packing.{key}" for key in case.packing.scaled(1.0))}
-        return case.packing.is_lattice and not LAWS[case.material.law].has_history and sizes.isdisjoint(self.kept)
+        return case.packing.is_lattice and LAWS[case.material.law].is_linear and sizes.isdisjoint(self.kept)
 
     def _with_diameter(self, factor: float) -> tuple[DiskCase, PackedMaterial] | None:
         """The given case with larger or smaller disks, and their ground; None if its scene cannot be made of them."""

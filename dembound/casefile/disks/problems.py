@@ -105,7 +105,7 @@ def _no_load_factor(
                 yield f"material.{key}: is only allowed with law = {with_history()} or output.load_factor"
     if not output.load_factor:
         return
-    if not elastic:
+    if not LAWS[material.law].is_linear:
         yield f'output.load_factor: is of linear laws, material.law is "{material.law}"; give "elastic"'
     if material.damp > 0.0:
         yield f"output.load_factor: needs material.damp = 0, as local damping is not linear; it is {material.damp:g}"

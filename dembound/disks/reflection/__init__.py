@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import linear_law
 from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.reflection.arrivals import Arrival, arrivals_of
@@ -78,14 +79,15 @@ def measure_side(
     every frequency (Hz) before it is computed. quick : instead of disks by the equivalent continuum, without an outside
     beside it, see smeared.py.
 
-    Raises CaseError for a periodic side, for a quick answer about an outside, and for angles and frequencies that are
-    none.
+    Raises CaseError for a law of no linear medium, for a periodic side, for a quick answer about an outside, and for
+    angles and frequencies that are none.
     """
     problems = [f"--angle: is {a:g}, must be at least 0 and below 90 (degrees)" for a in angles if not 0.0 <= a < 90.0]
     if not isinstance(frequencies, int):
         problems += [f"--frequency: is {f:g}, must be above 0 (Hz)" for f in frequencies if not 0.0 < f < np.inf]
     if problems:
         raise CaseError(problems)
+    linear_law(case.material.law)
     whole = build(case)
     ground, table = whole.ground, case.side(side)
     chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.array(frequencies)

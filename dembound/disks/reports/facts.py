@@ -99,7 +99,8 @@ def _law_facts(scene: DiskScene) -> Entries:
     """The law, and the limits of contacts and bonds."""
     material = scene.case.material
     if not scene.has_history:
-        yield "law", f"{material.law}: contacts neither open nor slip, bonds do not break"
+        linear = "" if scene.ground.law.is_linear else "not linear; "
+        yield "law", f"{material.law}: {linear}contacts neither open nor slip, bonds do not break"
         return
     start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
     bonds = "no bonds"

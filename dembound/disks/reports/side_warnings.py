@@ -7,6 +7,7 @@ from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
 from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.matching import Held, factors_in, homogenised_beta, sent_back
+from dembound.disks.material.mirrored import continues
 from dembound.disks.reports.beside_wave import taken_from_waves
 from dembound.disks.scene import DiskScene
 
@@ -16,6 +17,7 @@ def side_warnings(scene: DiskScene) -> Iterator[str]:
     yield from _send_back(scene)
     yield from _take_from_waves(scene)
     yield from _hold_monitors(scene)
+    yield from _mirror_otherwise(scene)
 
 
 TAKEN = 0.1
@@ -75,3 +77,15 @@ def _hold_monitors(scene: DiskScene) -> Iterator[str]:
         for name, particle in scene.monitors.items():
             if particle in edge.nodes:
                 yield f"monitor.{name}: its disk is on boundary.{side}, which holds it still: its motion is zero"
+
+
+def _mirror_otherwise(scene: DiskScene) -> Iterator[str]:
+    """Planes of symmetry across which a lattice does not continue as its own mirror image."""
+    packing, brick = scene.case.packing, scene.ground.brick
+    for side, edge in scene.edges.items():
+        mirrored = scene.case.side(side).is_mirror and packing.is_lattice
+        if mirrored and not continues(brick, edge.axis, edge.diameters):
+            yield (
+                f"boundary.{side}: the disks of pattern {packing.pattern} have no neighbours straight across this side "
+                "and touch their mirror images: near there the body is not half of a larger one of this lattice"
+            )

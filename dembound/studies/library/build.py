@@ -47,9 +47,10 @@ def inputs_of(case: DiskCase) -> list[str]:
 def problems_of(case: DiskCase) -> Iterator[str]:
     """Why a case has no library, a line each: it is not linear, has no input, or nothing is recorded."""
     law, damp = case.material.law, case.material.damp
-    linear = " or ".join(f'"{name}"' for name, each in LAWS.items() if not each.has_history)
-    if LAWS[law].has_history:
-        yield f'material.law: is "{law}", whose contacts open, slide and break; a library adds up motion, so {linear}'
+    linear = " or ".join(f'"{name}"' for name, each in LAWS.items() if each.is_linear)
+    if not LAWS[law].is_linear:
+        why = "whose contacts open, slide and break" if LAWS[law].has_history else "which is not linear"
+        yield f'material.law: is "{law}", {why}; a library adds up motion, so {linear}'
     if damp > 0.0:
         yield f"material.damp: is {damp:g}, must be 0 in a library, as local damping is not linear"
     if not inputs_of(case):

@@ -5,13 +5,14 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from dembound.boundaries import Boundary
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.viscous import Dashpots, Viscous
 from dembound.holes import Hole
 from dembound.laws import Elastic
 from dembound.methods import Peridynamics
 from dembound.methods.bonds import Bonds
-from dembound.packings import Packing, RandomBrick
+from dembound.packings import Packing, RandomBrick, Square
 from dembound.packings.brick import Brick
 from dembound.table import quantity
 from dembound.waves.wave import Shape
@@ -52,6 +53,20 @@ class Forgetful(Linear):
 
     name: ClassVar[str] = "forgetful"
     has_history: ClassVar[bool] = True
+
+
+class Rubber(Linear):
+    """Says that it is not linear, and names no law that is; its kernel plays no part here."""
+
+    name: ClassVar[str] = "rubber"
+    is_linear: ClassVar[bool] = False
+
+
+class Cork(Rubber):
+    """The same, and names the law of its stiffness at rest."""
+
+    name: ClassVar[str] = "cork"
+    linear = "linear"
 
 
 class Cone(Peridynamics):
@@ -102,10 +117,42 @@ class Quilt(Mattress):
 
     type: Literal["quilt"]
 
-    def equal_springs(self, own, other):
+    def equal_supports(self, own, other):
         """As stiff per length."""
         per_length = [len(edge.nodes) / edge.length for edge, _ in (own, other)]
         return self.model_copy(update={"stiffness": self.stiffness * per_length[1] / per_length[0]})
+
+
+class Heather(Mattress):
+    """A mattress that is stiffer towards its end."""
+
+    type: Literal["heather"]
+
+    def support(self, edge, medium, waves, supports):
+        """Dashpots and springs."""
+        rising = self.stiffness * np.linspace(0.5, 1.5, len(edge.nodes))
+        for component, damping in enumerate(self.dampings(edge, medium)):
+            supports.add(edge.nodes, component, damping=damping, stiffness=rising)
+
+
+class Shock(Boundary):
+    """A damper of the same coefficient on every disk, whatever its size, without a factor."""
+
+    type: Literal["shock"]
+    is_artificial: ClassVar[bool] = True
+    damper: float = quantity(..., unit="N·s/m", help="of a disk", gt=0.0)
+
+    def support(self, edge, medium, waves, supports):
+        """One damper per disk and direction."""
+        for component in range(2):
+            supports.add(edge.nodes, component, damping=self.damper)
+
+
+class Pads(Shock):
+    """The same, of dampers that are part of the structure: it does not stand in for ground."""
+
+    type: Literal["pads"]
+    is_artificial: ClassVar[bool] = False
 
 
 class Whisper(Driven):
@@ -118,7 +165,21 @@ class Whisper(Driven):
         """Forces that follow the wave."""
         for component, name in enumerate(self.waves_by_axis(edge.axis)):
             if name:
-                supports.add(edge.nodes, component, drive=1e6, signal=waves[name].velocity)
+                supports.add(edge.nodes, component, drive=self.forces(edge), signal=waves[name].velocity)
+
+    def forces(self, edge):
+        """In proportion to the widths of disks."""
+        return 2e6 * edge.widths
+
+
+class Shout(Whisper):
+    """The same with equal forces on disks of any size."""
+
+    type: Literal["shout"]
+
+    def forces(self, edge):
+        """One for all."""
+        return 1e6
 
 
 class Hexagonal(Packing):
@@ -147,6 +208,22 @@ class Hexagonal(Packing):
             stress=np.zeros(3),
             residual_ratio=0.0,
         )
+
+
+class Storeys(Square):
+    """Equal disks that touch along x, and are bonded across gaps along y."""
+
+    pattern: Literal["storeys"]
+
+    @property
+    def brick_size(self):
+        """A cell higher than wide."""
+        return 2.0 * self.radius, 2.4 * self.radius
+
+    def pack(self, contact_modulus):
+        """A disk in the middle of its cell."""
+        size = np.array(self.brick_size)
+        return replace(super().pack(contact_modulus), size=size, positions=0.5 * size[None, :])
 
 
 class Unsaid(Hexagonal):

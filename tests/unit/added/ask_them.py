@@ -5,6 +5,7 @@ import sys
 import warnings
 from dataclasses import replace
 from itertools import islice
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,11 +27,17 @@ from dembound.accuracy.of_disks.law import elastic_twin
 from dembound.accuracy.of_disks.near import wall_error
 from dembound.accuracy.of_disks.options import Options
 from dembound.accuracy.runner import Runner, at_step
+from dembound.boundaries.words import side_in_words
 from dembound.disks.matching import Held
+from dembound.disks.reflection import measure_side
+from dembound.disks.reports.side_warnings import side_warnings
+from dembound.disks.reports.summary import describe_side
 from dembound.disks.scene import build
+from dembound.disks.trials import trials_of_disks
 from dembound.errors import CaseError
 from dembound.running import plan
 from dembound.studies.calibration import calibrate
+from dembound.studies.library.build import build_library
 
 GROUND = {
     "packing": {"pattern": "A", "size": [20.0, 2.0], "radius": 0.25},
@@ -115,6 +122,19 @@ def held(made: Any) -> list[list[float]]:
     return [Held.of(each, "right").stiffness.tolist() for each in (scene, larger)]
 
 
+def companion(**changes: object) -> list[Any]:
+    """Dashpots per metre of the right side of a strip with disks three times as large, and its table; or why not.
+
+    Also the part of what whole cells add, see `coarser.Coarser`.
+    """
+    made = case(**STRIP, **changes)
+    try:
+        found = coarser(made, build(made), plan(made).time_step, 1.5)
+    except CaseError as error:
+        return list(error.problems)
+    return [Held.of(build(found.case), "right").damping.tolist(), found.case.boundary["right"].given(), found.weight]
+
+
 def other_draw(made: Any) -> dict[str, Any]:
     """How the motion of another packing was found, and its share; or why not."""
     motions, _ = run(made)
@@ -141,6 +161,8 @@ sides = {
     "viscous": {"type": "viscous"},
 }
 late = {"monitor.middle.position": [17.25, 1.25], "run.duration": 0.07}  # after the wave has come back
+uneven = late | {"boundary.right": {"type": "heather", **springs}}
+one = {"damper": 0.5 * 2500.0 * build(case(**STRIP)).ground.wave_speeds(0)[1]}  # ρc_s D
 of_sides = {name: case(**STRIP, **late, **{"boundary.right": table}) for name, table in sides.items()}
 hexagons, unsaid = case(**HEXAGONS), case(**HEXAGONS | {"packing.pattern": "unsaid"})
 drawn, b = case(**DRAWN), case(**DRAWN | {"packing": B})
@@ -165,12 +187,58 @@ def twin_of(made: Any) -> str | None:
     return None if found is None else found.case.material.law
 
 
+def refusals(made: Any) -> dict[str, list[str]]:
+    """What those say that ask for a linear law."""
+    still = {"middle": History(np.zeros(2), np.zeros(9), {})}
+    asked = {
+        "calibrate": lambda: calibrate(made, "right"),
+        "boundary": lambda: measure_side(made, "right", [0.0], 1),
+        "stability": lambda: trials_of_disks(made, full=False),
+        "library": lambda: build_library(made, 1e-3, Path("none")),
+        "estimate": lambda: causes_of(made, still, 1e-4, 1.0),
+        "advise": lambda: advise(made, (0.01,)),
+    }
+    said = {}
+    for name, ask in asked.items():
+        try:
+            ask()
+        except CaseError as error:
+            said[name] = list(error.problems)
+    return said
+
+
+STOREYS = {
+    "packing": {"pattern": "storeys", "size": [2.0, 6.0], "radius": 0.25},
+    "boundary": {"left": PERIODIC, "right": PERIODIC, "bottom": {"type": "symmetry"}},
+    "load": [{"name": "top", "force": [2e5, 1e6], "region": [0.0, 4.8, 1.0, 6.0], "wave": "bell"}],
+    "monitor": [{"name": "middle", "position": [0.75, 1.5]}],
+    "run": {"duration": 0.05, "time_step": 1e-4},
+}
+below = {"name": "below", "force": [2e5, -1e6], "region": [0.0, 0.0, 1.0, 1.2], "wave": "bell"}
+
+
+def mirrored() -> float:
+    """RMS of velocities in half a body beside a plane of symmetry less those in the whole one, over these."""
+    half = case(**ROCK, **STOREYS)
+    both = {"load.top.region": [0.0, 10.8, 1.0, 12.0], "packing.size": [2.0, 12.0], "boundary.bottom": {"type": "free"}}
+    whole = kinds.with_changes(half, both | {"monitor.middle.position": [0.75, 7.5]})
+    whole = replace(whole, load=(*whole.load, whole.load[0].model_validate(below)))
+    one, two = (run(each)[0]["middle"].values["velocity"] for each in (half, whole))
+    return float(np.linalg.norm(one - two) / np.linalg.norm(two))
+
+
+cork = case(**STRIP, **{"material.law": "cork"})
 json.dump(
     {
-        "held": {name: held(made) for name, made in of_sides.items()},
+        "held": {name: held(made) for name, made in of_sides.items()} | {"heather": held(case(**STRIP, **uneven))},
         "sides": {name: estimated(made) for name, made in of_sides.items()},
         "calibrated": {name: calibrate(made, "right").result for name, made in of_sides.items()},
         "whisper": estimated(whisper),
+        "shock": companion(**{"boundary.right": {"type": "shock", **one}}),
+        "soft shock": companion(**{"boundary.right": {"type": "shock", "damper": 0.5 * one["damper"]}}),
+        "like shock": companion(**{"boundary.right": {"type": "viscous", "beta_s": 1.0}}),
+        "pads": companion(**{"boundary.right": {"type": "pads", **one}}),
+        "shout": companion(**{"boundary.left": {"type": "shout", "wave_s": "bell"}}),
         "twins": [twin_of(brittle), twin_of(brittle_hexagons)],
         "linear": calibrate(brittle, "right").shortened,
         "hexagonal": estimated(hexagons),
@@ -182,6 +250,19 @@ json.dump(
             for made, hole in ((hexagons, CAVE), (unsaid, CAVE), (hexagons, SHAFT))
         ],
         "plane": [ExactPlaneWave.of(each) is not None for each in rows],
+        "mirrored": mirrored(),
+        "described": [
+            side_in_words(describe_side(build(case(**STRIP, **{"boundary.right": table})), "right"))
+            for table in ({"type": "shock", "damper": 5e5}, sides["mattress"])
+        ],
+        "mirrors": [
+            list(side_warnings(build(kinds.with_changes(made, {"boundary.bottom": {"type": "symmetry"}}))))
+            for made in (case(**ROCK, **STOREYS), hexagons, unsaid)
+        ],
+        "rubber": refusals(case(**STRIP, **{"material.law": "rubber"})),
+        "cork": refusals(cork),
+        "corks": [calibrate(each, "right").result for each in (cork, case(**STRIP))],
+        "about cork": calibrate(cork, "right").shortened[-1],
         "drawn": [[estimated(each), other_draw(each)] for each in (drawn, b)],
         "no draw": other_draw(unsaid),
         "charted": [changes for _, changes in islice(disk_choices(case(**DRAWN | {"packing": wide})), 2)],

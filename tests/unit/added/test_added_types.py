@@ -33,11 +33,12 @@ def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: added\nVersion: 1.0\n")
     groups = [f"[dembound.{group}]\nx = added_types:{name}\n" for group, name in REGISTERED.items()]
     groups[-1] += "y = added_types:Absent\nz = added_types:Stranger\n"
-    for name in ("LateInput", "Mattress", "Quilt", "Whisper"):
+    for name in ("LateInput", "Mattress", "Quilt", "Heather", "Shock", "Pads", "Whisper", "Shout"):
         groups[2] += f"{name} = added_types:{name}\n"
-    for name in ("Unsaid", "Drawn"):
+    for name in ("Unsaid", "Drawn", "Storeys"):
         groups[3] += f"{name} = added_types:{name}\n"
     groups[0] += "y = added_types:Namesake\nb = added_types:Brittle\n"
+    groups[0] += "r = added_types:Rubber\nc = added_types:Cork\n"
     groups[0] += "f = added_types:Forgetful\ng = added_types:Graded\n"
     groups[4] += "y = added_types:Nameless\n"
     (info / "entry_points.txt").write_text("".join(groups))
@@ -131,7 +132,7 @@ def test_what_cannot_be_used_is_said_and_left_out(found) -> None:
     assert stranger == "dembound.holes: z (added_types:Stranger) is not derived from Hole"
     assert nameless.startswith("dembound.waves: y (added_types:Nameless) lacks _displacement_shape, _velocity_shape, ")
     assert namesake == 'dembound.laws: y (added_types:Namesake) is called "elastic", which is taken'
-    said = 'dembound.laws: "forgetful" names "forgetful" as its linear law, which must be a law without history'
+    said = 'dembound.laws: "forgetful" names "forgetful" as its linear law, which must be a linear law without history'
     assert forgetful == said
 
 
@@ -158,15 +159,41 @@ def test_a_side_with_springs_of_its_own_is_estimated_as_one_of_this_package(aske
     assert quilt["causes"]["sides"]["middle"] > 1.5 * asked["sides"]["viscous"]["causes"]["sides"]["middle"]
 
 
-def test_springs_that_do_not_say_how_stiff_they_are_on_other_disks_are_refused(asked) -> None:
-    (line,) = asked["held"]["mattress"][0]
-    assert line == (
-        'boundary.right.type: "mattress" has springs, which are not known for disks of another size; a type with '
-        "springs needs the method equal_springs()"
-    )
-    assert asked["sides"]["mattress"]["unknown"] == [f"sides: {line}"]
-    assert "sides" not in asked["sides"]["mattress"]["causes"]
+def test_coefficients_per_disk_are_those_per_metre_on_other_disks(asked) -> None:
+    """Springs with none of the methods that know of larger disks: estimated as those of the type that has them."""
+    np.testing.assert_allclose(asked["held"]["mattress"][1], asked["held"]["mattress"][0], rtol=1e-12)
     assert asked["calibrated"]["mattress"] == asked["calibrated"]["viscoelastic"]
+    assert asked["sides"]["mattress"]["unknown"] == []
+    for cause, errors in asked["sides"]["quilt"]["causes"].items():
+        assert asked["sides"]["mattress"]["causes"][cause]["middle"] == pytest.approx(errors["middle"], rel=1e-9), cause
+
+
+def test_springs_that_differ_along_a_side_are_refused(asked) -> None:
+    assert asked["held"]["heather"] == [
+        [
+            'boundary.right.type: "heather" has springs, which are not known for disks of another size; a type with '
+            "springs other than in proportion to edge.widths needs the method equal_supports()"
+        ]
+    ]
+
+
+def test_dampers_without_factors_have_half_cells_on_larger_disks(asked) -> None:
+    """ρc_s D on each disk is what "viscous" has with β_S = 1: the same companion, and the same part of whole cells."""
+    (damping, table, weight), (known, viscous, of_viscous) = asked["shock"], asked["like shock"]
+    assert table["half_mass"]
+    assert viscous["half_mass"]
+    assert damping[1] == pytest.approx(known[1], rel=1e-9)
+    assert weight == pytest.approx(of_viscous, rel=1e-9)
+    assert 0.1 < weight < 0.5  # cells a third as large
+    # half as strong they reflect a third; with the mass of whole cells, out of phase, 2 % of the dampers more
+    assert asked["soft shock"][0][1] == pytest.approx(0.5 * damping[1], rel=0.05)
+
+
+def test_what_acts_on_single_disks_is_refused_where_it_is_not_known_on_larger_ones(asked) -> None:
+    known = "which are not known for disks of another size; a type with"
+    needs = "other than in proportion to edge.widths needs the method equal_supports()"
+    assert asked["pads"] == [f'boundary.right.type: "pads" has dampers, {known} dampers {needs}']
+    assert asked["shout"] == [f'boundary.left.type: "shout" has forces, {known} forces {needs}']
 
 
 def test_a_side_that_lets_waves_in_without_dashpots_is_not_estimated(asked) -> None:
@@ -225,3 +252,36 @@ def test_a_law_that_breaks_is_its_own_linear_law_where_nothing_breaks(asked) -> 
     """Found with companions of a square lattice: not for others, whose contacts are loaded otherwise."""
     assert asked["twins"] == ["linear", None]
     assert asked["linear"][-1] == "the linear law"
+
+
+def test_a_law_that_is_not_linear_is_refused_where_that_is_assumed(asked) -> None:
+    """In one line each; where its stiffness at rest is sufficient, the linear law it names takes its place."""
+    no_name = ['material.law: is "rubber", which is not linear, and names no linear law of its stiffness']
+    assert {name: asked["rubber"][name] for name in ("calibrate", "boundary", "stability")} == dict.fromkeys(
+        ("calibrate", "boundary", "stability"), no_name
+    )
+    assert asked["cork"].keys() == {"library", "estimate", "advise"}
+    for law in ("rubber", "cork"):
+        unknown = [f'material.law: is "{law}", which is not linear; errors are known of linear laws alone']
+        assert asked[law]["estimate"] == asked[law]["advise"] == unknown
+        (line,) = asked[law]["library"]
+        assert line.startswith(f'material.law: is "{law}", which is not linear; a library adds up motion, so "')
+        assert law not in line.removeprefix(f'material.law: is "{law}"')
+    assert asked["corks"][0] == asked["corks"][1]
+    assert asked["about cork"] == "the linear law"
+
+
+def test_a_mirror_image_is_as_far_away_as_disks_of_its_lattice(asked) -> None:
+    """Half a body is the whole one to rounding, with contacts across the gaps of the lattice; touching, 20 % off."""
+    assert asked["mirrored"] < 1e-11
+    # lattices without neighbours straight across a side are warned of, random packings are mirrored disk by disk
+    storeys, hexagonal, unsaid = asked["mirrors"]
+    assert storeys == unsaid == []
+    (line,) = hexagonal
+    assert line.startswith("boundary.bottom: the disks of pattern hexagonal have no neighbours straight across this ")
+
+
+def test_sides_are_described_with_their_own_numbers(asked) -> None:
+    shock, mattress = asked["described"]
+    assert shock == "shock, damper = 500000"
+    assert mattress.endswith(", stiffness = 2.5e+07")

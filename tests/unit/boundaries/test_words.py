@@ -16,3 +16,4 @@ def test_a_side_is_told_with_its_numbers() -> None:
         "viscoelastic; springs α_n = 1, α_s = 0.5, G = 2 GPa, L = 3…4 m"
     )
     assert side_in_words({"type": "deep", "depth": 2.5}) == "deep, depth = 2.5"
+    assert side_in_words({"type": "deep", "depth": 5e7, "layers": 3}) == "deep, depth = 5e+07, layers = 3"

@@ -33,7 +33,7 @@ class ExactPlaneWave(Exact[DiskCase]):
             return None
         ((side, waves),) = case.driving.items()
         far = case.side(OPPOSITE[side])
-        if len(waves) != 1 or not far.factors or far.waves or LAWS[case.material.law].has_history:
+        if len(waves) != 1 or not far.factors or far.waves or not LAWS[case.material.law].is_linear:
             return None
         ((motion, _),) = waves.items()
         return cls(side, motion) if all(_keeps_plane(case, side, motion)) else None

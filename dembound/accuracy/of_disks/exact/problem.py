@@ -78,9 +78,10 @@ def solid_of(scene: DiskScene) -> Solid:
 
 def law_problems(case: DiskCase) -> Iterator[str]:
     """A line if the law of a case is not that of a linear solid."""
-    if LAWS[case.material.law].has_history:
+    if not LAWS[case.material.law].is_linear:
         name = case.material.law
-        yield f'material.law: is "{name}", must have no history, as "elastic"; the solution is that of a linear solid'
+        must = "have no history" if LAWS[name].has_history else "be linear"
+        yield f'material.law: is "{name}", must {must}, as "elastic"; the solution is that of a linear solid'
 
 
 def has_pressure(case: DiskCase) -> bool:
