@@ -59,8 +59,8 @@ def _errors(planned: Plan) -> Entries:
         return
     found = judge_of(case).quick(planned.scene).found
     sizes = {cause.name: cause.largest for cause in found if cause.how != "unknown"}
-    known = f"{split_in_words(sizes)} by formula; " if sizes else ""
-    yield "errors", f"{known}the others, and cheaper cases: dembound advise"
+    known = split_in_words(sizes) if sizes else "none"
+    yield "errors", f"by formula {known}; the others, and cheaper cases: dembound advise"
 
 
 def _here() -> str:

@@ -79,8 +79,9 @@ def advise_cases(
 ) -> None:
     """Print how wrong a case is and why, and the cheapest cases for errors of 10, 3, 1 and 0.3 %.
 
-    With --error it writes the cheapest case for this error, CASE_1pct.toml beside CASE.toml: the same text, comments
-    included, with the keys that differ. A file that is there already is not replaced.
+    With --error it writes the cheapest case for this error as CASE_1pct.toml, without replacing a file.
+
+    All other lines of the case remain, comments too.
 
     Nothing is run but small scenes with larger disks; see docs/errors.md.
     """

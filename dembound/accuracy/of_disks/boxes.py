@@ -1,9 +1,9 @@
-"""The smallest box of disks round the holes and loads of a scene, with a continuum round it, for `dembound check`."""
+"""Boxes of disks round the holes and loads of a scene, with a continuum round them, and the cheapest one."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +21,6 @@ from dembound.errors import CaseError
 from dembound.outside import choice
 from dembound.outside.ram import GridSizes
 from dembound.table import Box
-from dembound.words import Entries, percent
 
 WORTH = 0.8
 """Part of a scene's cost above which a box is no gain."""
@@ -34,23 +33,12 @@ BAND = 4.0
 
 
 class BoxOfDisks(NamedTuple):
-    """A box: its rectangle (m), its disks and those of its free-field column, nodes, and nanoseconds of a step.
-
-    error : of velocities, expected of its elements.
-    """
+    """A box: its rectangle (m), its disks and those of its free-field column, nodes, and nanoseconds of a step."""
 
     box: Box
     disks: int
     nodes: int
     cost: float
-    error: float
-
-
-def box_facts(scene: DiskScene) -> Entries:
-    """The cheapest box of disks in place of a scene, and its tables; none if it would gain little."""
-    if may_be_boxed(scene.case) and (best := cheapest_box(scene)) is not None:
-        yield "smaller box", _in_words(scene, best)
-        yield "its tables", _as_toml(box_tables(scene.case, best.box))
 
 
 def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
@@ -70,28 +58,6 @@ def _sides_beyond(case: DiskCase, box: Box) -> Sequence[str]:
 def continuum_beyond(table: Boundary) -> dict[str, Any]:
     """The table of a side with a continuum beyond it, through which the waves of the given side enter."""
     return {"type": "outside"} | {f"wave_{motion}": name for motion, name in table.waves.items()}
-
-
-def _as_toml(tables: Mapping[str, Mapping[str, Any]]) -> str:
-    """Tables of texts and places as lines of a case."""
-    lines = []
-    for table, keys in tables.items():
-        lines.append(f"[{table}]")
-        for key, value in keys.items():
-            shown = f'"{value}"' if isinstance(value, str) else "[" + ", ".join(f"{each:.10g}" for each in value) + "]"
-            lines.append(f"{key} = {shown}")
-    return "\n".join(lines)
-
-
-def _in_words(scene: DiskScene, best: BoxOfDisks) -> str:
-    """A box, what it holds, what it saves, and its error."""
-    left, bottom, right, top = best.box
-    share, error = best.cost / _cost(scene), percent(best.error)
-    return (
-        f"{right - left:.10g} m × {top - bottom:.10g} m of disks at ({left:.10g}, {bottom:.10g}) m in [ground], a "
-        f"continuum round them: {best.disks:,} disks and {best.nodes:,} nodes instead of {scene.count:,}, about "
-        f"{100.0 * share:.0f} % of the time of a step; error of velocities at most {error}"
-    )
 
 
 def cheapest_box(scene: DiskScene) -> BoxOfDisks | None:
@@ -189,5 +155,4 @@ def _with_continuum(scene: DiskScene, box: Box) -> BoxOfDisks:
     ties = int(2.0 * (box[2] - box[0] + box[3] - box[1]) / ground.brick.mean_diameter)
     beyond = step_cost.of_continuum(grid.nodes, grid.nodes * grid.absorbing / grid.elements, ties)
     cost = step_cost.of_disk(scene) * (inside + column) + sum(beyond.values())
-    error = choice.element_error(signals_of(case), medium_of(ground), settings.order, settings.element)
-    return BoxOfDisks(box, inside + column, grid.nodes, cost, error)
+    return BoxOfDisks(box, inside + column, grid.nodes, cost)

@@ -112,13 +112,14 @@ def test_where_bonds_break_the_error_is_that_before() -> None:
     assert choice.holds
 
 
-def test_a_given_case_that_takes_less_time_than_a_search_may_be_taken_at_once() -> None:
-    case = bar()
-    taken = of_disks.best_of_disks(case, 0.6, (), short=True)
+def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken() -> None:
+    taken = advised(bar(), 0.6)
     assert taken.holds
     assert taken.choice.toml == []
     assert taken.tried == 1
-    assert of_disks.best_of_disks(case, 0.6, ()).choice.toml != []  # larger disks cost less
+    several = advise(bar(), (0.6, 0.5))  # larger disks cost less
+    assert several.best[0.6].choice.changes
+    assert several.best[0.6].cost < taken.cost
 
 
 def test_what_cannot_be_chosen_for_is_refused() -> None:

@@ -71,9 +71,9 @@ def test_a_repeat_is_in_the_estimate_and_leaves_no_run_behind(torn, tmp_path, mo
     assert other["time_step"] == pytest.approx(0.98 * own["time_step"], rel=1e-12)
     assert own["cracks"] == len(Cracked.of(torn / "run.h5")) > 10
     assert entry["repeat"]["within"] == pytest.approx(1.05 * 0.5)
-    assert [line.split(":")[0] for line in entry["notes"]] == [
+    assert [line.split(":")[0] for line in entry["notes"]][-3:] == [
         "repeated at 0.98 of the time step",
-        *entry["notes"][1:2],
+        entry["notes"][-2].split(":")[0],
         "motion changes by",
     ]
     assert entry["cost"] > 1.0
@@ -114,7 +114,7 @@ def test_changes_of_motion_are_those_that_compare_finds(torn, tmp_path) -> None:
 
 
 def test_without_a_repeat_many_cracks_are_said_to_be_one_draw(torn) -> None:
-    (note,) = estimate_results(torn).summary()["notes"]
+    *_, note = estimate_results(torn).summary()["notes"]
     assert note.startswith(f"{len(Cracked.of(torn / 'run.h5'))} bonds break: which ones")
     assert "--repeat" in note
     assert list(cracked([0.0] * 10).one_draw()) == []

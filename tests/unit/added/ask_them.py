@@ -15,6 +15,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     import dembound.kinds as kinds
 
+from dembound.accuracy.advise import advise
 from dembound.accuracy.cause import share_of
 from dembound.accuracy.estimate import causes_of
 from dembound.accuracy.extended import extended

@@ -1,14 +1,16 @@
-"""The box of disks that check proposes, and the time of a step that it is compared by."""
+"""The cheapest box of disks in place of a scene, and the time of a step that it is compared by."""
 
-import tomllib
 from typing import Any
 
 import pytest
 
-from dembound.accuracy.of_disks.boxes import box_facts
+from dembound.accuracy.of_disks.boxes import WORTH, BoxOfDisks, box_tables, cheapest_box, may_be_boxed
 from dembound.api import case
+from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks import DiskCase
-from dembound.disks.scene import build
+from dembound.disks import step_cost
+from dembound.disks.scene import DiskScene, build
+from dembound.kinds import with_changes
 
 SIZE = (120.0, 100.0)
 VISCOUS = {"type": "viscous"}
@@ -33,38 +35,32 @@ def tunnel(**changes: Any) -> DiskCase:
     return made
 
 
-def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
-    words = dict(box_facts(build(tunnel())))["smaller box"]
-    width, height = (float(part.split(" m")[0]) for part in words.split(" × ")[:2])
-    left, bottom = (float(part) for part in words[words.index("(") + 1 : words.index(")")].split(", "))
-
-    assert 16.0 < width < 0.5 * SIZE[0]
-    assert (left + 0.5 * width, bottom + 0.5 * height) == (60.0, 50.0)
-    assert int(words.split("%")[0].split()[-1]) < 80
-
-
-def test_the_proposed_box_has_the_disks_and_nodes_it_says() -> None:
-    """Its tables are those of a case in which nothing else has changed."""
-    facts = dict(box_facts(build(tunnel())))
-    words, tables = facts["smaller box"], tomllib.loads(facts["its tables"])
-    assert tables["boundary"].pop("bottom") == {"type": "outside", "wave_s": "pulse"}
-    assert tables["boundary"] == {side: {"type": "outside"} for side in ("left", "right", "top")}
+def boxed(case: DiskCase) -> tuple[BoxOfDisks, DiskScene]:
+    """The cheapest box of a case, and the scene of its tables, in which nothing else has changed."""
+    found = cheapest_box(build(case))
+    assert found is not None
+    tables = box_tables(case, found.box)
     packing = {"pattern": "A", "radius": 0.5} | tables.pop("packing")
-    tables["boundary"]["bottom"] = {"type": "outside", "wave_s": "pulse"}
-    boxed = build(tunnel(packing=packing, **tables))
-    assert boxed.outside is not None
-    assert f": {boxed.disk_count:,} disks and {boxed.outside.count:,} nodes instead of " in words
-    assert dict(box_facts(boxed)) == {}
+    return found, build(with_changes(case, {"packing": packing, **tables}))
+
+
+def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
+    found, scene = boxed(tunnel())
+    left, bottom, right, top = found.box
+
+    assert 16.0 < right - left < 0.5 * SIZE[0]
+    assert (0.5 * (left + right), 0.5 * (bottom + top)) == (60.0, 50.0)
+    assert found.cost < WORTH * sum(step_cost.of_scene(build(tunnel())).values())
+    assert {side: table.type for side, table in scene.case.boundary.items()} == dict.fromkeys(SIDES, "outside")
+    assert scene.case.side("bottom").waves == {"s": "pulse"}
+    assert (scene.disk_count, scene.outside.count) == (found.disks, found.nodes)  # type: ignore[union-attr]
+    assert cheapest_box(scene) is None  # it is one already
 
 
 def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     load = [{"name": "blow", "position": [60.0, 98.0], "force": [0.0, -1.0], "wave": "pulse"}]
     sides = dict.fromkeys(("left", "right", "bottom"), VISCOUS)
-    words = dict(box_facts(build(tunnel(hole=[], load=load, boundary=sides))))["smaller box"]
-    height = float(words.split(" × ")[1].split(" m")[0])
-    bottom = float(words[words.index("(") + 1 : words.index(")")].split(", ")[1])
-
-    assert bottom + height == SIZE[1]
+    assert boxed(tunnel(hole=[], load=load, boundary=sides))[0].box[3] == SIZE[1]
 
 
 @pytest.mark.parametrize(
@@ -78,7 +74,7 @@ def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     ids=["nothing in it", "not ground all round", "periodic", "a wave from the left"],
 )
 def test_there_is_no_box(changes: dict[str, Any]) -> None:
-    assert dict(box_facts(build(tunnel(**changes)))) == {}
+    assert not may_be_boxed(tunnel(**changes))
 
 
 SLOPE = {"name": "slope", "type": "polygon", "points": [[60.0, 101.0], [75.0, 80.0], [121.0, 80.0], [121.0, 101.0]]}
@@ -88,14 +84,12 @@ BLOW = {"name": "blow", "force": [0.0, 1.0], "position": [50.5, 99.5], "wave": "
 def test_a_box_round_a_slope_ends_on_its_floor() -> None:
     """Beyond it the ground is as high as the floor, and has no nodes above."""
     changes = {"boundary": {side: VISCOUS for side in ("left", "right", "bottom")}, "hole": [SLOPE], "load": [BLOW]}
-    facts = dict(box_facts(build(tunnel(**changes))))
-    tables = tomllib.loads(facts["its tables"])
-    assert tables["boundary"] == {side: {"type": "outside"} for side in ("left", "right", "bottom")}
-    packing = {"pattern": "A", "radius": 0.5} | tables.pop("packing")
-    boxed = build(tunnel(**(changes | {"packing": packing} | tables)))
-    assert f": {boxed.disk_count:,} disks and {boxed.outside.count:,} nodes instead of " in facts["smaller box"]
-    assert boxed.outside.levels["right"].surface == pytest.approx(80.0, abs=1e-9)
-    assert 79.0 <= boxed.outside.box[2] < 115.0
+    found, scene = boxed(tunnel(**changes))
+    assert {side: table.type for side, table in scene.case.boundary.items()} == dict.fromkeys(SIDES[:3], "outside")
+    assert scene.outside is not None
+    assert (scene.disk_count, scene.outside.count) == (found.disks, found.nodes)
+    assert scene.outside.levels["right"].surface == pytest.approx(80.0, abs=1e-9)
+    assert 79.0 <= scene.outside.box[2] < 115.0
 
 
 @pytest.mark.parametrize(
@@ -108,4 +102,4 @@ def test_a_box_round_a_slope_ends_on_its_floor() -> None:
 def test_without_a_level_floor_or_under_waves_there_is_no_box(changes: dict[str, Any]) -> None:
     if "load" in changes:
         changes = {"boundary": {side: VISCOUS for side in ("left", "right", "bottom")}} | changes
-    assert dict(box_facts(build(tunnel(**changes)))) == {}
+    assert not may_be_boxed(tunnel(**changes))
