@@ -78,7 +78,15 @@ def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
     scene = companions.scene
     causes = causes_of_choice(companions, scene, companions.time_step, 0.0) + Causes([], [], entry_notes(scene))
     budget = Budget(companions.recorded(scene), causes, of)
-    return Proposal(Choice(OWN, {}, companions.case), cost, budget)
+    return Proposal(Choice(OWN + _before_breaks(companions), {}, companions.case), cost, budget)
+
+
+def _before_breaks(companions: Companions) -> str:
+    """That errors are those before bonds break, if they do."""
+    breaks = companions.first_break
+    if breaks >= companions.case.run.duration:
+        return ""
+    return f"; the error is that before bonds break, after about {breaks:.3g} s"
 
 
 def _best(given: DiskCase, searches: Sequence[_Search], bound: float) -> Proposal:
@@ -179,13 +187,11 @@ class _Search:
         self.bound, self.spent, self.was_cut, self.waiting = bound, 0.0, False, []
         best = self.best()
         words = best.option.words if self.twin is None else f"{self.twin.words}; {best.option.words}"
-        breaks = self.companions.first_break
-        if breaks < given.run.duration:
-            words += f"; the error is that before bonds break, after about {breaks:.3g} s"
+        words += (until := _before_breaks(self.companions))
         if self.was_cut and best.upper > bound:
             words += "; the search ended early, as it had taken long beside the run"
         found = Proposal(Choice.of(given, best.built.case, words), best.built.cost, best.budget)
-        return found if breaks < given.run.duration else ended_earlier(found, given, bound, best.motion, self.kept)
+        return found if until else ended_earlier(found, given, bound, best.motion, self.kept)
 
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""

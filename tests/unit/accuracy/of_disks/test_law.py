@@ -9,6 +9,7 @@ import pytest
 from advised import advised
 from small_cases import PUSHED, small
 
+from dembound.accuracy.advise import advise
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner, measure
@@ -197,11 +198,12 @@ def test_the_given_law_is_chosen_where_what_turns_is_too_much() -> None:
     assert isinstance(found.case, DiskCase)
     assert found.case.material.law == "linearpbond"
     assert found.case.static is not None
-    other = advised(case, 0.5, ["boundary", "packing.radius"])
+    advice = advise(case, (0.5, 0.4), kept=["boundary", "packing.radius"])
+    other = advice.best[0.5]
     assert isinstance(other.case, DiskCase)
     assert other.case.material.law == "elastic"
-    assert other.holds
-    assert "the elastic law, which holds up to" in other.words
+    assert other.holds(0.5)
+    assert "the elastic law, which holds up to" in other.choice.name
     assert any(line.startswith("material = ") for line in other.choice.toml)
-    assert other.given == case
-    assert found.own_cost == other.own_cost
+    assert advice.given.case == case
+    assert found.own_cost == advice.given.cost
