@@ -35,11 +35,12 @@ def recorded_case(record: Path) -> Case:
             raise RecordError([f"{record}: is damaged: it has no {' and no '.join(missing)}"])
         text, name = text_of(file.attrs["case"]), text_of(file.attrs["name"])
         origin = text_of(file.attrs["origin"]) if "origin" in file.attrs else name  # earlier versions have none
+        silent = frozenset(map(text_of, file.attrs.get("silent", ())))
         files = {text_of(given.attrs["path"]): given[()].tobytes().decode() for given in file["inputs"].values()}
     data = tables_of(text, record)
     if isinstance(static := data.get("static"), dict) and static.pop("from", None) is not None:
         text = tomli_w.dumps(data)
-    return replace(case_of(text, record, name, files), origin=origin)
+    return replace(case_of(text, record, name, files), origin=origin, silent=silent)
 
 
 def require_replaceable(folder: Folder, case: Case) -> None:
