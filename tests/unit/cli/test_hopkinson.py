@@ -230,3 +230,20 @@ def test_a_unit_that_replaces_another_one_is_told(tmp_path, key, unit, said) -> 
     np.savetxt(tmp_path / "g.csv", 1e6 * signal(), delimiter=";", header="time (µs);stress (MPa)", comments="")
     found = read_signal(tmp_path / "g.csv", Reading(**{key: unit}))
     assert [note for note in found.notes if "the header says" in note] == ([] if said is None else [said])
+
+
+@pytest.mark.parametrize(
+    ("options", "cause"),
+    [
+        (("--high-pass", 3000), "high pass at 3000 Hz (6 dB)"),
+        (("--band", 3000, 30_000), "high pass at 3000 Hz (6 dB) and the low pass at 30000 Hz (6 dB)"),
+        (("--notch", 3000), "notch at 3000 Hz"),
+    ],
+)
+def test_a_filter_that_makes_a_signal_unfit_is_named(dembound, tmp_path, options, cause) -> None:
+    np.savetxt(tmp_path / "g.csv", signal(), delimiter=",", header="time (s),stress (Pa)", comments="")
+    bar = ("gauge", "g.csv", "--position", POSITION, "--length", LENGTH, "--spall", 0.9, "--density", 2600)
+    assert dembound(*bar).code == 0
+    told = dembound(*bar, *options)
+    assert told.code == 2
+    assert told.err.endswith(f"; or it is due to the {cause}: try without\n"), told.err
