@@ -38,12 +38,17 @@ def recorded_case(record: Path) -> Case:
             raise RecordError([f"{record}: is damaged: it has no {' and no '.join(missing)}"])
         text, name = text_of(file.attrs["case"]), text_of(file.attrs["name"])
         origin = text_of(file.attrs["origin"]) if "origin" in file.attrs else name  # earlier versions have none
-        silent = frozenset(map(text_of, file.attrs.get("silent", ())))
+        silent = silent_of(file)
         files = inputs_of(file)
     data = tables_of(text, record)
     if isinstance(static := data.get("static"), dict) and static.pop("from", None) is not None:
         text = tomli_w.dumps(data)
     return replace(case_of(text, record, name, files), origin=origin, silent=silent)
+
+
+def silent_of(file: "h5py.File") -> frozenset[str]:
+    """The waves of a record's case that stand for none."""
+    return frozenset(map(text_of, file.attrs.get("silent", ())))
 
 
 def inputs_of(file: "h5py.File") -> dict[str, str]:

@@ -23,7 +23,7 @@ from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.new_record import require_laid_out
 from dembound.results.reader import increasing, open_record, text_of, understood
 from dembound.results.source import DIGEST, PLACE, recorded_source
-from dembound.running.recorded import case_of, inputs_of
+from dembound.running.recorded import case_of, inputs_of, silent_of
 from dembound.waves.file_wave import read_text
 
 SILENCE = ("until", "silent_level", "silent_for")
@@ -127,7 +127,7 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
         raise CaseError([f"--until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
     if until is not None:
         case = _lasting(case, until)
-    return Unfinished(case, results, path, facts)
+    return Unfinished(replace(case, silent=_silent(path)), results, path, facts)
 
 
 def changes_since(folder: Path) -> list[str]:
@@ -213,6 +213,14 @@ def _case_of(facts: dict[str, Any], path: Path) -> Case:
         if different := differences(_lasting_any_time(facts["keys"]), _lasting_any_time(keys)):
             raise CaseError([f"{path}: the case of {FILE} is not that of {where}", *different])
     return case if text == facts["case"] else case_of(text, path / "run.h5", facts["name"], facts["files"])
+
+
+def _silent(path: Path) -> frozenset[str]:
+    """The waves that stand for none, from the record beside a checkpoint, if the run itself has begun."""
+    if not (path / "run.h5").is_file():
+        return frozenset()
+    with open_record(path / "run.h5") as record:
+        return silent_of(record)
 
 
 def _lasting_any_time(keys: dict[str, Any]) -> dict[str, Any]:

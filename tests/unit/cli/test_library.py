@@ -78,3 +78,4 @@ def test_a_record_is_warned_of_as_in_the_run_of_its_case_and_silent_inputs_are_n
         assert any(words in line for line in expected), (name, expected)
     assert " wave.pull: " not in dembound("rerun", "results/fast", "--name", "again").err
     assert " wave.pull: " not in dembound("rerun", "results/again", "--name", "once_more").err
+    assert " wave.pull: " not in dembound("resume", "results/again", "--until", "0.11").err
