@@ -44,8 +44,9 @@ def checked(case: K) -> K:
 
 
 def _of_same(case: K, made: Case) -> K:
-    """A case that was made from another one, with its kind and its origin."""
+    """A case that was made from another one, with its kind, its origin and its silent waves."""
     return replace(
         as_kind(made, type(case), "is of another kind of body after these changes, must be of the same"),
         origin=case.origin,
+        silent=case.silent,
     )

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from dembound.bar.banded import ROUNDING
+from dembound.bar.scene import BarScene
 from dembound.casefile.bar import BarCase
 
 ALIKE = 1e-3
@@ -115,3 +117,33 @@ def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
         "stress, which can break bonds though the stress at nodes does not show it; choose spacings with one Δx/c, and "
         "run.courant = 1.0"
     )
+
+
+def monitors_in_gaps(scene: BarScene) -> Iterator[str]:
+    """Monitors that are where no bar is: between two ranges that do not touch yet."""
+    for monitor in scene.case.monitor:
+        for left, right in scene.rod.touching:
+            margin = ROUNDING * right.end
+            if left.end + margin < monitor.position < right.start - margin:
+                place = scene.positions[scene.monitors[monitor.name], 0]
+                yield (
+                    f"monitor.{monitor.name}: is at {monitor.position:g} m, in the gap from {left.end:g} to "
+                    f"{right.start:g} m between two ranges; it records the node at {place:g} m"
+                )
+
+
+def monitors_between_sections(scene: BarScene) -> Iterator[str]:
+    """Monitors at the node that two bonded ranges of other sections share: its stress is that of neither."""
+    names, ranges = [each.name for each in scene.case.bar.range], scene.rod.ranges
+    for monitor, node in scene.monitors.items():
+        for number, (left, right) in enumerate(itertools.pairwise(ranges[: len(names)])):
+            if left.last == node == right.first and abs(left.section - right.section) > ALIKE * max(
+                left.section, right.section
+            ):
+                mean = 0.5 * (left.section + right.section)
+                before, behind = left.end - left.spacing, left.end + right.spacing
+                yield (
+                    f"monitor.{monitor}: is at the bonded interface of {names[number]}, {left.section:.4g} m², and "
+                    f"{names[number + 1]}, {right.section:.4g} m²: its stress is the force over their mean, {mean:.4g} "
+                    f"m², so that of neither; place it at {before:.6g} or {behind:.6g} m"
+                )

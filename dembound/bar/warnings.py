@@ -6,11 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.bar.banded import ROUNDING
 from dembound.bar.entering import MOMENTS, entering_pressure, moments
 from dembound.bar.facts import PERCENT, cells_of_waves
 from dembound.bar.lattice import carrying_lattices
-from dembound.bar.range_warnings import range_warnings
+from dembound.bar.range_warnings import monitors_between_sections, monitors_in_gaps, range_warnings
 from dembound.bar.scene import BarScene, bar_medium, end_supports
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
@@ -62,21 +61,9 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *_large_strains(case),
         *_fades(case),
         *range_warnings(case, time_step),
-        *_monitors_in_gaps(scene),
+        *monitors_in_gaps(scene),
+        *monitors_between_sections(scene),
     ]
-
-
-def _monitors_in_gaps(scene: BarScene) -> Iterator[str]:
-    """Monitors that are where no bar is: between two ranges that do not touch yet."""
-    for monitor in scene.case.monitor:
-        for left, right in scene.rod.touching:
-            margin = ROUNDING * right.end
-            if left.end + margin < monitor.position < right.start - margin:
-                place = scene.positions[scene.monitors[monitor.name], 0]
-                yield (
-                    f"monitor.{monitor.name}: is at {monitor.position:g} m, in the gap from {left.end:g} to "
-                    f"{right.start:g} m between two ranges; it records the node at {place:g} m"
-                )
 
 
 def _unlikely_speeds(case: BarCase) -> Iterator[str]:

@@ -46,6 +46,15 @@ The error of a linear law is of the order of the strain. Rock and soil break at 
 mostly wrong units.
 """
 
+FASTEST_GROUND = 5.0
+"""Velocity (m/s) that no ground has had: the largest recorded in an earthquake are 3 to 4 m/s."""
+
+OF_GROUND = 100.0
+"""Frequency (Hz) up to which a wave is one of the ground; pulses of laboratories and of blasts nearby have higher ones.
+
+The motion of an earthquake has up to some 20 Hz, that of a blast at a distance, at some cm/s, up to 100 Hz.
+"""
+
 SAMPLES_IN_PERIOD = 4.0
 """Samples of a history in a period of a wave: with fewer, peaks are more than 30 % too low and spectra have aliases."""
 
@@ -184,6 +193,16 @@ def large_velocity(place: str, velocity: float, speed: float, reason: str, waves
         yield (
             f"{place}: particles move at up to {velocity:.3g} m/s, {waves} run at {speed:.4g} m/s, so strains are "
             f"v/c = {percent(velocity / speed)}; {reason}"
+        )
+
+
+def fast_ground(place: str, wave: Wave) -> Iterator[str]:
+    """A wave that enters with a frequency of motions of the ground, and a velocity beyond all of them."""
+    frequency = wave.dominant_frequency()
+    if wave.peak() > FASTEST_GROUND and 0.0 < frequency < OF_GROUND:
+        yield (
+            f"{place}: shakes the ground at up to {wave.peak():.3g} m/s, at {frequency:.3g} Hz, where the strongest "
+            "earthquakes recorded reach 3 to 4 m/s; is it in m/s?"
         )
 
 

@@ -39,11 +39,12 @@ class Case:
     run, output, chart, sweep : the tables of these names.
     name : of the results; the file's name without folder and ending, unless another one is given.
     origin : the first of these names, which it keeps; by it a run finds that it would replace another case's results.
+    silent : waves that stand for none, as inputs of a library without a record: they begin after the run.
     folder : where relative paths in the case start.
     text : the TOML text the case was read from; for a case made in another way, an equivalent text. checked : the
     tables that have been read from `text` and checked against each other, by field.
 
-    Two cases are equal if their tables are equal; the last five attributes are not compared.
+    Two cases are equal if their tables are equal; the last six attributes are not compared.
     """
 
     title: str = ""
@@ -57,6 +58,7 @@ class Case:
     sweep: Sweep = field(default_factory=Sweep)
     name: str = field(default="case", compare=False)
     origin: str = field(default="", compare=False, repr=False)
+    silent: frozenset[str] = field(default=frozenset(), compare=False, repr=False)
     folder: Path = field(default=Path(), compare=False)
     text: str = field(default="", compare=False, repr=False)
     checked: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)

@@ -46,7 +46,8 @@ def unlikely_in(path: str, table: Table, case: Case) -> Iterator[str]:
 
 def _with_wave(numbers: tuple[float, ...], means: Meaning, unit: str, table: Table, case: Case) -> str | None:
     """What is unlikely about the numbers of a load times the peak of its wave."""
-    wave = case.wave.get(getattr(table, "wave", None) or "")
+    is_load = any(table is load for load in case.load)  # other tables with a wave are not multiplied by it
+    wave = case.wave.get(getattr(table, "wave", None) or "") if is_load else None
     if wave is None or means.is_free:
         return None
     doubts = (means.doubt(value * wave.peak(), unit, given=False) for value in numbers)

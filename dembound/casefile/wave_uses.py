@@ -1,6 +1,7 @@
 """Warnings about waves that are used for two quantities, and about histories that are probably wrong."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from dembound.casefile.model import Case
 from dembound.words import percent
@@ -43,9 +44,16 @@ def _doubts(case: Case) -> Iterator[str]:
     """Measured histories whose units or samples are probably wrong, where they are used."""
     for name, wave in case.wave.items():
         velocities, _ = users_of(case, name)
-        factors = [getattr(load, "pressure", None) or 0.0 for load in case.load if load.wave == name]
-        for doubt in wave.doubts(None if velocities else factors[0]) if velocities or factors else ():
+        uses = [("m/s", 1.0)] if velocities else [_read_as(load) for load in case.load if load.wave == name]
+        for doubt in wave.doubts(*uses[0]) if uses else ():
             yield f"wave.{name}: {doubt}"
+
+
+def _read_as(load: Any) -> tuple[str, float]:
+    """The unit in which a load takes its wave's values, and the factor by which it multiplies them."""
+    if (pressure := getattr(load, "pressure", None)) is not None:
+        return "Pa", pressure
+    return ("N" if load.force is not None else "m/s²"), max(map(abs, load.vector))
 
 
 def _jumps(case: Case) -> Iterator[str]:

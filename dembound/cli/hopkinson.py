@@ -75,6 +75,12 @@ class BarOptions:
             bar_length=self.bar_length,
         )
 
+    def given(self, signal: SignalOptions, pulses: PulseOptions) -> dict[str, float | None]:
+        """The values of options by name, None where they are left out, to compare with those of results."""
+        tables: tuple[object, ...] = (self, signal, pulses)
+        values = {f"--{name.replace('_', '-')}": value for table in tables for name, value in vars(table).items()}
+        return {option: value for option, value in values.items() if value is None or isinstance(value, float)}
+
 
 @dataclass(frozen=True)
 class PulseOptions:
@@ -133,9 +139,11 @@ def hopkinson(
     """
     from dembound.gauge.hopkinson.pulse_checks import doubts_of_bars, doubts_of_pulses
     from dembound.gauge.hopkinson.pulses import Windows, at_faces
+    from dembound.gauge.hopkinson.recorded_test import contradictions
     from dembound.gauge.hopkinson.records import combined
     from dembound.gauge.hopkinson.slope_error import doubts_of_slope, slope_error
     from dembound.gauge.hopkinson.specimen import specimen
+    from dembound.gauge.reading.recorded import is_record
 
     has_second = pulses.second_gauge is not None
     if has_second == (pulses.second is None and pulses.second_column is None):
@@ -144,7 +152,10 @@ def hopkinson(
     sources = [(incident, incident_column), (transmitted or incident, transmitted_column)]
     if has_second:
         sources.append((pulses.second or incident, pulses.second_column))
-    strains = _strains(sources, signal, setup.modulus)
+    files = [(results_file(path) if path.is_dir() else path, column) for path, column in sources]
+    strains = _strains(files, signal, setup.modulus)
+    for warning in contradictions(files, bars.given(signal, pulses)):
+        err.print(f"warning: {warning}")
     signals = combined(*strains, opposite=pulses.opposite)
     windows = Windows(pulses.incident_window, pulses.reflected_window, pulses.transmitted_window)
     faces = at_faces(signals, setup, windows)
@@ -154,21 +165,22 @@ def hopkinson(
         err.print(f"warning: {said}: stress over strain is no law of it")
     error = slope_error(faces, setup, equilibrium, found)
     doubts = doubts_of_bars(setup, bars.density)
-    for warning in (*doubts, *doubts_of_slope(found, error), *doubts_of_pulses(signals, faces, setup, windows, found)):
+    measured = not all(is_record(path) for path, _ in files)
+    of_pulses = doubts_of_pulses(signals, faces, setup, windows, found, measured=measured)
+    for warning in (*doubts, *doubts_of_slope(found, error), *of_pulses):
         err.print(f"warning: {warning}")
     out.print(_overview(found, equilibrium, error))
     _write(faces, found, output, title, table)
 
 
-def _strains(sources: Sequence[tuple[Path, str | None]], options: SignalOptions, modulus: float) -> list[Signal]:
-    """The strains of gauges from files, or folders of results, and columns; prints the notes on them."""
+def _strains(files: Sequence[tuple[Path, str | None]], options: SignalOptions, modulus: float) -> list[Signal]:
+    """The strains of gauges from files and columns; prints the notes on them."""
     from dembound.gauge.hopkinson.records import read_strain
 
     strains, treatment = [], options.treatment()
-    for path, column in sources:
-        file = results_file(path) if path.is_dir() else path
+    for path, column in files:
         reading = options.reading(column)
-        strains.append(read_strain(file, reading, treatment, modulus, may_be_clipped=options.clipped))
+        strains.append(read_strain(path, reading, treatment, modulus, may_be_clipped=options.clipped))
         for note in strains[-1].notes:
             out.print(note)
     return strains

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from dembound.cli.app import Name, Output, Settings, Threads, app, load_disks, prepare_computing
-from dembound.cli.console import out
+from dembound.cli.console import err, out
 
 if TYPE_CHECKING:
     from dembound.studies.library import LoadFactor
@@ -68,7 +68,14 @@ def respond(
     """
     from dembound.results.folder import Folder
     from dembound.results.reader import understood
-    from dembound.studies.library import Library, load_factor, read_records, watched_contacts, write_response
+    from dembound.studies.library import (
+        Library,
+        load_factor,
+        read_records,
+        record_warnings,
+        watched_contacts,
+        write_response,
+    )
 
     with understood(folder):
         made = Library(folder)
@@ -76,6 +83,8 @@ def respond(
     for record in given:
         Folder(output, record.name).check()
     watched = watched_contacts(made, contacts) if contacts else []
+    for record, warning in record_warnings(made, given):
+        err.print(f"{record.name}: warning: {warning}")
     for record in given:
         motion = write_response(made, record, output / record.name / "run.h5")
         out.print(f"{record.name}: histories in {output / record.name}")

@@ -106,7 +106,8 @@ def incident_pulse(
     if end is None:
         end = float(time[begun]) + 2.0 * (length - gauge) / speed
         if end < time[risen] or abs(np.interp(end, time, stress)) > ENDED * largest:
-            raise CaseError(["--pulse-end: give it, the pulse has not ended when its reflection is back at the gauge"])
+            said = "--pulse-end: give it, the pulse has not ended when its reflection is back at the gauge"
+            raise CaseError([f"{said}; or bending follows it, which the mean of two gauges on opposite faces lacks"])
     elif not end > time[risen]:
         raise CaseError([f"--pulse-end: is {end:g} s, must be after {time[risen]:g} s, when the pulse is half risen"])
     count = int(np.searchsorted(time, end, side="right"))

@@ -23,6 +23,7 @@ from dembound.gauge.reading.recorded import (
     is_record,
     loaded_end,
     recorded_gauge,
+    require_for_results,
 )
 from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.gauge.treatment import Treatment, treated
@@ -104,8 +105,9 @@ def read_gauge(
     """
     reading = reading or Reading()
     if is_record(path):
+        require_for_results(path, reading, column=reading.column, modulus=modulus)
         time, stress, known = recorded_gauge(path, monitor)
-        signal = Signal(time, reading.scale * stress, "Pa")
+        signal = Signal(time, stress, "Pa")
     else:
         signal, known = read_signal(path, reading), GaugeMetadata()
         if monitor is not None:

@@ -95,7 +95,8 @@ def differing_modulus(modulus: float | None, density: float | None, speed: float
     if modulus is not None and density is not None and abs(apart := modulus / (density * speed**2) - 1.0) > APART:
         yield (
             f"--youngs-modulus: is {modulus:.4g} Pa, {'+' * (apart > 0.0)}{percent(apart)} from ρc², "
-            f"{density * speed**2:.4g} Pa, and so are all stresses of strains: check it, --density and --wave-speed"
+            f"{density * speed**2:.4g} Pa, and so are stresses made of strains, or strains of stresses: check it, "
+            "--density and --wave-speed"
         )
 
 

@@ -1,7 +1,7 @@
 """A spalling test on a bar: estimates from its gauge and the velocity of its free end (L section 3.3)."""
 
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -40,6 +40,12 @@ from dembound.gauge.plausibility import (
 )
 from dembound.gauge.strength_checks import doubts_of_signals, doubts_of_strengths
 from dembound.gauge.uncertainty import with_errors
+
+FILTERED = "filter: "
+"""Beginning of a note on a filter, see `Filters.apply`."""
+
+OF_SHAPE = ("RECORD:", "--pulse-end: give it", "--wave-speed: needs", "--attenuation: give it")
+"""Beginnings of messages about a signal that has not the shape of one pulse to and fro."""
 
 AGREEMENT = 0.05
 """Largest relative difference between estimated and recorded wave speed; coarse nodes change it less."""
@@ -91,7 +97,8 @@ def evaluate(
     if problems:
         raise CaseError(problems)
     given = Given(spall, pulse_end, speed, coefficient, count)
-    found = _estimated(gauge, given)
+    with _filters_named(gauge):
+        found = _estimated(gauge, given)
     if free_end is not None:
         found = replace(found, pull_back=_pull_back(gauge, found.speed.value, free_end))
     doubts = tuple(doubts_of_strengths(gauge, found, free_end))
@@ -100,7 +107,21 @@ def evaluate(
     doubts = (*doubts, *doubts_of_signals(gauge, found, free_end))
     same = given if found.peaks is None else given._replace(first=len(found.peaks.time))
     found = with_errors(found, [] if gauge.noise is None else list(_replicates(gauge, gauge.noise, same)))
-    return replace(found, warnings=(*_doubts(gauge, found), *doubts))
+    with _filters_named(gauge):
+        return replace(found, warnings=(*_doubts(gauge, found), *doubts))
+
+
+@contextmanager
+def _filters_named(gauge: Gauge) -> Iterator[None]:
+    """Adds to messages about the shape of a signal that filters have changed it."""
+    try:
+        yield
+    except CaseError as error:
+        filters = [note.removeprefix(FILTERED).partition(",")[0] for note in gauge.notes if note.startswith(FILTERED)]
+        if not filters:
+            raise
+        cause = f"; or it is due to the {' and the '.join(filters)}: try without"
+        raise CaseError([f"{each}{cause * each.startswith(OF_SHAPE)}" for each in error.problems]) from None
 
 
 def _estimated(gauge: Gauge, given: Given) -> Findings:

@@ -7,7 +7,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             keys (all, as JSON), kind ("disks", "bar"), version, size, time_step, step_limit, steps,
                             complete; of disks seed, of a bar loaded, which of its ends is, and ends, their types,
                             without ranges also density, section, youngs_modulus, wave_speed, attenuation; of a run that
-                            was continued to another time regular_steps, those of the run as it was begun
+                            was continued to another time regular_steps, those of the run as it was begun; of a
+                            response of a library silent, the inputs without a record, whose waves begin after the run
     inputs/<number>         bytes of a file that the case refers to; attribute path
     particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
                             column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
@@ -202,6 +203,7 @@ def header_of(run: Run) -> dict[str, Any]:
         "title": case.title,
         "case": case.text,
         "keys": json.dumps(case.keys),
+        **({"silent": sorted(case.silent)} if case.silent else {}),
         "version": __version__,
         "time_step": run.time_step,
         "corner": scene.low,

@@ -95,7 +95,14 @@ def _require_stages(kind: Kind[Any, Any], stepped: Scene) -> None:
 
 
 def warnings_before(planned: Plan) -> list[str]:
-    """Warnings about probable mistakes, known before the run, one line each."""
+    """Warnings about probable mistakes, known before the run, one line each; none about silent waves."""
+    case = planned.scene.case
+    silent = tuple(f"wave.{name}:" for name in case.silent if case.wave[name].begin() >= case.run.duration)
+    return [each for each in _all_before(planned) if not each.startswith(silent)]
+
+
+def _all_before(planned: Plan) -> list[str]:
+    """All of them, silent waves included."""
     return [
         *unlikely(planned.scene.case),
         *_unused_waves(planned.scene.case),

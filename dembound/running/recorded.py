@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
@@ -14,6 +14,9 @@ from dembound.kinds import kind_of, loads
 from dembound.results.folder import Folder, problem_of
 from dembound.results.reader import open_record, text_of
 from dembound.results.source import DIGEST, PLACE, file_of, recorded_source
+
+if TYPE_CHECKING:
+    import h5py
 
 RECORDED = ("origin", "kind", PLACE, DIGEST)
 """Attributes of a record that say whose results it has."""
@@ -35,11 +38,22 @@ def recorded_case(record: Path) -> Case:
             raise RecordError([f"{record}: is damaged: it has no {' and no '.join(missing)}"])
         text, name = text_of(file.attrs["case"]), text_of(file.attrs["name"])
         origin = text_of(file.attrs["origin"]) if "origin" in file.attrs else name  # earlier versions have none
-        files = {text_of(given.attrs["path"]): given[()].tobytes().decode() for given in file["inputs"].values()}
+        silent = silent_of(file)
+        files = inputs_of(file)
     data = tables_of(text, record)
     if isinstance(static := data.get("static"), dict) and static.pop("from", None) is not None:
         text = tomli_w.dumps(data)
-    return replace(case_of(text, record, name, files), origin=origin)
+    return replace(case_of(text, record, name, files), origin=origin, silent=silent)
+
+
+def silent_of(file: "h5py.File") -> frozenset[str]:
+    """The waves of a record's case that stand for none."""
+    return frozenset(map(text_of, file.attrs.get("silent", ())))
+
+
+def inputs_of(file: "h5py.File") -> dict[str, str]:
+    """Texts of the files that the case of a record refers to, by their paths in it."""
+    return {text_of(given.attrs["path"]): given[()].tobytes().decode() for given in file.get("inputs", {}).values()}
 
 
 def require_replaceable(folder: Folder, case: Case) -> None:

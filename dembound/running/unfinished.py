@@ -4,7 +4,7 @@ import json
 import math
 import shutil
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,8 @@ from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.new_record import require_laid_out
 from dembound.results.reader import increasing, open_record, text_of, understood
 from dembound.results.source import DIGEST, PLACE, recorded_source
-from dembound.running.recorded import case_of
+from dembound.running.recorded import case_of, inputs_of, silent_of
+from dembound.waves.file_wave import read_text
 
 SILENCE = ("until", "silent_level", "silent_for")
 """Keys of ``[run]`` that end a run before its duration."""
@@ -126,25 +127,47 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
         raise CaseError([f"--until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
     if until is not None:
         case = _lasting(case, until)
-    return Unfinished(case, results, path, facts)
+    return Unfinished(replace(case, silent=_silent(path)), results, path, facts)
 
 
 def changes_since(folder: Path) -> list[str]:
-    """One line if the file of a run's case has changed since the run began, in more than when it ends; else none."""
+    """A line each for the file of a run's case and files it refers to that have changed since the run began.
+
+    The case in more than when it ends; what is no longer there is left out.
+    """
     with understood(folder / "run.h5"), open_record(folder / "run.h5") as file:
         texts = {name: text_of(file.attrs[name]) for name in (PLACE, DIGEST) if name in file.attrs}
         recorded = _lasting_any_time(json.loads(text_of(file.attrs["keys"])))
+        inputs = inputs_of(file)
     source = recorded_source(texts, folder.parent)
-    if source is None or not source[1]:
+    if source is None:
         return []
+    path, has_changed = source
+    return [*(_changed_keys(path, recorded) if has_changed else ()), *_changed_inputs(path.parent, inputs)]
+
+
+def _changed_keys(path: Path, recorded: dict[str, Any]) -> Iterator[str]:
+    """One line if the keys of a case file are no longer those recorded."""
     try:
-        now = json.loads(json.dumps(load(source[0]).keys))
+        now = json.loads(json.dumps(load(path).keys))
         keys = [line.partition(":")[0] for line in differences(recorded, _lasting_any_time(now))]
     except DemboundError as error:
         keys = [str(error).splitlines()[0]]
     listed = ", ".join(keys[:MOST_KEYS]) + ", …" * (len(keys) > MOST_KEYS)
-    of_it = f"{source[0]}: has changed since the run began ({listed}); the case as it was goes on"
-    return [f"{of_it}, dembound run begins the changed one"] if keys else []
+    of_it = f"{path}: has changed since the run began ({listed}); the case as it was goes on"
+    yield from [f"{of_it}, dembound run begins the changed one"] if keys else []
+
+
+def _changed_inputs(folder: Path, inputs: Mapping[str, str]) -> Iterator[str]:
+    """A line for each file whose text is no longer that recorded; folder : of the case."""
+    for name, text in inputs.items():
+        try:
+            is_other = read_text(folder / name) != text
+        except ValueError:
+            is_other = (folder / name).exists()
+        if is_other:
+            of_it = f"{folder / name}: has changed since the run began; its values as they were go on"
+            yield f"{of_it}, dembound run begins with the changed ones"
 
 
 def _require_facts(facts: Mapping[str, Any], path: Path) -> None:
@@ -190,6 +213,14 @@ def _case_of(facts: dict[str, Any], path: Path) -> Case:
         if different := differences(_lasting_any_time(facts["keys"]), _lasting_any_time(keys)):
             raise CaseError([f"{path}: the case of {FILE} is not that of {where}", *different])
     return case if text == facts["case"] else case_of(text, path / "run.h5", facts["name"], facts["files"])
+
+
+def _silent(path: Path) -> frozenset[str]:
+    """The waves that stand for none, from the record beside a checkpoint, if the run itself has begun."""
+    if not (path / "run.h5").is_file():
+        return frozenset()
+    with open_record(path / "run.h5") as record:
+        return silent_of(record)
 
 
 def _lasting_any_time(keys: dict[str, Any]) -> dict[str, Any]:

@@ -94,12 +94,9 @@ class FileWave(Wave):
         times, velocities = self._samples()
         return ("begins", float(times[0]), float(velocities[0])), ("ends", float(times[-1]), float(velocities[-1]))
 
-    def doubts(self, factor: float | None) -> Iterator[str]:
+    def doubts(self, read: str, factor: float) -> Iterator[str]:
         """What the header of the file and its samples show of wrong units, lost samples and the like."""
-        of_velocity = factor is None
-        yield from doubts_of_header(
-            header_of(self._text), of_velocity=of_velocity, factor=self.scale * (1.0 if factor is None else factor)
-        )
+        yield from doubts_of_header(header_of(self._text), read, self.scale * factor)
         yield from doubts_of_samples(*self._samples())
 
     def time_scale(self) -> float:
@@ -192,13 +189,13 @@ def _numbers(text: str, is_csv: bool) -> tuple[list[tuple[int, str]], str | None
 
 
 def header_of(text: str) -> str:
-    """The words above the numbers of a file."""
+    """The lines with words above the numbers of a file, comments with numbers in them included."""
     above = []
     for line in text.splitlines():
-        if line.strip() and any(_is_number(field) for field in re.split(r"[\s,;]+", line.strip())):
+        if any(_is_number(field) for field in re.split(r"[\s,;]+", line.partition("#")[0].strip())):
             break
         above.append(line.strip("# \t"))
-    return " ".join(above)
+    return "\n".join(filter(None, above))
 
 
 def _misfit(lines: Sequence[tuple[int, str]], separator: str | None) -> str:

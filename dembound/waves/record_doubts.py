@@ -3,12 +3,14 @@
 Only records of evenly sampled, smooth motion show it; tables of a few points, joined by lines, are as they are meant.
 """
 
+import math
 import re
 from collections.abc import Iterator
 
 import numpy as np
 
 from dembound.waves.spectrum import amplitude_spectrum
+from dembound.waves.unit_names import units_in
 from dembound.words import percent
 
 FEWEST = 20
@@ -38,46 +40,58 @@ LOST = 0.1
 OUTSTANDING = 5.0
 """Times the others from which a change, or a drift, is no motion."""
 
+WIDE = 0.6
+"""Step over the peak from which it is none between two levels of a load, within a record that does not oscillate."""
+
 TENTHS = 10
 """Parts of a record in the last of which its motion is over."""
 
 NET = 0.25
 """Displacement that an offset of the last tenth makes over the record, over the largest displacement."""
 
-QUANTITIES = {
-    "accelerations": r"acc|accel|accelerations?|gal|(?:m|cm|mm)/s(?:2|\^2|²|/s)|\((?:g)\)",
-    "displacements": r"disp|displ|displacements?|\((?:mm|cm|m)\)",
+WORDS = {
+    "accelerations": r"acc|accel|accelerations?",
+    "displacements": r"disp|displ|displacements?",
 }
-"""Words of a header that say that its values are no velocities; those in parentheses if they stand as a unit alone."""
+"""Words of a header that say that its values are no velocities."""
 
-SIZES = {"mm/s": 1e-3, "cm/s": 1e-2, "km/s": 1e3, "in/s": 0.0254, "ft/s": 0.3048}
-PRESSURES = {"kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "bar": 1e5, "psi": 6895.0, "n/mm2": 1e6, "n/mm²": 1e6}
-TIMES = ("(ms)", "msec", "(µs)", "(μs)", "(us)", "(ns)", "(min)")
+READ_AS = {"m/s": "velocities", "Pa": "pressures", "N": "forces", "m/s²": "accelerations"}
+"""Unit in which values are read -> their quantity."""
 
 
-def doubts_of_header(header: str, *, of_velocity: bool, factor: float) -> Iterator[str]:
+def doubts_of_header(header: str, read: str, factor: float) -> Iterator[str]:
     """What the header of a file says against its use, in words.
 
-    header : the words above the numbers, those of the time first. of_velocity : whether the values are velocities, else
-    they are factors of a load. factor : by which the values are multiplied to m/s, or to Pa; one other than 1 is taken
-    for the change of units.
+    header : the lines above the numbers. read : unit in which values are taken, of `READ_AS`. factor : by which they
+    are multiplied to be in it; one other than ±1 is taken for the change of units.
     """
-    text = re.sub(r"[\[(]\s*([^\])]*?)\s*[\])]|_([a-zµμ/²^2]+)(?=[\s,;]|$)", r" (\1\2) ", header.lower())
-    alone = [word for word in re.split(r"[\s,;:\"']+", text) if word]
-    words = [*alone, *(word.strip("()") for word in alone if len(word) > len("(mm)"))]
-    if unit := next((word.strip("()") for word in words if word in TIMES), None):
-        yield f"its header says {unit}, its times are read as s"
-    known = SIZES if of_velocity else PRESSURES
-    named = next((word.strip("()") for word in words if word.strip("()") in known), None)
-    if named is not None:
-        if abs(factor) == 1.0:
-            read = "m/s" if of_velocity else "Pa"
-            yield f"its header says {named}, its values are read as {read}; for those write scale = {known[named]:g}"
-    elif of_velocity:
-        for quantity, pattern in QUANTITIES.items():
-            if unit := next((word.strip("()") for word in words if re.fullmatch(pattern, word)), None):
-                yield f'its header says "{unit}", likely {quantity}; its values are read as velocities in m/s'
-                return
+    marked, bare, unknown = units_in(header, read)
+    quantity, of_velocity, unchanged = READ_AS[read], read == "m/s", abs(factor) == 1.0
+    times = (unit for unit in (*marked, *bare) if unit.quantity == "times")
+    if unit := next((unit for unit in times if unit.size != 1.0), None):
+        yield f"its header says {unit.spelled}, its times are read as s"
+    named = [unit for unit in (*marked, *bare) if unit.quantity != "times"]
+    if any(unit.quantity == quantity and math.isclose(unit.size, 1.0) for unit in named):
+        return
+    of_it = f"its values are read as {quantity} in {read}"
+    if same := next((unit for unit in named if unit.quantity == quantity), None):
+        if unchanged:
+            says = f"its header says {same.spelled}, its values are read as {read}"
+            yield f"{says}; for those write scale = {same.size:g}"
+        return
+    other = next(((unit.spelled, unit.quantity) for unit in named), None)
+    other = other or (_quantity_in_words(header) if of_velocity else None)
+    if other is not None and (unchanged or (of_velocity and other[1] in WORDS)):
+        yield f'its header says "{other[0]}", likely {other[1]}; {of_it}'
+    elif other is None and unchanged and unknown:
+        yield f'its header says "{unknown[-1]}" in brackets, no unit that is known here; {of_it}, its times in s'
+
+
+def _quantity_in_words(header: str) -> tuple[str, str] | None:
+    """A word of a header that says what its values are, and what it says; None without one."""
+    words = [word for word in re.split(r"[\s,;:\"'()\[\]_]+", header.lower()) if word]
+    found = ((word, quantity) for quantity, pattern in WORDS.items() for word in words if re.fullmatch(pattern, word))
+    return next(found, None)
 
 
 def doubts_of_samples(times: np.ndarray, values: np.ndarray) -> Iterator[str]:
@@ -96,14 +110,16 @@ def doubts_of_samples(times: np.ndarray, values: np.ndarray) -> Iterator[str]:
         )
         return
     yield from _clipped(values, peak)
-    yield from _spike(times, values, peak)
-    turns = np.count_nonzero(np.diff(np.sign(values[np.abs(values) > LOUD * peak])))
+    spikes = list(_spike(times, values, peak))
+    yield from spikes
+    turns = np.count_nonzero(np.diff(np.sign(values[loud])))
+    if not spikes:
+        yield from _jump(times, values, peak, oscillates=bool(turns >= FEWEST_TURNS))
     if turns < FEWEST_TURNS:
         return
     frequencies, amplitudes = amplitude_spectrum(values, usual)
     mean = float(frequencies @ amplitudes**2 / (amplitudes**2).sum())
     yield from _coarse(mean, usual)
-    yield from _jump(times, values, peak)
     if mean * (times[-1] - times[0]) > TENTHS:  # else its last tenth is part of a period
         yield from _offset(times, values)
 
@@ -138,13 +154,30 @@ def _spike(times: np.ndarray, values: np.ndarray, peak: float) -> Iterator[str]:
         yield f"has one sample far from its neighbours, {values[worst + 2]:.4g} at {times[worst + 2]:.4g} s: a spike?"
 
 
-def _jump(times: np.ndarray, values: np.ndarray, peak: float) -> Iterator[str]:
-    """One step far beyond all others."""
+def _jump(times: np.ndarray, values: np.ndarray, peak: float, *, oscillates: bool) -> Iterator[str]:
+    """Steps far beyond all others: one of a record that oscillates, or one or two within the motion of any other.
+
+    A pulse may begin or end with a step, from or to rest, and square waves have more than two steps.
+    """
     changes = np.abs(np.diff(values))
-    worst, others = int(changes.argmax()), np.sort(changes)[-2]
-    if changes[worst] > max(LOUD * peak, OUTSTANDING * others):
-        size = f"{changes[worst]:.4g}, {changes[worst] / others:.2g} times any other step"
-        yield f"jumps by {size}, at {times[worst]:.4g} s: are samples lost?"
+    loud = np.abs(values) > LOUD * peak
+    within, largest = loud[1:] & loud[:-1], np.sort(changes)
+    anywhere = int(changes.argmax()), float(largest[-2]), LOUD
+    for worst, others, least in (
+        *([anywhere] if oscillates else []),
+        (_at_largest(changes, within), largest[-3], WIDE),
+    ):
+        if others > 0.0 and changes[worst] > max(least * peak, OUTSTANDING * others):
+            flips = within[worst] and 2.0 * abs(values[worst] + values[worst + 1]) < changes[worst]
+            cause = "does its sign change there, or are samples lost?" if flips else "are samples lost?"
+            size = f"{changes[worst]:.4g}, {changes[worst] / others:.2g} times any other step"
+            yield f"jumps by {size}, at {times[worst]:.4g} s: {cause}"
+            return
+
+
+def _at_largest(changes: np.ndarray, within: np.ndarray) -> int:
+    """The place of the largest change (k − 1,) of those that are within the motion."""
+    return int(np.where(within, changes, 0.0).argmax())
 
 
 def _offset(times: np.ndarray, values: np.ndarray) -> Iterator[str]:

@@ -80,10 +80,10 @@ class Wave(Table, ABC):
         """Ends of a history of samples, where it may jump: "begins" or "ends", time (s), velocity (m/s); else none."""
         return ()
 
-    def doubts(self, factor: float | None) -> Iterator[str]:
+    def doubts(self, read: str, factor: float) -> Iterator[str]:
         """What is probably wrong with a measured history, in words; by default nothing.
 
-        factor : of the load whose factor the wave is, in Pa for a pressure; None where it is the velocity of a side.
+        read : unit of its values times the factor: m/s at a side, with factor 1; else that of a load, such as Pa.
         """
         return iter(())
 

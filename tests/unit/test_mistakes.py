@@ -135,6 +135,7 @@ OTHERS = [
     (LATTICE | WEIGHT, "load", down(9.81, 0.0), "is 9.81 m/s² sideways; likely gravity: write [0, -9.81]"),
     (LATTICE, "load", [{**down(0.0, -9.81)[0], "wave": "push"}],
      'load.weight.acceleration: is gravity times wave "push"; a weight that stays has no wave'),
+    (LATTICE, "wave.push.amplitude", 20.0, "where the strongest earthquakes recorded reach 3 to 4 m/s; is it in m/s?"),
     (LATTICE | BREAKING, "material.pb_coh", 1e4, "times material.pb_ten, more than a factor of 100 apart"),
     (ANGLED, "incident.angle", 0.349,
      "is 0.349 degrees, where directions have 1.6 to 360; likely in radians: write 20"),
@@ -178,6 +179,7 @@ def test_what_is_usual_has_none() -> None:
         changed(LATTICE | WEIGHT, {"load": down(0.0, -9.81)}),
         changed(LATTICE | WEIGHT, {"load": down(0.0, -1.62)}),  # on the moon
         changed(ANGLED, {"incident.angle": 0.5}),
+        changed(ANGLED, {"incident.angle": -35.0, "wave.push.amplitude": 0.01}),  # it is not multiplied by its wave
     ):
         assert not [line for line in said(tables) if "likely" in line or "units" in line]
 

@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from dembound.boundaries import axis_of_motion, normal_axis
 from dembound.casefile.disks.load import Load
 from dembound.casefile.magnitudes import (
+    fast_ground,
     grip_stress,
     is_quasi_static,
     large_stress,
@@ -20,12 +22,20 @@ from dembound.disks.beyond.frequencies import mean_frequency_of
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.reports.incident_facts import arrival
 from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.errors import CaseError
 from dembound.waves.constant import Constant
 from dembound.waves.spectrum import HANN_FADE
 from dembound.waves.wave import Wave
+from dembound.words import percent
 
 FEWEST_PER_WAVELENGTH = 20.0
 """Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
+
+ROTATION = 2
+"""The component of held motions that is the rotation of disks."""
+
+ROTATION_MATTERS = 0.02
+"""Relative change of the speed of S waves from which it is told that disks do not turn."""
 
 _TOO_LARGE = {
     False: "the elastic law is for small ones, are the units right?",
@@ -42,6 +52,7 @@ def wave_warnings(scene: DiskScene, time_step: float) -> Iterator[str]:
     yield from time_warnings(scene.case, time_step, _travel_time(scene))
     yield from _stress_beside_strength(scene)
     yield from _large_strains(scene)
+    yield from _rotation_held(scene)
 
 
 def _tension(scene: DiskScene) -> Iterator[str]:
@@ -204,10 +215,55 @@ def _large_strains(scene: DiskScene) -> Iterator[str]:
     modulus, reason = float(np.diag(scene.ground.material_tensor)[:2].min()), _TOO_LARGE[scene.has_history]
     material = scene.case.material
     for name, (words, speed) in sorted(_entering_speeds(scene).items()):
-        yield from large_velocity(f"wave.{name}", scene.case.wave[name].peak(), speed, reason, words)
+        wave, place = scene.case.wave[name], f"wave.{name}"
+        strained = list(large_velocity(place, wave.peak(), speed, reason, words))
+        yield from strained or fast_ground(place, wave)
     compared = scene.has_history and material.pb_ten is not None  # with the strength
     for load in () if compared else scene.case.load:
         yield from large_stress(f"load.{load.name}", *_load_stress(scene, load), modulus, reason)
     for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh)):
         if strength is not None:
             yield from large_stress(f"material.{key}", "the strength", strength, modulus, _TOO_LARGE[True])
+
+
+def _rotation_held(scene: DiskScene) -> Iterator[str]:
+    """A body that shears while its disks do not turn, by which its S waves are faster."""
+    ground = scene.ground
+    if ROTATION not in ground.held:
+        return
+    turning = replace(ground, held=tuple(component for component in ground.held if component != ROTATION))
+    for axis in filter(lambda axis: _shears(scene, axis), (0, 1)):
+        held, p_speed = ground.wave_speeds(axis)[1], replace(ground, held=(ROTATION,)).wave_speeds(axis)[0]
+        try:
+            free = turning.wave_speeds(axis)[1]
+        except CaseError:  # nothing resists rotations
+            free = math.nan
+        if np.isfinite(held) and not abs(held / free - 1.0) < ROTATION_MATTERS:
+            known = f"{free:.4g} m/s, {percent(1.0 - free / held)} less" if np.isfinite(free) else "no speed"
+            yield (
+                f"motion.held: holds rotation in a body that shears: S waves along {'xy'[axis]} run at {held:.4g} "
+                f"m/s, beside P waves of {p_speed:.4g} m/s; where disks turn they have {known}"
+            )
+            return
+
+
+def _shears(scene: DiskScene, axis: int) -> bool:
+    """Whether motion across an axis may vary along it: sides or loads hold or push a part of the body."""
+    case, translations = scene.case, [component for component in scene.ground.held if component != ROTATION]
+    if 1 - axis in translations:
+        return False
+    sides = {edge.side: case.side(edge.side) for edge in scene.edges.values()}
+    ends = [table for side, table in sides.items() if normal_axis(side) == axis and not table.is_free]
+    if translations:  # all motion is across the axis: else the body moves as a row of bars
+        return bool(ends) or any(not _spans(scene, load, axis) for load in case.load)
+    if len({normal_axis(side) for side in sides}) > 1 or case.hole or case.load:
+        return True
+    return any(normal_axis(side) == axis and "s" in table.waves for side, table in sides.items())  # plane waves
+
+
+def _spans(scene: DiskScene, load: Load, axis: int) -> bool:
+    """Whether a load acts on all disks along an axis alike."""
+    if load.is_everywhere:
+        return True
+    low, high = scene.case.packing.box[axis], scene.case.packing.box[axis + 2]
+    return load.region is not None and load.region[axis] <= low and load.region[axis + 2] >= high

@@ -32,6 +32,16 @@ TOLD = 0.01
 """Relative difference of wave speeds from which a warning is due, if it is beyond the error of that measured, too."""
 
 
+CAUSES = (
+    "look for a baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut",
+    ", or look for lost samples",
+)
+"""What to look for in measured signals where impulses, or times, do not fit."""
+
+OF_A_RUN = "check the options for bars, gauges and windows: the signals are those of a run"
+"""What may be wrong where the signals are those of a run."""
+
+
 def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate | None:
     """Wave speed by the onsets of the incident and the reflected pulse at their gauge, 2d_i/c apart.
 
@@ -68,13 +78,15 @@ def doubts_of_bars(setup: Setup, density: float) -> Iterator[str]:
     yield from fading("--attenuation", setup.bar.attenuation * way, way)
 
 
-def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Windows, found: Specimen) -> Iterator[str]:
-    """What is doubtful about pulses that do not fit each other."""
+def doubts_of_pulses(
+    signals: Signals, faces: Faces, setup: Setup, windows: Windows, found: Specimen, *, measured: bool = True
+) -> Iterator[str]:
+    """What is doubtful about pulses that do not fit each other; measured : False for the signals of a run."""
+    causes, lost = CAUSES if measured else (OF_A_RUN, "")
     off = max((unbalanced(faces, setup, found, end) for end in (found.largest + 1, len(faces.time))), key=abs)
     if abs(off) > BALANCED:
         yield (
-            f"the impulses of both faces of the specimen differ by {percent(abs(off), 3)}, beyond its inertia: look "
-            "for a baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut"
+            f"the impulses of both faces of the specimen differ by {percent(abs(off), 3)}, beyond its inertia: {causes}"
         )
     travelled = None if signals.second is not None else travel_speed(signals, setup, windows)
     if travelled is not None:
@@ -83,7 +95,7 @@ def doubts_of_pulses(signals: Signals, faces: Faces, setup: Setup, windows: Wind
             yield (
                 f"the reflected pulse begins at its gauge as with a wave speed of {travelled.value:.5g} ± "
                 f"{travelled.error:.2g} m/s, {'+' * (apart > 0.0)}{percent(apart)} from --wave-speed: check it "
-                "and --incident-gauge, or look for lost samples"
+                f"and --incident-gauge{lost}"
             )
 
 

@@ -9,7 +9,7 @@ from dembound.errors import CaseError
 from dembound.gauge.hopkinson.pulses import Signals
 from dembound.gauge.noise import undithered
 from dembound.gauge.plausibility import LARGEST_STRAIN, implausible_signal
-from dembound.gauge.reading.recorded import is_record
+from dembound.gauge.reading.recorded import is_record, require_for_results
 from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.gauge.treatment import Treatment, treated
 from dembound.results.reader import history_of, open_record
@@ -80,10 +80,11 @@ def combined(incident: Signal, transmitted: Signal, second: Signal | None = None
 
 def _recorded(path: Path, reading: Reading) -> Signal:
     """The stress at a monitor of a record."""
+    require_for_results(path, reading)
     with open_record(path) as file:
         monitors = {name: group for name, group in file.get("histories", {}).items() if "stress" in group}
         if reading.column not in monitors:
             said = "is missing" if reading.column is None else f"is {reading.column}"
             raise CaseError([f"--column: {said}, must be one of {', '.join(monitors)} in {path}"])
         time, stress = history_of(monitors[reading.column], "stress")
-    return Signal(time, reading.scale * stress, "Pa", (f"{reading.column}: {len(time)} samples of a run",))
+    return Signal(time, stress, "Pa", (f"{reading.column}: {len(time)} samples of a run",))

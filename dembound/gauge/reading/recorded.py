@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.estimates import FEWEST
+from dembound.gauge.reading.signal import Reading
 from dembound.results.reader import history_of, open_record, text_of
 
 ROUNDING = 1e-9
@@ -45,6 +46,28 @@ class GaugeMetadata(NamedTuple):
 def is_record(path: Path) -> bool:
     """Whether a file is a record by its name or contents; else it is a text."""
     return path.suffix == ".h5" or h5py.is_hdf5(path)
+
+
+def require_for_results(
+    path: Path, reading: Reading, *, column: str | None = None, modulus: float | None = None
+) -> None:
+    """Raise CaseError for options that have no meaning for the record of a run: its stresses are in Pa, its times in s.
+
+    reading : how a text file would be read, without its column, which may be a monitor's name. column : that of a text
+    file. modulus : E, where it is not needed.
+    """
+    given = {
+        "--column": column,
+        "--time-column": reading.time_column,
+        "--time-unit": reading.time_unit,
+        "--unit": reading.unit,
+        "--gauge-factor": reading.bridge,
+        "--scale": reading.scale if reading.scale != 1.0 else None,
+        "--youngs-modulus": modulus,
+    }
+    says = f"is for text files, {path} has results of a run, with stresses in Pa and times in s; leave it out"
+    if problems := [f"{option}: {says}" for option, value in given.items() if value is not None]:
+        raise CaseError(problems)
 
 
 def recorded_gauge(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, GaugeMetadata]:

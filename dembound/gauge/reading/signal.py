@@ -1,5 +1,6 @@
 """A measured signal: its columns read from a text file, at even times, in known units."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -79,9 +80,27 @@ def read_signal(path: Path, reading: Reading | None = None, usual: str = "Pa") -
     _require_sound(columns, time, values)
     time, values, even = _evenly(path, time, values)
     values, measured, notes = _converted(values, unit, reading)
+    replaced = [*_replaced(columns, at, reading.time_unit, is_time=True), *_replaced(columns, of, reading.unit)]
     name = f"column {of + 1}" + (f", {columns.names[of]}" if columns.names[of] else "")
     read = f"{name}{f' ({unit.name})' if unit.name else ''}: {len(time)} samples, one every {_in_words(time)}"
-    return Signal(time, values, measured, (read, *even, *notes))
+    return Signal(time, values, measured, (read, *replaced, *even, *notes))
+
+
+def _replaced(columns: Columns, column: int, given: str | None, *, is_time: bool = False) -> Iterator[str]:
+    """A note where a unit that is given replaces another one in the header."""
+    if given is None:
+        return
+    of: Callable[[str], object]
+    of, option = (time_unit, "--time-unit") if is_time else (_measures, "--unit")
+    known = [(text, size) for text in columns.units(column) if (size := of(text)) is not None]
+    if known and known[0][1] != of(given):
+        yield f"{option}: {given} given, the header says {known[0][0]}"
+
+
+def _measures(name: str) -> tuple[str, float] | None:
+    """What a unit of values measures, and its size; None for other texts."""
+    unit = value_unit(name)
+    return None if unit is None else (unit.of, unit.size)
 
 
 def _chosen(columns: Columns, reading: Reading) -> tuple[int, int]:

@@ -13,7 +13,7 @@ from dembound.studies.library.build import build_library
 from dembound.studies.library.contacts import LoadFactor, load_factor, watched_contacts
 from dembound.studies.library.library import Library
 from dembound.studies.library.record import Record, RecordTimes, read_records
-from dembound.studies.library.response import write_response
+from dembound.studies.library.response import case_of, record_warnings, write_response
 
 __all__ = [
     "Library",
@@ -21,8 +21,10 @@ __all__ = [
     "Record",
     "RecordTimes",
     "build_library",
+    "case_of",
     "load_factor",
     "read_records",
+    "record_warnings",
     "watched_contacts",
     "write_response",
 ]

@@ -275,6 +275,20 @@ def test_monitors_in_gaps_are_warned_of() -> None:
 
 
 @pytest.mark.parametrize(
+    ("interface", "section", "is_said"),
+    [("bonded", 4e-4, True), ("bonded", 1e-4, False), ("contact", 4e-4, False)],
+)
+def test_a_monitor_between_sections_has_the_stress_of_neither(interface: str, section: float, is_said: bool) -> None:
+    monitors = [{"name": str(place), "position": place} for place in (0.175, 0.2, 0.225)]
+    ranges = [{"name": "thin", "length": 0.2, "section": 1e-4}, {"name": "thick", "length": 0.4, "section": section}]
+    case = with_ranges([ranges[0], ranges[1] | {"interface": interface}], {"duration": 1e-3}, monitor=monitors)
+    assert [line for line in warned(case) if line.startswith("monitor")] == is_said * [
+        "monitor.0.2: is at the bonded interface of thin, 0.0001 m², and thick, 0.0004 m²: its stress is the force "
+        "over their mean, 0.00025 m², so that of neither; place it at 0.175 or 0.225 m"
+    ]
+
+
+@pytest.mark.parametrize(
     ("changed", "said"),
     [
         ({"diameter": 0.02}, "bar.range[2, rod]: has neither section nor diameter, so 1 m², beside 0.0003142 m²"),

@@ -6,6 +6,8 @@ import pytest
 from gauge_records import DECAY, LENGTH, POSITION, SPEED, keysight, noise, signal
 from hopkinson_bar import MODULUS, SPECIMEN_MODULUS, signals
 
+from dembound.gauge.reading.signal import Reading, read_signal
+
 TEST = (
     *("--wave-speed", 5000, "--density", 7800, "--bar-diameter", 0.02, "--incident-gauge", 1),
     *("--transmitted-gauge", 0.8, "--specimen-length", 0.01, "--specimen-diameter", 0.016),
@@ -129,3 +131,119 @@ def test_a_gauge_has_its_columns_units_and_filters(dembound, tmp_path) -> None:
     raw = dembound("gauge", "scope.csv", *bar, "--column", 3, "--no-baseline", "--spall", 0.79, "--wave-speed", 2740)
     assert raw.code == 2
     assert "--unit: the values are in V, strengths need stresses" in raw.err
+
+
+CASE = """
+[bar]
+density = 7800.0
+wave_speed = 5000.0
+diameter = 0.02
+spacing = 0.0025
+range = [
+  {name = "front_bar", length = 2.0},
+  {name = "rock", length = 0.01, diameter = 0.016, interface = "contact"},
+  {name = "back_bar", length = 1.8, interface = "contact"},
+]
+"""
+PLACES = {"front": ("front_bar", 1.0), "near": ("front_bar", 1.6), "back": ("back_bar", 2.81)}
+MONITORS = ("run.h5", *TEST, "--incident-column", "front", "--transmitted-column", "back")
+
+
+def write_run(path) -> None:
+    """The record of a run of `TEST`, with another gauge 0.4 m before the specimen."""
+    given = signals()
+    of_bar = {"density": 7800.0, "wave_speed": 5000.0, "youngs_modulus": MODULUS, "attenuation": 0.0}
+    with h5py.File(path, "w") as file:
+        file.attrs["case"] = CASE
+        for name, values in (("front", given.incident), ("near", given.incident), ("back", given.transmitted)):
+            group = file.create_group(f"histories/{name}")
+            group["time"], group["stress"] = given.time, -MODULUS * values
+            group.attrs["range"], x = PLACES[name]
+            group.attrs["position"] = [x, 0.0]
+            group.attrs.update(of_bar | {"section": 0.25 * np.pi * 0.02**2})
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "there"),
+    [
+        ("--wave-speed", 5100.0, "5000"),
+        ("--density", 7600.0, "7800"),
+        ("--bar-diameter", 0.021, "0.02"),
+        ("--incident-gauge", 1.02, "1"),
+        ("--transmitted-gauge", 0.78, "0.8"),
+        ("--specimen-length", 0.0102, "0.01"),
+        ("--specimen-diameter", 0.0163, "0.016"),
+        ("--bar-length", 1.9, "1.8"),
+        ("--attenuation", 0.01, "0"),
+        ("--youngs-modulus", 1.02 * MODULUS, "1.95e+11"),
+    ],
+)
+def test_options_are_compared_with_the_run_whose_results_are_read(dembound, tmp_path, option, value, there) -> None:
+    write_run(tmp_path / "run.h5")
+    told = dembound("hopkinson", *MONITORS, option, value)
+    assert told.code == 0, told.err
+    lines = [line for line in told.err.splitlines() if "the results have" in line]
+    assert len(lines) == 1
+    assert lines[0].startswith(f"warning: {option}: is {value:.5g} ")
+    assert lines[0].endswith(f", the results have {there}")
+    assert "baseline" not in told.err  # which a run has none of
+    assert "lost samples" not in told.err
+    assert "the results have" not in dembound("hopkinson", *MONITORS).err
+
+
+def test_the_second_gauge_is_compared_with_the_run(dembound, tmp_path) -> None:
+    write_run(tmp_path / "run.h5")
+    second = ("--second-column", "near", "--second-gauge")
+    assert "--second-gauge: is 0.5 m, the results have 0.4" in dembound("hopkinson", *MONITORS, *second, 0.5).err
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--unit", "kPa"),
+        ("--time-unit", "ms"),
+        ("--time-column", "1"),
+        ("--scale", "2"),
+        ("--gauge-factor", "2", "--excitation", "5"),
+    ],
+)
+def test_options_of_text_files_are_refused_for_results_of_a_run(dembound, tmp_path, options) -> None:
+    write_run(tmp_path / "run.h5")
+    says = f"{options[0]}: is for text files, run.h5 has results of a run, with stresses in Pa and times in s; leave it"
+    for command in (("hopkinson", *MONITORS), ("gauge", "run.h5")):
+        told = dembound(*command, *options)
+        assert (told.code, says in told.err) == (2, True), told.err
+    assert "--column: is for text files" in dembound("gauge", "run.h5", "--column", "front").err
+
+
+@pytest.mark.parametrize(
+    ("key", "unit", "said"),
+    [
+        ("unit", "kPa", "--unit: kPa given, the header says MPa"),
+        ("unit", "V", "--unit: V given, the header says MPa"),
+        ("unit", "N/mm²", None),  # another name of the same
+        ("time_unit", "ms", "--time-unit: ms given, the header says µs"),
+        ("time_unit", "us", None),
+    ],
+)
+def test_a_unit_that_replaces_another_one_is_told(tmp_path, key, unit, said) -> None:
+    np.savetxt(tmp_path / "g.csv", 1e6 * signal(), delimiter=";", header="time (µs);stress (MPa)", comments="")
+    found = read_signal(tmp_path / "g.csv", Reading(**{key: unit}))
+    assert [note for note in found.notes if "the header says" in note] == ([] if said is None else [said])
+
+
+@pytest.mark.parametrize(
+    ("options", "cause"),
+    [
+        (("--high-pass", 3000), "high pass at 3000 Hz (6 dB)"),
+        (("--band", 3000, 30_000), "high pass at 3000 Hz (6 dB) and the low pass at 30000 Hz (6 dB)"),
+        (("--notch", 3000), "notch at 3000 Hz"),
+    ],
+)
+def test_a_filter_that_makes_a_signal_unfit_is_named(dembound, tmp_path, options, cause) -> None:
+    np.savetxt(tmp_path / "g.csv", signal(), delimiter=",", header="time (s),stress (Pa)", comments="")
+    bar = ("gauge", "g.csv", "--position", POSITION, "--length", LENGTH, "--spall", 0.9, "--density", 2600)
+    assert dembound(*bar).code == 0
+    told = dembound(*bar, *options)
+    assert told.code == 2
+    assert told.err.endswith(f"; or it is due to the {cause}: try without\n"), told.err

@@ -1,7 +1,12 @@
 """The commands library and respond."""
 
 import numpy as np
+import tomli_w
 from small_cases import PUSHED, small
+
+from dembound.casefile.toml import parsed
+
+SIDES = {"left": "push", "right": "pull"}
 
 STRONG = PUSHED | {
     "packing": PUSHED["packing"] | {"size": [5.0, 1.0]},
@@ -37,3 +42,40 @@ def test_a_library_responds_to_records(dembound, tmp_path):
     ):
         answer = dembound("respond", "results/bar_library", "r.txt", "--load-factor", pair)
         assert (answer.code, answer.err.strip()) == (2, problem)
+
+
+def test_a_record_is_warned_of_as_in_the_run_of_its_case_and_silent_inputs_are_not(dembound, tmp_path):
+    both = STRONG | {
+        "material": PUSHED["material"],
+        "boundary": {side: {"type": "viscous_input", "wave_p": name} for side, name in SIDES.items()},
+        "wave": {name: PUSHED["wave"]["push"] for name in SIDES.values()},
+        "output": {},
+    }
+    (tmp_path / "bar.toml").write_text(small(both, "bar").text)
+    assert dembound("library", "bar.toml", "--spacing", "0.0001", "--duration", "0.1").code == 0
+    times = np.arange(0.0, 0.1, 1e-4)
+    slow = np.sin(2.0 * np.pi * 200.0 * times) * np.sin(np.pi * times / 0.1)
+    wrong = {
+        "units": ("t (s), v (cm/sec)", slow, "header says cm/sec"),
+        "offset": ("", slow + 0.05 * (times > 0.0), "correct its baseline"),
+        "jump": ("", slow * np.where(times < 0.05125, 1.0, -1.0), "jumps by"),
+        "fast": ("", np.sin(2.0 * np.pi * 3e3 * times), "particle"),
+        "strong": ("", 1e3 * slow, "m/s"),
+    }
+    for name, (header, values, words) in wrong.items():
+        np.savetxt(f"{name}.txt", np.column_stack([times, values])[:-1], header=header, footer="0.1 0", comments="# ")
+        text = (tmp_path / f"{name}.txt").read_text()
+        (tmp_path / f"{name}.txt").write_text(text.replace("# 0.1 0", "0.1 0"))
+        of_run = both | {"wave": {"pull": PUSHED["wave"]["push"], "push": {"type": "file", "path": f"{name}.txt"}}}
+        of_run |= {"run": {"duration": 0.1}}
+        (tmp_path / f"{name}.toml").write_text(tomli_w.dumps(parsed(small(PUSHED, name).text) | of_run))
+        lines = dembound("check", f"{name}.toml").err.splitlines()
+        expected = {line for line in lines if " wave.push: " in line}
+        answer = dembound("respond", "results/bar_library", f"push={name}.txt")
+        assert answer.code == 0
+        assert expected <= set(answer.err.splitlines())
+        assert " wave.pull: " not in answer.err
+        assert any(words in line for line in expected), (name, expected)
+    assert " wave.pull: " not in dembound("rerun", "results/fast", "--name", "again").err
+    assert " wave.pull: " not in dembound("rerun", "results/again", "--name", "once_more").err
+    assert " wave.pull: " not in dembound("resume", "results/again", "--until", "0.11").err

@@ -92,7 +92,7 @@ def test_the_incident_pulse_is_what_comes_before_its_front_is_back(felt):
     assert alone[-1] == time[len(alone) - 1]
 
 
-NOT_ENDED = "--pulse-end: give it, the pulse has not ended when its reflection is back"
+NOT_ENDED = "--pulse-end: give it, the pulse has not ended when its reflection is back at the gauge; or bending follows"
 
 
 def test_pulses_that_cannot_be_told_are_refused(felt):

@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 import pytest
+import tomli_w
 from small_cases import SPALLING, small
 
 import dembound
@@ -51,6 +52,25 @@ def test_a_case_file_that_has_changed_since_the_run_began_is_named_with_its_keys
     assert len(changes_since(folder)) == 1
     os.remove(case)
     assert changes_since(folder) == []
+
+
+def test_a_wave_file_that_has_changed_since_the_run_began_is_named(tmp_path) -> None:
+    wave = tmp_path / "records" / "hit.txt"
+    wave.parent.mkdir()
+    wave.write_text("0 0\n1e-5 1\n2e-5 0\n")
+    case = tmp_path / "a.toml"
+    tables = SPALLING | {"wave": {"hit": {"type": "file", "path": "records/hit.txt"}}}
+    tables["load"] = [load | {"wave": "hit"} for load in tables["load"]]
+    case.write_text(tomli_w.dumps(tables | {"run": {"duration": 1e-4}, "output": {"pictures": False}}))
+    folder = run_case(dembound.load(case), tmp_path)
+    assert changes_since(folder) == []
+    wave.write_text("0 0\n1e-5 2\n2e-5 0\n")
+    (said,) = changes_since(folder)
+    assert said.startswith(f"{wave}: has changed since the run began; its values as they were go on")
+    case.write_text(case.read_text().replace("records/hit.txt", "other.txt"))  # both are told
+    assert len(changes_since(folder)) == 2
+    os.remove(wave)
+    assert len(changes_since(folder)) == 1
 
 
 @pytest.mark.parametrize(("name", "value"), [("steps", 7), ("keys", {})])

@@ -28,6 +28,8 @@ GRIP = {"type": "velocity", "wave_p": "pulse"}
 GRIPPED = {"wave.pulse": {"type": "constant", "amplitude": 1e-6}, **BREAKABLE}
 S_WAVE = {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, **TWO_WAYS, **BREAKABLE}
 TAP = {"name": "tap", "wave": "pulse"}
+PUSHING = TAP | {"acceleration": [1.0, 0.0]}
+WRAPPED = {"type": "periodic"}
 
 
 def of_wave(**keys: float) -> dict:
@@ -120,7 +122,7 @@ def test_a_wave_beyond_a_limit_has_one_warning(bar, tables: dict, within: dict, 
 
 
 def test_without_a_stress_or_a_strength_there_is_nothing_to_compare_with(bar) -> None:
-    for changes in (of_wave(amplitude=10.0), of_wave(amplitude=1e-9), {"material.law": "linearpbond"}):
+    for changes in (of_wave(amplitude=4.0), of_wave(amplitude=1e-9), {"material.law": "linearpbond"}):
         assert warned(bar(SLOW | changes)) == []
 
 
@@ -173,3 +175,49 @@ def test_a_wave_is_as_strong_as_its_speed_across_its_side(bar, side: str, axis: 
     assert abs(speeds[1] / speeds[0] - 1.0) > 1e-3
     (found,) = (each for each in warned(case) if "stress" in each)
     assert found.startswith(f"wave.pulse: its stress ρcv is {stress_in_words(2500.0 * speeds[axis] * 1e-3)}, ")
+
+
+@pytest.mark.parametrize(
+    ("changes", "is_doubted"),
+    [
+        (of_wave(amplitude=4.9), False),  # the strongest motions recorded are slower
+        (of_wave(amplitude=5.1), True),
+        (of_wave(amplitude=-5.1) | {"boundary.left": {"type": "velocity", "wave_p": "pulse"}}, True),
+        (of_wave(amplitude=5.1, period=0.005), False),  # a pulse of a laboratory
+        (of_wave(amplitude=5.1) | {"boundary.left": {"type": "free"}, "load": [PUSHING]}, False),  # of a load
+        (of_wave(amplitude=40.0), False),  # v/c says so
+    ],
+    ids=str,
+)
+def test_waves_that_enter_are_no_faster_than_ground(bar, changes: dict, is_doubted: bool) -> None:
+    found = [line for line in warned(bar(SLOW | changes)) if "shakes the ground" in line]
+    assert len(found) == is_doubted
+    assert is_doubted == any("wave.pulse: shakes the ground at up to 5.1 m/s, at " in line for line in found)
+
+
+TURNS, S_SIDE = ["rotation"], {"type": "viscous_input", "wave_s": "pulse"}
+HOLDS_Y = {"motion.held": ["y", "rotation"]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "axis"),
+    [
+        ({"motion.held": ["x", "rotation"], "boundary.left": S_SIDE}, "x"),
+        ({"motion.held": TURNS, "boundary.left": S_SIDE}, "x"),
+        ({"motion.held": TURNS}, "x"),  # a free body also bends under P waves
+        (HOLDS_Y, None),  # P waves along a strip
+        (HOLDS_Y | {"load": [PUSHING | {"region": [4.0, 0.0, 6.0, 1.0]}]}, None),  # also of a load on its whole height
+        (HOLDS_Y | {"load": [PUSHING | {"region": [4.0, 0.0, 6.0, 0.6]}]}, "y"),
+        (HOLDS_Y | {"boundary.bottom": {"type": "fixed"}}, "y"),
+        ({"motion.held": TURNS, "boundary.bottom": WRAPPED, "boundary.top": WRAPPED}, None),
+        ({"motion.held": TURNS, "boundary.bottom": WRAPPED, "boundary.top": WRAPPED, "boundary.left": S_SIDE}, "x"),
+        ({"motion.held": [], "boundary.left": S_SIDE}, None),
+    ],
+    ids=str,
+)
+def test_disks_that_do_not_turn_are_told_of_where_the_body_shears(bar, changes: dict, axis: str | None) -> None:
+    # on this lattice S waves have c_p/√2 = 707 m/s with rotations held, and 500 m/s without
+    found = [line for line in warned(bar(SLOW | changes)) if line.startswith("motion.held")]
+    speeds = "run at 707.1 m/s, beside P waves of 1000 m/s; where disks turn they have 500 m/s, 29 % less"
+    says = f"S waves along {axis} {speeds}"
+    assert [line.partition("shears: ")[2] for line in found] == [says] * (axis is not None)
