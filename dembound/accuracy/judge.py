@@ -96,6 +96,13 @@ class Judge(ABC, Generic[C, S]):
         """What errors of some cases beside a run of one of them include besides errors, a line each."""
         return ()
 
+    def of_reference(self, case: C, motions: Motions, time_step: float) -> Causes:
+        """Causes of the error of a run for the rock that runs with other sides share with it; by default none.
+
+        motions : at its monitors; time_step : s.
+        """
+        return Causes([])
+
     def quick(self, scene: S) -> Causes:
         """Causes of the error of a scene that are known without its motion, the others as unknown; by default none."""
         return Causes([])

@@ -3,7 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Generic, Literal, Protocol, TypeVar
 
 import numpy as np
@@ -37,7 +37,8 @@ class Reference:
 
     name : "exact", "extended", "finer" or "finest"; sentence : it in words. motions : histories for a choice and its
     run. until : s, time up to which histories are compared. findings : its numbers by name. own : numbers of the
-    choices that are the reference itself. cautions : what these errors do not include, in words.
+    choices that are the reference itself. cautions : what these errors do not include, in words. rest : monitor ->
+    quantity -> its own error for the rock, RMS over RMS, by formula, which errors beside it do not include.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Reference:
     findings: Mapping[str, float] = field(default_factory=dict)
     own: Sequence[int] = ()
     cautions: Sequence[str] = ()
+    rest: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 class Exact(ABC, Generic[C]):
@@ -87,7 +89,7 @@ class MonitorError:
     """The error at one monitor.
 
     rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared,
-    0 if it is of rounding only.
+    0 if it is of rounding only. rest : RMS error of the reference itself for the rock, by formula.
     """
 
     monitor: str
@@ -95,6 +97,12 @@ class MonitorError:
     rms: float
     peak: float
     apart: float
+    rest: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """RMS error for the rock: what is measured and the error of the reference itself, as squares."""
+        return math.hypot(self.rms, self.rest)
 
 
 def errors(choice: Choice, outcome: Run, reference: Reference, wanted: Wanted) -> list[MonitorError]:
@@ -112,7 +120,13 @@ def errors(choice: Choice, outcome: Run, reference: Reference, wanted: Wanted) -
     peaks = {name: float(np.abs(values[:, columns[name]]).max(initial=0.0)) for name, values in series.items()}
     if not max(peaks.values()) > 0.0:
         raise CaseError([f"monitor: the {wanted.quantity} is zero in the reference ({reference.sentence})"])
-    found = [_error(name, recorded[name], expected[name], columns[name], wanted) for name in loud_of(peaks)]
+    found = [
+        replace(
+            _error(name, recorded[name], expected[name], columns[name], wanted),
+            rest=reference.rest.get(name, {}).get(wanted.quantity, 0.0),
+        )
+        for name in loud_of(peaks)
+    ]
     return sorted(found, key=lambda error: -error.rms)
 
 

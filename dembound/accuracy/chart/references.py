@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from dembound.accuracy.budget import Budget
+from dembound.accuracy.cause import Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.extended import MOST, extended
 from dembound.accuracy.history import Motions
@@ -181,6 +183,8 @@ class _References:
         """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
+        own = self._choices[self._own]
+        rest = _sizes(self._judge.of_reference(own.case, self._outcomes[self._own].motions, run.time_step))
         breaks = [findings[at]] if at in findings and self._case.chart.until == "break" else []
         return Reference(
             name=name,
@@ -190,7 +194,20 @@ class _References:
             findings=findings,
             own=tuple(k for k, outcome in enumerate(self._outcomes) if _is_same_run(outcome, run)),
             cautions=self._judge.cautions([choice.case for choice in self._choices]),
+            rest=rest,
         )
+
+
+def _sizes(causes: Causes) -> dict[str, dict[str, float]]:
+    """By monitor and quantity the RMS of all causes together over that of the motion; none of causes without any."""
+    if causes.motions is None:
+        return {}
+    budget = Budget(causes.motions, causes)
+    totals = {
+        name: {quantity: budget.total(name, quantity).value for quantity in budget.quantities(name)}
+        for name in causes.motions
+    }
+    return {name: {q: size for q, size in each.items() if math.isfinite(size)} for name, each in totals.items()}
 
 
 def _finest(outcomes: Sequence[Run]) -> int:

@@ -24,7 +24,19 @@ RESULTS = ("choices", "reference")
 """The groups with the results, which are written anew every time."""
 
 COLUMNS = (
-    *("choice", "on_front", "failure", "monitor", "component", "rms", "peak", "monitor_apart_m", "cpu_s", "cpu_min_s"),
+    *(
+        "choice",
+        "on_front",
+        "failure",
+        "monitor",
+        "component",
+        "rms",
+        "total",
+        "peak",
+        "monitor_apart_m",
+        "cpu_s",
+        "cpu_min_s",
+    ),
     *("cpu_max_s", "run_s", "work", "threads", "stepped", "steps", "time_step_s"),
 )
 """Columns of every table; then those of findings, and one for every key that a choice changes."""
@@ -82,7 +94,7 @@ def _write_line(group: h5py.Group, charted: Charted, number: int, line: Line) ->
     group.attrs.update({"cpu": line.cpu, "wall": line.wall, "work": line.outcome.work})
     group.create_dataset("monitor", data=[error.monitor for error in line.errors])
     group.create_dataset("component", data=[error.component for error in line.errors])
-    for name, unit in (("rms", "1"), ("peak", "1"), ("apart", "m")):
+    for name, unit in (("rms", "1"), ("total", "1"), ("peak", "1"), ("apart", "m")):
         group.create_dataset(name, data=np.array([getattr(e, name) for e in line.errors])).attrs["unit"] = unit
 
 
@@ -105,7 +117,7 @@ def _numbers(charted: Charted, number: int, line: Line) -> list[Any]:
     if not line.errors:
         return [False, outcome.failure, *[None] * (len(COLUMNS) - 3)]
     worst = line.errors[0]
-    error = worst.monitor, worst.component, worst.rms, worst.peak, worst.apart
+    error = worst.monitor, worst.component, worst.rms, worst.total, worst.peak, worst.apart
     costs = line.cpu, min(outcome.cpu), max(outcome.cpu), line.wall, outcome.work, outcome.threads
     return [number in charted.front, "", *error, *costs, outcome.count, outcome.steps, outcome.time_step]
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from dembound.accuracy.cause import Causes, Truth
+from dembound.accuracy.cause import STEP, Causes, Truth
 from dembound.accuracy.choice import Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import Judge
@@ -15,6 +16,7 @@ from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.exact.continuum import ExactContinuum
 from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.extended import extended_disks
+from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.search import advice_for_disks
 from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.proposal import Advice
@@ -22,7 +24,7 @@ from dembound.accuracy.reference import Exact
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS, require_linear
 from dembound.disks.contacts.breaks import BREAK_TIME
-from dembound.disks.scene import DiskScene
+from dembound.disks.scene import DiskScene, build
 
 REALISATIONS = (
     "choices differ in their random packing, and every packing is another realisation of the rock: errors beside a run "
@@ -95,6 +97,14 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         if len(bricks) < 2 or all(packing.is_lattice for packing in packings):
             return ()
         return (REALISATIONS,)
+
+    def of_reference(self, case: DiskCase, motions: Motions, time_step: float) -> Causes:
+        """Dispersion, steps, walls and disks near loads, by formula."""
+        plane = {
+            name: replace(own, values={q: v[:, :2] for q, v in own.values.items()}) for name, own in motions.items()
+        }
+        found = Formulas(build(case), time_step).causes(plane)
+        return Causes([cause for cause in found if cause.of_disks or cause.name == STEP], motions=plane)
 
     def quick(self, scene: DiskScene) -> Causes:
         """The continuum and walls by formula."""
