@@ -51,7 +51,7 @@ def test_a_layer_is_told_with_its_length_and_what_it_returns(spalling) -> None:
     method = {"type": "finite_difference"}
     case = spalling({"boundary.right": {"type": "matched_layer", "nodes": 80}, "method": method, "run.courant": 0.5})
     layer, echo = facts_of(case)["right end"].split("; ")
-    assert layer == "matched_layer, nodes = 80, power = 3.0, reflection = 1e-08, layer_length = 2.0"
+    assert layer == "matched_layer, nodes = 80, power = 3, reflection = 1e-08, layer_length = 2"
     assert echo.startswith("returns at most ")
     assert echo.endswith(" of wave hit")
     assert 1e-9 < float(echo.split()[3]) < 1e-4

@@ -114,7 +114,7 @@ def test_walls_that_are_not_between_disks_change_the_size_of_a_hole() -> None:
 CAVE = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.5, 6.1, 2.0]}
 
 
-def test_waves_feel_a_part_of_the_error_beside_a_hole_that_a_pressure_makes() -> None:
+def test_waves_have_a_part_of_the_error_beside_a_hole_that_a_pressure_makes() -> None:
     """A smaller half of 0.75 m, three half disks, with one wall 0.1 m off."""
     case = small(PUSHED, changes={"hole": [CAVE], "packing.size": [10.0, 3.0]})
     assert isinstance(case, DiskCase)
