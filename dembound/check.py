@@ -59,8 +59,8 @@ def _errors(planned: Plan) -> Entries:
         return
     found = judge_of(case).quick(planned.scene).found
     sizes = {cause.name: cause.largest for cause in found if cause.how != "unknown"}
-    known = split_in_words(sizes) if sizes else "none"
-    yield "errors", f"by formula {known}; the others, and cheaper cases: dembound advise"
+    known = f"{split_in_words(sizes)} by formula; " if sizes else ""
+    yield "errors", f"{known}dembound advise computes {'the others' if known else 'them'}, and finds cheaper cases"
 
 
 def _here() -> str:
