@@ -119,7 +119,9 @@ def _print(charted: Charted) -> None:
     failures = [f"{line.choice.name}: failed, {line.outcome.failure}" for line in charted.lines if line.outcome.failure]
     for text in (*charted.left_out, *failures):
         err.print(f"{charted.case.name}: {text}")
-    heads = ("choice", "RMS (%)", "total (%)", "peak (%)", "CPU (s)", "run (s)", "work", "")
+    has_rest = any(error.rest for line in charted.lines for error in line.errors)
+    errors = ("RMS (%)", "total (%)", "peak (%)") if has_rest else ("RMS (%)", "peak (%)")
+    heads = ("choice", *errors, "CPU (s)", "run (s)", "work", "")
     table = compact_table(
         Column(heads[0], overflow="fold"),
         *(Column(head, no_wrap=True, justify="right") for head in heads[1:]),
@@ -127,19 +129,21 @@ def _print(charted: Charted) -> None:
     )
     for number, line in enumerate(charted.lines):
         found = charted.found(line)
-        table.add_row(f"{line.choice.name}: {found}" if found else line.choice.name, *_cells(charted, number, line))
+        table.add_row(
+            f"{line.choice.name}: {found}" if found else line.choice.name, *_cells(charted, number, line, has_rest)
+        )
     out.print(table)
     out.print("* on the Pareto front; CPU: time of stepping, run: of the whole run without files, medians")
     out.print(f"work: {charted.work_unit}")
-    if any(error.rest for line in charted.lines for error in line.errors):
+    if has_rest:
         out.print("total: with the errors that the reference itself has for the rock: grid, steps, walls, near loads")
     if farthest := max(line.apart for line in charted.lines):
         out.print(f"† monitors record elsewhere than in the reference, up to {farthest:.2g} m away")
     out.print(f"{charted.case.name}: {charted.sentence}")
 
 
-def _cells(charted: Charted, number: int, line: Line) -> list[str]:
-    """Numbers of a choice as text; rounding errors are 0."""
+def _cells(charted: Charted, number: int, line: Line, has_rest: bool) -> list[str]:
+    """Numbers of a choice as text, with its total error if references have one; rounding errors are 0."""
     from dembound.accuracy.chart.front import ROUNDING
 
     if line.outcome.failure:
@@ -147,7 +151,10 @@ def _cells(charted: Charted, number: int, line: Line) -> list[str]:
     worst = line.errors[0]
     mark = "ref." if number in charted.reference.own else "*" if number in charted.front else ""
     mark += "†" if line.apart > 0.0 else ""
-    shares = (100.0 * error if error > ROUNDING else 0.0 for error in (worst.rms, worst.total, worst.peak))
+    shares = (
+        100.0 * error if error > ROUNDING else 0.0
+        for error in (worst.rms, *([worst.total] if has_rest else []), worst.peak)
+    )
     return [*(f"{number:.3g}" for number in (*shares, line.cpu, line.wall, line.outcome.work)), mark]
 
 

@@ -67,7 +67,7 @@ def some_case(seed: int) -> DiskCase:
     return made
 
 
-@pytest.mark.parametrize("seed", [1, 2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 101))])
+@pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 101))])
 def test_what_is_advised_runs_and_is_as_accurate_as_expected(seed: int) -> None:
     try:
         case = some_case(seed)

@@ -38,7 +38,7 @@ def true_error(choice: Advised) -> float:
     [
         ("finite differences, ν = 0.5", {}, 0.003, []),
         ("sine burst, ν = 0.5", BURST | {"monitor.far.position": 0.79}, 0.01, []),
-        ("viscous soft end, m = 3", {"bar.spacing": 0.0025}, 0.06, ["bar"]),
+        pytest.param("viscous soft end, m = 3", {"bar.spacing": 0.0025}, 0.06, ["bar"], marks=pytest.mark.slow),
         ("input, β = 0.8, m = 3", {"bar.spacing": 0.0025}, 0.03, ["bar", "run"]),
     ],
 )
