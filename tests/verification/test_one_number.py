@@ -74,10 +74,20 @@ def of_run(case: Case) -> Budget:
 def cases() -> list[Any]:
     """Cases of disks and of bars, with how far their numbers may differ."""
     disks = [
-        pytest.param(small(tables), 0.06 if name == "continuum" else 1e-9, id=name) for name, tables in SCENES.items()
+        pytest.param(
+            small(tables),
+            0.06 if name == "continuum" else 1e-9,
+            id=name,
+            marks=[pytest.mark.slow] if name in ("springs", "strong", "random") else [],
+        )
+        for name, tables in SCENES.items()
     ]
     names = ("m = 3, soft ends", "viscous end, β = 0.7", "ranges", "ricker", "attenuation", "matched layer, m = 3")
-    return [*disks, *(pytest.param(bar_scene(name), 0.02, id=name) for name in names)]
+    few = names[1:4]
+    bars = [
+        pytest.param(bar_scene(name), 0.02, id=name, marks=[] if name in few else [pytest.mark.slow]) for name in names
+    ]
+    return [*disks, *bars]
 
 
 @pytest.mark.parametrize(("case", "apart"), cases())

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,7 +17,7 @@ import numpy as np
 import pytest
 import tomli_w
 from recorded import contents
-from small_cases import GRAINS, SPALLING
+from small_cases import GRAINS, SPALLING, Tables
 
 CASES = {
     "run": GRAINS
@@ -31,6 +32,9 @@ CASES = {
     "sweep": SPALLING,
     "chart": SPALLING,
 }
+
+SHORT: Tables = {"packing": GRAINS["packing"] | {"size": [8.0, 4.0]}, "run": {"duration": 0.2}}
+"""What makes the run a short one."""
 
 COMMANDS = {
     "run": ("run", "run.toml"),
@@ -86,10 +90,10 @@ CALIBRATED = "*_calibrated.toml"
 class Scene:
     """A folder with the cases, and what each command makes of them when nothing ends it."""
 
-    def __init__(self, folder: Path, commands: tuple[str, ...]) -> None:
+    def __init__(self, folder: Path, commands: tuple[str, ...], cases: Mapping[str, Tables]) -> None:
         self.folder = folder
         folder.mkdir()
-        for name, tables in CASES.items():
+        for name, tables in cases.items():
             (folder / f"{name}.toml").write_text(tomli_w.dumps(tables))
         self.duration: dict[str, float] = {}
         for command in commands:
@@ -162,7 +166,8 @@ class Scene:
 @pytest.mark.parametrize(("count", "cold"), [(2, 0), pytest.param(400, 40, marks=pytest.mark.slow)])
 def test_a_signal_at_any_moment_ends_a_command(tmp_path, monkeypatch, count, cold) -> None:
     commands = tuple(COMMANDS) if count > 10 else ("run",)
-    scene, draw, found = Scene(tmp_path / "scene", commands), random.Random(count), Found()
+    cases = CASES if count > 10 else {"run": CASES["run"] | SHORT}
+    scene, draw, found = Scene(tmp_path / "scene", commands, cases), random.Random(count), Found()
     while len(found.took) < count:
         trial = len(found.took)
         command, number = draw.choice(commands), (signal.SIGTERM, signal.SIGINT)[trial % 2]

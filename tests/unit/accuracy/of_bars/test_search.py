@@ -63,11 +63,14 @@ def test_the_choice_is_as_accurate_as_asked_for(
     ("name", "changes", "bounds"),
     [
         # sides as given return 17 %, others hardly anything
-        ("viscous end, β = 0.7", {"bar.spacing": 0.02}, [0.002, 0.004, 0.01]),
+        pytest.param("viscous end, β = 0.7", {"bar.spacing": 0.02}, [0.002, 0.004, 0.01], marks=pytest.mark.slow),
         # the wave enters at an end of which every kind is wrong from the beginning on
         ("input, β = 0.8, m = 3", {"bar.spacing": 0.04}, [0.01, 0.08]),
         # of a smooth wave errors fall with the square of the spacing, as fast as the search takes for possible
-        ("ricker, m = 3", {"bar.spacing": 0.02, "boundary.right": {"type": "viscous"}}, [0.02, 0.08]),
+        pytest.param(
+            *("ricker, m = 3", {"bar.spacing": 0.02, "boundary.right": {"type": "viscous"}}, [0.02, 0.08]),
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_the_search_finds_what_the_errors_of_all_choices_give(

@@ -77,11 +77,11 @@ def options_of(tables: dict[str, Any], **changes: Any) -> Options:
     ("tables", "factors"),
     [
         pytest.param(FORCE, (1.5, 1.0), id="force"),
-        pytest.param(TUNNEL, (2.0, 1.0), id="tunnel"),
+        pytest.param(TUNNEL, (2.0, 1.0), id="tunnel", marks=pytest.mark.slow),
         pytest.param(BAR, (1.5, 1.0), id="bar"),
-        pytest.param(RANDOM, (1.0,), id="random"),
+        pytest.param(RANDOM, (1.0,), id="random", marks=pytest.mark.slow),
         pytest.param(FOUR, (2.0, 1.0), id="outside"),
-        pytest.param(OPENS, (1.0,), id="may open"),
+        pytest.param(OPENS, (1.0,), id="may open", marks=pytest.mark.slow),
     ],
 )
 def test_counted_costs_are_those_of_plans(tables: dict[str, Any], factors: tuple[float, ...]) -> None:
