@@ -8,11 +8,12 @@ from collections.abc import Iterator, Sequence
 
 from dembound.accuracy.budget import Budget, Share
 from dembound.accuracy.cause import Cause, Truth
+from dembound.casefile.messages import counted
 from dembound.results.estimates import in_words
 from dembound.words import percent
 
-WIDTH, CELL = 80, 7
-"""Most characters in a line, and the least in a cell."""
+WIDTH, CELL = 80, 9
+"""Most characters in a line, and the most in a cell, such as ">= 0.14 %"."""
 
 WHAT = "errors: RMS over RMS, of the quantity with the largest error at each monitor"
 """What the numbers are."""
@@ -39,15 +40,17 @@ def _table(budget: Budget) -> list[str]:
     ordered = sorted(budget.motions, key=lambda name: -_key(budget.largest(name)[1]))
     shown = _fitting(ordered, WIDTH - first - len("  at most 100 %"))
     names = [name for name in budget.motions if name in shown]
-    rows = [_row(titles[0], names, "known by", first, names)]
+    rows: list[tuple[str, Sequence[str], str]] = [(titles[0], names, "known by")]
     for of in ("disks", "rock"):
         own = [cause for cause in causes if cause.of_disks == (of == "rock")]
-        rows += [_row(f"  {each.name}", list(_cells(budget, each, names)), each.how, first, names) for each in own]
+        rows += [(f"  {each.name}", list(_cells(budget, each, names)), each.how) for each in own]
         if any(cause.of_disks for cause in causes) or of == "rock":
             totals = [budget.largest(name, of)[1] for name in names]
-            rows.append(_row(TITLES[of], [_total(each) for each in totals], _at_most(totals), first, names))
+            rows.append((TITLES[of], [_total(each) for each in totals], _at_most(totals)))
     left = [budget.largest(name)[1] for name in ordered[len(shown) :]]
-    return [*rows, *([f"and {len(left)} more monitors, {_at_most(left)}"] if left else [])]
+    wide = [max(len(cells[k]) for _, cells, _ in rows) for k in range(len(names))]
+    lines = [_row(f"{title:<{first}}", cells, last, wide) for title, cells, last in rows]
+    return [*lines, *([f"and {counted(len(left), 'more monitor')}, {_at_most(left)}"] if left else [])]
 
 
 def _key(share: Share) -> float:
@@ -66,10 +69,10 @@ def _fitting(names: Sequence[str], width: int) -> list[str]:
     return found
 
 
-def _row(title: str, cells: Sequence[str], last: str, first: int, names: Sequence[str]) -> str:
-    """A line of the table."""
-    wide = (f"{cell:>{max(CELL, len(name))}}" for cell, name in zip(cells, names, strict=True))
-    return "  ".join([f"{title:<{first}}", *wide, last]).rstrip()
+def _row(title: str, cells: Sequence[str], last: str, wide: Sequence[int]) -> str:
+    """A line of the table, its cells so many characters wide."""
+    padded = (f"{cell:>{width}}" for cell, width in zip(cells, wide, strict=True))
+    return "  ".join([title, *padded, last]).rstrip()
 
 
 def _cells(budget: Budget, cause: Cause, names: Sequence[str]) -> Iterator[str]:
@@ -94,7 +97,7 @@ def _at_most(totals: Sequence[Share]) -> str:
     known = [share for share in totals if share.is_known]
     if any(share.at_least for share in known):
         return "at least"
-    return f"at most {percent(max(share.upper for share in known))}" if known else ""
+    return f"at most {in_words(max(share.upper for share in known))}" if known else ""
 
 
 def _sentences(budget: Budget) -> Iterator[str]:

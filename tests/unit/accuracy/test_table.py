@@ -25,11 +25,11 @@ def test_every_cause_has_a_row_and_each_truth_a_total():
     found = budget([("sides", "from companions", 0.041, "companion", False), walls])
     assert lines_of(found) == [
         WHAT,
-        "how wrong is it       P1  surface  known by",
-        "  sides            4.1 %    4.1 %  companion",
-        "of these disks     4.1 %    4.1 %  at most 5.7 %",
-        "  walls              7 %      7 %  formula",
-        "of the rock        8.1 %    8.1 %  at most 11 %",
+        "how wrong is it     P1  surface  known by",
+        "  sides          4.1 %    4.1 %  companion",
+        "of these disks   4.1 %    4.1 %  at most 5.7 %",
+        "  walls            7 %      7 %  formula",
+        "of the rock      8.1 %    8.1 %  at most 11 %",
         "sides: from companions",
         "walls: by the disks along the radius",
         "a note",
