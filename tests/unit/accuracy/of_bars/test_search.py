@@ -39,7 +39,7 @@ def true_error(choice: Advised) -> float:
         ("finite differences, ν = 0.5", {}, 0.003, []),
         ("sine burst, ν = 0.5", BURST | {"monitor.far.position": 0.79}, 0.01, []),
         pytest.param("viscous soft end, m = 3", {"bar.spacing": 0.0025}, 0.06, ["bar"], marks=pytest.mark.slow),
-        ("input, β = 0.8, m = 3", {"bar.spacing": 0.0025}, 0.03, ["bar", "run"]),
+        pytest.param("input, β = 0.8, m = 3", {"bar.spacing": 0.0025}, 0.03, ["bar", "run"], marks=pytest.mark.slow),
     ],
 )
 def test_the_choice_is_as_accurate_as_asked_for(
@@ -65,7 +65,7 @@ def test_the_choice_is_as_accurate_as_asked_for(
         # sides as given return 17 %, others hardly anything
         pytest.param("viscous end, β = 0.7", {"bar.spacing": 0.02}, [0.002, 0.004, 0.01], marks=pytest.mark.slow),
         # the wave enters at an end of which every kind is wrong from the beginning on
-        ("input, β = 0.8, m = 3", {"bar.spacing": 0.04}, [0.01, 0.08]),
+        pytest.param("input, β = 0.8, m = 3", {"bar.spacing": 0.04}, [0.01, 0.08], marks=pytest.mark.slow),
         # of a smooth wave errors fall with the square of the spacing, as fast as the search takes for possible
         pytest.param(
             *("ricker, m = 3", {"bar.spacing": 0.02, "boundary.right": {"type": "viscous"}}, [0.02, 0.08]),
@@ -107,7 +107,13 @@ SPREAD = {"method": {"type": "peridynamics", "horizon": 3, "corrected_ends": Tru
 SHORT = {"wave.pulse": {"type": "cosine", "amplitude": 1.0, "period": 6e-5}, "monitor.near.position": 0.21}
 
 
-@pytest.mark.parametrize("changes", [SPREAD, SPREAD | SHORT | {"boundary.right": {"type": "viscous", "beta_p": 0.7}}])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        SPREAD,
+        pytest.param(SPREAD | SHORT | {"boundary.right": {"type": "viscous", "beta_p": 0.7}}, marks=pytest.mark.slow),
+    ],
+)
 def test_a_bar_of_peridynamics_that_cannot_break_is_taken_by_finite_differences(changes: Mapping[str, Any]) -> None:
     """Their loads act on the last node, where the surface is, and monitors remain at their places."""
     case = with_changes(scene("finite differences, ν = 0.9"), {"run": {"duration": 1.1e-3}, **changes})
