@@ -149,7 +149,7 @@ class _References:
         outcome = replace(outcome, findings=findings)
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
-        return self._of_run("extended", sentence, outcome, self._places(fine))
+        return self._of_run("extended", sentence, larger.case, outcome, self._places(fine))
 
     def _sides(self) -> dict[str, Any]:
         """Changes of sides for the extended scene: those of a choice with waves through a continuum; by default none.
@@ -173,12 +173,13 @@ class _References:
         )
         other = {key: value for key, value in own.changes.items() if not key.startswith(DISCRETE)}
         sentence += f", {label(self._case, other)}" if other else ""
-        return self._of_run("finer", sentence, outcome, self._places(fine))
+        return self._of_run("finer", sentence, fine.case, outcome, self._places(fine))
 
     def _finest(self) -> Reference:
         """The run of the finest choice."""
         sentence = f"the finest run, {self._choices[self._own].name}"
-        return self._of_run("finest", sentence, self._outcomes[self._own], lambda run, _: run.motions)
+        own = self._choices[self._own].case
+        return self._of_run("finest", sentence, own, self._outcomes[self._own], lambda run, _: run.motions)
 
     def _done(self, name: str, case: Case, inside: Box | None = None) -> Run:
         """The outcome of a case that is no choice, breaking inside a box; raises RunError if its run fails."""
@@ -191,15 +192,16 @@ class _References:
         """The histories of a run for the outcome of a choice."""
         return (lambda run, _: run.motions) if fine is None else fine.motions
 
-    def _of_run(self, name: str, sentence: str, run: Run, motions: Callable[[Run, Run], Motions]) -> Reference:
-        """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
+    def _of_run(
+        self, name: str, sentence: str, case: Case, run: Run, motions: Callable[[Run, Run], Motions]
+    ) -> Reference:
+        """The reference that the run of a case is, up to its first spall or broken bond, after which histories do not converge."""
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
-        own = self._choices[self._own]
-        of = self._of or self._judge.truth(own.case)
-        causes = self._judge.of_reference(own.case, self._outcomes[self._own].motions, run.time_step)
+        of = self._of or self._judge.truth(self._choices[self._own].case)
+        causes = self._judge.of_reference(case, run.motions, run.time_step)
         causes = replace(causes, found=[cause for cause in causes.found if cause.counts(of)])
-        has_sides = name != "extended" and any(own.case.side(side).is_artificial for side in SIDE_NAMES)
+        has_sides = name != "extended" and any(_is_left_out(case, side) for side in SIDE_NAMES)
         breaks = [findings[at]] if at in findings and self._case.chart.until == "break" else []
         return Reference(
             name=name,
@@ -215,6 +217,12 @@ class _References:
             added=[cause.name for cause in causes.found if cause.how != "unknown"],
             unknown=[*([OF_SIDES] if has_sides else []), *(cause.name for cause in causes.unknown)],
         )
+
+
+def _is_left_out(case: Case, side: str) -> bool:
+    """Whether a side of a run has errors of which nothing is known: waves enter neither there nor through a continuum."""
+    table = case.side(side)
+    return table.is_artificial and not table.waves and not table.is_outside
 
 
 def _sizes(causes: Causes) -> dict[str, dict[str, float]]:
