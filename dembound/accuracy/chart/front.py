@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 TIE = 1.25
-"""Ratio of two costs below which they are equal: in two charts on a busy machine they differed by 10 % at most."""
+"""Ratio of two costs below which they are equal: in two charts on a busy machine they differed by 15 % at most."""
 
 EQUAL = 1.05
 """Ratio of two errors below which they are equal."""

@@ -195,7 +195,7 @@ class _References:
     def _of_run(
         self, name: str, sentence: str, case: Case, run: Run, motions: Callable[[Run, Run], Motions]
     ) -> Reference:
-        """The reference that the run of a case is, up to its first spall or broken bond, after which histories do not converge."""
+        """The reference that the run of a case is, up to its first break, after which histories do not converge."""
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
         of = self._of or self._judge.truth(self._choices[self._own].case)
@@ -220,7 +220,7 @@ class _References:
 
 
 def _is_left_out(case: Case, side: str) -> bool:
-    """Whether a side of a run has errors of which nothing is known: waves enter neither there nor through a continuum."""
+    """Whether nothing is known of the errors of a side: one that lets no waves in and has no continuum beyond."""
     table = case.side(side)
     return table.is_artificial and not table.waves and not table.is_outside
 
