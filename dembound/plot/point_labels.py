@@ -32,8 +32,8 @@ AROUND: list[tuple[tuple[float, float], str, str]] = [
 GAP, APART, STEP = 2.0, 6.0, 3.0
 """Points between two labels, between a label and another point, and between places on a line that is not covered."""
 
-FARTHER = 1.2
-"""Least distance of other points from a label over that of its own."""
+FARTHER = {True: 1.2, False: 1.02}
+"""Least distance of other points from a label over that of its own, from a name and from a number."""
 
 
 @dataclass(frozen=True)
@@ -75,13 +75,13 @@ class Labels:
     def _placed(self, point: Labelled, text: str, places: Iterable[tuple[tuple[float, float], str, str]]) -> bool:
         """Whether a text finds one of several places beside its point; it is written there."""
         is_name = text != str(point.number)
-        others = self._pixels([each.place for each in self.points if each is not point])
+        others = self._pixels([each.place for each in self.points if each.place != point.place])
         lines = np.concatenate([np.empty((0, 2)), *(list(self._along_lines()) if is_name else [])])
         own = self._pixels([point.place])
         for offset, across, up in places:
             label = self._annotated(point, text, offset, across, up, 7.5 if is_name else 8.5)
             box = label.get_window_extent()
-            apart = max(APART * self._pixel, FARTHER * float(_distances(box, own)[0]))
+            apart = max(APART * self._pixel, FARTHER[is_name] * float(_distances(box, own)[0]))
             if (_distances(box, others) > apart).all() and self._is_free(box, lines):
                 self.taken.append(box)
                 return True
