@@ -199,7 +199,8 @@ class _References:
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
         of = self._of or self._judge.truth(self._choices[self._own].case)
-        causes = self._judge.of_reference(case, run.motions, run.time_step)
+        intact = {monitor: own.before(findings.get(at, math.inf)) for monitor, own in run.motions.items()}
+        causes = self._judge.of_reference(case, intact, run.time_step)
         causes = replace(causes, found=[cause for cause in causes.found if cause.counts(of)])
         has_sides = name != "extended" and any(_is_left_out(case, side) for side in SIDE_NAMES)
         breaks = [findings[at]] if at in findings and self._case.chart.until == "break" else []
