@@ -48,8 +48,8 @@ def measured(tables: Tables, motion: str) -> tuple[float, float]:
     """How late the motion is, and by formula, m."""
     from scipy.optimize import minimize_scalar
 
-    from dembound.accuracy.of_disks.entry import entries_of
     from dembound.accuracy.runner import measure
+    from dembound.disks.entry import entries_of
     from dembound.disks.scene import build
     from dembound.kinds import loads
     from dembound.running import Progress

@@ -25,11 +25,11 @@ from error_bound_scenes import scenes
 from dembound.accuracy.advise import advise
 from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History, Motions, loud
-from dembound.accuracy.of_disks.entry import late_by
 from dembound.accuracy.of_disks.options import Built, Options
 from dembound.accuracy.of_disks.search import COSTLIEST
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
+from dembound.disks.entry import late_by
 from dembound.disks.scene import build
 from dembound.errors import DemboundError
 from dembound.kinds import loads, with_changes

@@ -74,8 +74,8 @@ def _gauges(scene: Scene, case: Any) -> Mapping[str, Any]:
 
 def in_layer(case: Any, own: Any) -> dict[str, np.ndarray]:
     """Exact motion of a layer with a free top under the wave of its bottom, when it enters: upwards and back again."""
-    from dembound.accuracy.of_disks.entry import late_by
     from dembound.boundaries import axis_of_motion
+    from dembound.disks.entry import late_by
     from dembound.disks.scene import build
 
     ((motion, name),) = case.driving["bottom"].items()

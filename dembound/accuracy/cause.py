@@ -26,6 +26,9 @@ Truth = Literal["disks", "rock"]
 """What an error is one of: of these disks, which are the material, so that only what is done to them is wrong; or of
 the rock, for which they are a grid."""
 
+TITLES: dict[Truth, str] = {"disks": "of these disks", "rock": "of the rock"}
+"""Truths in words."""
+
 Parts = Mapping[str, Mapping[str, np.ndarray | float]]
 """Monitor -> quantity -> the part (k, c) of its motion that is due to a cause, or only its RMS over that of the motion.
 """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -89,6 +89,13 @@ def loud(motions: Motions, quantity: str) -> list[str]:
 def loud_of(peaks: Mapping[str, float]) -> list[str]:
     """Monitors whose largest value is at least `QUIET` of that of the loudest one."""
     return [name for name, peak in peaks.items() if peak >= QUIET * max(peaks.values())]
+
+
+def earlier(motions: Motions, by: float) -> Motions:
+    """Motions of which all is earlier by a time (s), at later times if it is negative; themselves for none."""
+    if by == 0.0:
+        return motions
+    return {name: replace(each, time=each.time - by) for name, each in motions.items()}
 
 
 def along(values: np.ndarray, column: int) -> np.ndarray:

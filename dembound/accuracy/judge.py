@@ -97,7 +97,7 @@ class Judge(ABC, Generic[C, S]):
         return ()
 
     def of_reference(self, case: C, motions: Motions, time_step: float) -> Causes:
-        """Causes of the error of a run for the rock that runs with other sides share with it; by default none.
+        """Causes of the error of a run that others are compared with, but for sides without waves; by default none.
 
         motions : at its monitors; time_step : s.
         """

@@ -8,8 +8,9 @@ from typing import Generic, Literal, Protocol, TypeVar
 
 import numpy as np
 
+from dembound.accuracy.cause import Truth
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.history import History, Motions, loud_of
+from dembound.accuracy.history import History, Motions, earlier, loud_of
 from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
@@ -18,6 +19,13 @@ from dembound.results.histories import Quantity
 from dembound.results.reader import COMPONENTS
 
 Component = Literal["x", "y"]
+
+MEASURED = {
+    "extended": "sides, and in what choices differ",
+    "finer": "in what choices differ, grid and time step",
+    "finest": "in what choices differ",
+}
+"""Causes of the errors of choices beside a run, by the name of the reference."""
 
 C = TypeVar("C", bound=Case)
 
@@ -38,7 +46,8 @@ class Reference:
     name : "exact", "extended", "finer" or "finest"; sentence : it in words. motions : histories for a choice and its
     run. until : s, time up to which histories are compared. findings : its numbers by name. own : numbers of the
     choices that are the reference itself. cautions : what these errors do not include, in words. rest : monitor ->
-    quantity -> its own error for the rock, RMS over RMS, by formula, which errors beside it do not include.
+    quantity -> its own error by formula, RMS over RMS, which errors beside it do not include, of what `of` says. late :
+    (s) of its run, see `Run.late`. added, unknown : names of the causes in `rest`, and of those that are left out.
     """
 
     name: str
@@ -49,6 +58,18 @@ class Reference:
     own: Sequence[int] = ()
     cautions: Sequence[str] = ()
     rest: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    of: Truth = "rock"
+    late: float = 0.0
+    added: Sequence[str] = ()
+    unknown: Sequence[str] = ()
+
+    @property
+    def covered(self) -> str:
+        """Which errors those of choices include, in words: what is measured, added and left out."""
+        measured = "all causes" if self.name == "exact" else MEASURED[self.name]
+        added = [f"added by formula: {', '.join(self.added)}"] if self.added else []
+        unknown = [f"not known: {', '.join(self.unknown)}"] if self.unknown else []
+        return "; ".join([f"measured: {measured}", *added, *unknown])
 
 
 class Exact(ABC, Generic[C]):
@@ -89,7 +110,7 @@ class MonitorError:
     """The error at one monitor.
 
     rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared,
-    0 if it is of rounding only. rest : RMS error of the reference itself for the rock, by formula.
+    0 if it is of rounding only. rest : RMS error of the reference itself, by formula.
     """
 
     monitor: str
@@ -101,18 +122,19 @@ class MonitorError:
 
     @property
     def total(self) -> float:
-        """RMS error for the rock: what is measured and the error of the reference itself, as squares."""
+        """RMS error: what is measured and the error of the reference itself, as squares."""
         return math.hypot(self.rms, self.rest)
 
 
 def errors(choice: Choice, outcome: Run, reference: Reference, wanted: Wanted) -> list[MonitorError]:
-    """The errors of a choice at all monitors that are not quiet in the reference, the largest RMS first.
+    """The errors of a choice at all monitors that are not quiet in the reference, the largest total first.
 
+    Motion that is later than that of the reference, by where waves enter, is compared as if it were not.
     Raises CaseError for a monitor that does not exist and if the reference does not move until histories end.
     """
     recorded, expected = (
         {name: history.until(reference.until) for name, history in each.items()}
-        for each in (outcome.motions, reference.motions(choice, outcome))
+        for each in (earlier(outcome.motions, outcome.late - reference.late), reference.motions(choice, outcome))
     )
     names = _monitors(recorded, expected, wanted)
     series = {name: expected[name].values[wanted.quantity] for name in names}
@@ -127,7 +149,7 @@ def errors(choice: Choice, outcome: Run, reference: Reference, wanted: Wanted) -
         )
         for name in loud_of(peaks)
     ]
-    return sorted(found, key=lambda error: -error.rms)
+    return sorted(found, key=lambda error: -error.total)
 
 
 def _monitors(found: Motions, expected: Motions, wanted: Wanted) -> list[str]:

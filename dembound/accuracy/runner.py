@@ -41,7 +41,8 @@ class Run:
     ----------
     failure : why it has no results; empty otherwise.
     time_step, step_limit (s), steps : of the run. count : number of nodes that are stepped.
-    work : in the unit of its kind of body. threads : of the steps.
+    work : in the unit of its kind of body. threads : of the steps. late : s, by which all motion is later than that of
+    waves through the planes of sides, see `Kind.late`.
     motions, findings : by name.
     cpu, wall : s, of every timed run: CPU time of all threads while stepping, and time of the whole run.
     """
@@ -53,6 +54,7 @@ class Run:
     count: int = 0
     work: int = 0
     threads: int = 1
+    late: float = 0.0
     motions: Motions = field(default_factory=dict)
     findings: Mapping[str, Finding] = field(default_factory=dict)
     cpu: list[float] = field(default_factory=list)
@@ -159,6 +161,7 @@ def _run_of(planned: Plan, simulation: Simulation, records: Records, inside: Box
         count=simulation.scene.count,
         work=kind.work(simulation),
         threads=simulation.scene.threads,
+        late=kind.late(scene) or 0.0,
         motions=_motions(planned, records),
         findings=kind.findings(scene, simulation, inside),
     )

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Iterator, Sequence
 
 from dembound.accuracy.budget import Budget, Share
-from dembound.accuracy.cause import Cause, Truth
+from dembound.accuracy.cause import TITLES, Cause
 from dembound.casefile.messages import counted
 from dembound.results.estimates import in_words
 from dembound.words import percent
@@ -17,9 +17,6 @@ WIDTH, CELL = 80, 9
 
 WHAT = "errors: RMS over RMS, of the quantity with the largest error at each monitor"
 """What the numbers are."""
-
-TITLES: dict[Truth, str] = {"disks": "of these disks", "rock": "of the rock"}
-"""Names of the totals."""
 
 MUCH = 3.0
 """Upper value over the value from which on only the upper one is given."""

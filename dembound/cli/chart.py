@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Column
 
+from dembound.cli.advise import Of
 from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, load_case, prepare_computing
 from dembound.cli.console import compact_table, err, out
 from dembound.interrupts import exit_code_of
@@ -66,6 +67,7 @@ def chart(
     monitor: Annotated[
         str | None, typer.Option(metavar="NAME", help="Monitor compared; by default the one with the largest error.")
     ] = None,
+    of: Of = None,
     repeats: Annotated[
         int | None, typer.Option(min=1, help="Timed runs of every choice; by default 3, or the case's.")
     ] = None,
@@ -93,6 +95,7 @@ def chart(
         named=combinations(loaded, parsed(vary)) if vary else None,
         repeats=repeats,
         reference=reference.value if reference else None,
+        of=of.value if of else None,
         wanted=Wanted(quantity.value, component.value if component else None, monitor),
     )
     folder = output / f"{loaded.name}_chart"
@@ -119,24 +122,24 @@ def _print(charted: Charted) -> None:
     failures = [f"{line.choice.name}: failed, {line.outcome.failure}" for line in charted.lines if line.outcome.failure]
     for text in (*charted.left_out, *failures):
         err.print(f"{charted.case.name}: {text}")
-    has_rest = any(error.rest for line in charted.lines for error in line.errors)
-    errors = ("RMS (%)", "total (%)", "peak (%)") if has_rest else ("RMS (%)", "peak (%)")
-    heads = ("choice", *errors, "CPU (s)", "run (s)", "work", "")
+    has_rest = bool(charted.reference.rest)
+    errors = ("measured (%)", "total (%)", "peak (%)") if has_rest else ("RMS (%)", "peak (%)")
+    heads = ("choice", *errors, "cost (s)", "run (s)", "work", "")
     table = compact_table(
         Column(heads[0], overflow="fold"),
         *(Column(head, no_wrap=True, justify="right") for head in heads[1:]),
         title=f"{charted.case.name}: {charted.quantity} beside {charted.reference.sentence}",
     )
-    for number, line in enumerate(charted.lines):
+    by_cost = sorted(enumerate(charted.lines), key=lambda each: (bool(each[1].outcome.failure), each[1].point.cost))
+    for number, line in by_cost:
         found = charted.found(line)
         table.add_row(
             f"{line.choice.name}: {found}" if found else line.choice.name, *_cells(charted, number, line, has_rest)
         )
     out.print(table)
-    out.print("* on the Pareto front; CPU: time of stepping, run: of the whole run without files, medians")
-    out.print(f"work: {charted.work_unit}")
-    if has_rest:
-        out.print("total: with the errors that the reference itself has for the rock: grid, steps, walls, near loads")
+    out.print(charted.reference.covered)
+    out.print("* on the Pareto front; cost: least CPU time of stepping, within a quarter of each other the same")
+    out.print(f"run: time of the whole run without files, median; work: {charted.work_unit}")
     if farthest := max(line.apart for line in charted.lines):
         out.print(f"† monitors record elsewhere than in the reference, up to {farthest:.2g} m away")
     out.print(f"{charted.case.name}: {charted.sentence}")
@@ -144,7 +147,7 @@ def _print(charted: Charted) -> None:
 
 def _cells(charted: Charted, number: int, line: Line, has_rest: bool) -> list[str]:
     """Numbers of a choice as text, with its total error if references have one; rounding errors are 0."""
-    from dembound.accuracy.chart.front import ROUNDING
+    from dembound.accuracy.chart.front import NONE
 
     if line.outcome.failure:
         return ["failed"]
@@ -152,10 +155,10 @@ def _cells(charted: Charted, number: int, line: Line, has_rest: bool) -> list[st
     mark = "ref." if number in charted.reference.own else "*" if number in charted.front else ""
     mark += "†" if line.apart > 0.0 else ""
     shares = (
-        100.0 * error if error > ROUNDING else 0.0
+        100.0 * error if error > NONE else 0.0
         for error in (worst.rms, *([worst.total] if has_rest else []), worst.peak)
     )
-    return [*(f"{number:.3g}" for number in (*shares, line.cpu, line.wall, line.outcome.work)), mark]
+    return [*(f"{number:.3g}" for number in (*shares, line.point.cost, line.wall, line.outcome.work)), mark]
 
 
 def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:

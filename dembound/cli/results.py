@@ -159,6 +159,9 @@ def compare_histories(
             help=f"Quantity of the monitors: {', '.join(Quantity)}; the stress of bars alone.",
         ),
     ] = Quantity.velocity,
+    as_recorded: Annotated[
+        bool, typer.Option("--as-recorded", help="Leave motion as late or early as waves enter disks.")
+    ] = False,
 ) -> None:
     """Print the differences between the histories of runs and those of a reference, monitor by monitor.
 
@@ -167,13 +170,15 @@ def compare_histories(
     End and reference are the values of both at the end, along the component with the largest motion.
 
     All twins in a free-field column have one line, that of the one with the largest RMS.
+
+    Where waves enter a run later or earlier than the reference, by its disks and sides, this shift is taken off.
     """
     from dembound.results.compare import compare
     from dembound.results.reader import understood
 
     files = [results_file(path) for path in (reference, *results)]
     with understood(*files):
-        found = compare(files[0], files[1:], quantity.value)
+        found = compare(files[0], files[1:], quantity.value, as_recorded)
     unit = found[0].unit
     components = list(dict.fromkeys(name for line in found for name in line.along))
     parts = components if len(components) > 1 else []
@@ -187,6 +192,9 @@ def compare_histories(
         rms, peak = f"{100.0 * line.rms:.3f}", f"{100.0 * line.peak:.3f}"
         table.add_row(line.run, line.monitor, rms, *along, peak, *ends)
     out.print(table)
+    for run, shift in {line.run: line.shift for line in found if line.shift}.items():
+        how = "later" if shift > 0.0 else "earlier"
+        out.print(f"{run}: waves enter {abs(shift):.2g} s {how} than in the reference, which is taken off")
     for line in found:
         if line.apart > 0.0:
             places = f"{line.place} in {line.run}, {line.reference_place} in the reference"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts.breaks import first_break
+from dembound.disks.entry import all_late_by
 from dembound.disks.material.wave_front import front_of
 from dembound.disks.ram import expected_bytes
 from dembound.disks.reduced.reduction import reduced
@@ -104,6 +105,10 @@ class Disks(Kind[DiskCase, DiskScene]):
     def front(self, scene: DiskScene, time_step: float) -> Front:
         """The front of the fastest waves of the packing."""
         return front_of(scene.ground, scene.case.run.safety)
+
+    def late(self, scene: DiskScene) -> float | None:
+        """By where waves enter disks; negative where motion is ahead."""
+        return all_late_by(scene)
 
     def storage(self, scene: DiskScene) -> Storage:
         """Bytes on disk of the results of a scene, from the numbers of its disks and contacts."""

@@ -182,6 +182,13 @@ class Kind(ABC, Generic[C, S]):
     def front(self, scene: S, time_step: float) -> Front:
         """The fastest waves of a scene that is stepped by time_step (s)."""
 
+    def late(self, scene: S) -> float | None:
+        """Time (s) by which all motion is later than that of waves through the planes of sides; by default not.
+
+        None where several waves are late by different times.
+        """
+        return 0.0
+
     @abstractmethod
     def storage(self, scene: S) -> Storage:
         """Bytes on disk of what is written of a scene."""

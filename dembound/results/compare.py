@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.results.histories import FREE_FIELD, UNITS, MonitorRecord, Quantity, read_histories
+from dembound.results.histories import FREE_FIELD, UNITS, MonitorRecord, Quantity, delay_of, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 from dembound.results.resample import at_times
 
@@ -18,14 +18,19 @@ SMALL = 0.01
 """Share of the motion in the reference below which a component has no error of its own: it is a small residual."""
 
 
+FAINT = 1e-6
+"""Shift over the duration up to which there is none."""
+
+
 @dataclass(frozen=True)
 class Difference:
     """One monitor of a run compared with the reference.
 
     rms : √(Σ|a − b|²/Σ|b|²) of the vectors along x and y; peak : largest |a − b| over largest |b|; along : the same as
     rms for every component that is not `SMALL` in the reference. component : that with the largest motion there; last,
-    reference_last : its values at the end; unit : theirs. apart : m, distance of the places whose motions are compared,
-    0 if it is of rounding only; place, reference_place : these, as text.
+    reference_last : its values at the end; unit : theirs. shift : s, by which the run was made earlier, as waves enter
+    it so much later than the reference; 0 without. apart : m, distance of the places whose motions are compared, 0 if
+    it is of rounding only; place, reference_place : these, as text.
     """
 
     run: str
@@ -37,27 +42,41 @@ class Difference:
     last: float
     reference_last: float
     unit: str
+    shift: float
     apart: float
     place: str
     reference_place: str
 
 
-def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Difference]:
+def compare(reference: Path, runs: list[Path], quantity: Quantity, as_recorded: bool = False) -> list[Difference]:
     """Differences of runs from a reference run at the monitors they share, over the time they share.
 
-    The runs' histories are interpolated at the reference's times. Twins in a free-field column share one line for each
-    run: that of the one with the largest error. Raises CaseError when nothing can be compared.
+    Waves enter disks a little later or earlier than through the plane of a side, by disks and side. Where both
+    records know by how much, the difference is taken off, unless they are compared as_recorded. The runs' histories are
+    interpolated at the reference's times. Twins in a free-field column share one line for each run: that of the one
+    with the largest error. Raises CaseError when nothing can be compared.
     """
     names = record_names([reference, *runs])[1:]
-    wanted = read_histories(reference, quantity)
+    wanted, late = read_histories(reference, quantity), delay_of(reference)
     found = []
     for name, path in zip(names, runs, strict=True):
         own = read_histories(path, quantity).items()
-        lines = [_difference(name, key, history, wanted[key], quantity) for key, history in own if key in wanted]
+        delays = () if as_recorded else (delay_of(path), late)
+        shift = _shift(*delays, reference=wanted)
+        shared = [(key, history) for key, history in own if key in wanted]
+        lines = [_difference(name, key, history, wanted[key], quantity, shift) for key, history in shared]
         found += _with_one_twin(lines)
     if not found:
         raise CaseError([f"{reference}: has no monitor in common with the runs to compare"])
     return found
+
+
+def _shift(*delays: float | None, reference: Mapping[str, MonitorRecord]) -> float:
+    """How much later (s) waves enter a run than the reference; 0 if this is not known or hardly a difference."""
+    known = [delay for delay in delays if delay is not None]
+    longest = max((float(each.time[-1]) for each in reference.values() if len(each.time)), default=0.0)
+    shift = known[0] - known[1] if len(known) == 2 else 0.0
+    return shift if abs(shift) > FAINT * longest else 0.0
 
 
 def _with_one_twin(lines: list[Difference]) -> list[Difference]:
@@ -71,12 +90,14 @@ def _with_one_twin(lines: list[Difference]) -> list[Difference]:
 
 
 def _difference(
-    run: str, monitor: str, history: MonitorRecord, reference: MonitorRecord, quantity: Quantity
+    run: str, monitor: str, history: MonitorRecord, reference: MonitorRecord, quantity: Quantity, shift: float
 ) -> Difference:
-    """One monitor's difference."""
+    """One monitor's difference, the history made earlier by a shift, s."""
     if len(history.time) == 0 or len(reference.time) == 0:
         raise CaseError([f"monitor {monitor}: has no samples, as a run was stopped at its start"])
-    values, expected = on_common_clock(history.time, history.values[:, :2], reference.time, reference.values[:, :2])
+    values, expected = on_common_clock(
+        history.time - shift, history.values[:, :2], reference.time, reference.values[:, :2]
+    )
     if not expected.any():
         raise CaseError([f"monitor {monitor}: its {quantity} is zero in the reference"])
     rms, peak = relative_errors(values, expected)
@@ -98,6 +119,7 @@ def _difference(
         last=float(values[-1, column]),
         reference_last=float(expected[-1, column]),
         unit=UNITS[quantity][column],
+        shift=shift,
         apart=distance(*places),
         place=history.place,
         reference_place=reference.place,

@@ -66,6 +66,16 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, MonitorRecord]:
         return {name: _read(group, quantity, file.attrs["size"].tolist()) for name, group in groups.items()}
 
 
+def delay_of(path: Path) -> float | None:
+    """Time (s) by which all motion of a record is later than that of waves through the planes of sides; None: unknown.
+
+    Raises CaseError when the file cannot be read.
+    """
+    with open_record(path) as file:
+        late = file.attrs.get("late")
+        return float(late) if isinstance(late, float) and np.isfinite(late) else None
+
+
 def monitor_names(path: Path) -> list[str]:
     """The names of the monitors of a record, without twins in a free-field column."""
     with open_record(path) as file:

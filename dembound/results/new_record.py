@@ -5,7 +5,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
     /                       attributes: name, origin (the case's own name, whatever --name is), source, the case file's
                             place from the folder of results, source_digest, its SHA-256; title, case (its text),
                             keys (all, as JSON), kind ("disks", "bar"), version, size, time_step, step_limit, steps,
-                            complete; of disks seed, of a bar loaded, which of its ends is, and ends, their types,
+                            complete, late (s, all motion, by where waves enter); of disks seed, of a bar loaded, which
+                            of its ends is, and ends, their types,
                             without ranges also density, section, youngs_modulus, wave_speed, attenuation; of a run that
                             was continued to another time regular_steps, those of the run as it was begun; of a
                             response of a library silent, the inputs without a record, whose waves begin after the run

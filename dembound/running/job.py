@@ -194,6 +194,8 @@ class _Job:
             beginning.stages, counts,
         ) as recorder:  # fmt: skip
             with put_off():  # until there is a checkpoint for the record
+                if found is None and (late := planned.kind.late(planned.scene)) is not None:
+                    recorder.note({"late": late})
                 if planned.regular_steps != steps:
                     recorder.note({"regular_steps": planned.regular_steps})
                 checkpoints = self._checkpoints(planned, partial, None, recorder)

@@ -1,91 +1,81 @@
-"""The Pareto front: choices for which no other is both cheaper and more accurate, the same in every run of a chart.
+"""The Pareto front: choices for which no other is both cheaper and more accurate.
 
-Errors and work are the same to the bit in every run of a choice; its CPU time varies, on a busy machine by a quarter
-and more, and laws, which cost more for the same work, differ by a factor of two and more. Two choices are therefore
-compared by their CPU times only if these differ clearly, else by their work:
+One error and one cost of every choice decide it, and are drawn: no choice that the picture shows as dominated is on it,
+and every other one is. So that a second run of a chart has the same front, what differs by less than a busy machine
+adds is one cost:
 
-- In every round all choices run one after the other, and so under nearly the same load. The ratio of their costs is the
-  median over the rounds of the ratios within a round.
-- If it is below 1 + NOISE, or within half the range of these ratios, or if the median costs differ by less than
-  LEAST_TIME, the ratio of the work is used instead, and works that differ by less than EQUAL_WORK are the same cost.
-- Errors that differ by less than EQUAL are the same error, and all below ROUNDING are.
-
-A choice is on the front unless another has the same or a smaller error at a lower cost, or a smaller error at the same
-cost.
+- The cost is the least CPU time of the timed runs, as whatever else a machine does only adds to it.
+- Costs that differ by less than `TIE` are one cost, their median: the nearest are put together first, as long as all of
+  them remain within it. So no two costs that differ by more are equal, and those of one scene with other sides are.
+- Errors are the same to the bit in every run. Those within `EQUAL` are put together in the same way, and all below
+  `NONE`, which a logarithmic axis cannot show, are equal.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-NOISE = 0.5
-"""Relative difference of two CPU times up to which work decides."""
+TIE = 1.25
+"""Ratio of two costs below which they are equal: in two charts on a busy machine they differed by 15 % at most."""
 
-LEAST_TIME = 1e-3
-"""Difference (s) of two CPU times up to which work decides: starting a run takes as long."""
+EQUAL = 1.05
+"""Ratio of two errors below which they are equal."""
+
+NONE = 1e-6
+"""Relative error up to which there is none."""
 
 SHORTEST = 1e-9
 """Smallest CPU time (s): clocks of coarse ticks have 0 for a short run."""
 
-EQUAL = 0.01
-"""Relative difference of two errors up to which they count as equal."""
 
-EQUAL_WORK = 0.05
-"""Relative difference of two works up to which they count as equal: one more row of disks is no cost."""
-
-ROUNDING = 1e-9
-"""Relative error up to which a result is exact: what remains are rounding errors."""
-
-
-@dataclass(frozen=True)
-class Point:
-    """A choice as a point of the chart: relative error, CPU time (s) of every round, and work."""
+class Point(NamedTuple):
+    """A choice as it is compared and drawn: relative error, and cost, s of CPU time."""
 
     error: float
-    cpu: Sequence[float]
-    work: int
+    cost: float
 
-    @property
-    def level(self) -> float:
-        """The error without rounding errors."""
-        return max(self.error, ROUNDING)
+
+def points_of(errors: Sequence[float], costs: Sequence[float]) -> list[Point]:
+    """The points of choices with these errors and least CPU times (s); nearly equal ones are equal."""
+    seen, spent = np.maximum(errors, NONE), np.maximum(costs, SHORTEST)
+    return [Point(*each) for each in zip(alike(seen, EQUAL), alike(spent, TIE), strict=True)]
+
+
+def alike(values: np.ndarray, ratio: float) -> list[float]:
+    """The positive values, of which those in one group are replaced by its median.
+
+    Groups are put together, the two with the nearest extremes first, as long as these differ by less than a ratio.
+    """
+    groups = [[k] for k in np.argsort(values, kind="stable")]
+    while len(groups) > 1:
+        spans = [values[after[-1]] / values[before[0]] for before, after in pairwise(groups)]
+        first = int(np.argmin(spans))
+        if spans[first] >= ratio:
+            break
+        groups[first : first + 2] = [groups[first] + groups[first + 1]]
+    found = np.empty(len(values))
+    for group in groups:
+        found[group] = np.median(values[group])
+    return [float(each) for each in found]
 
 
 def front(points: Sequence[Point]) -> list[int]:
-    """Numbers of the points on the front, the most accurate first."""
-    kept = [k for k, point in enumerate(points) if not any(_beats(other, point) for other in points)]
-    return sorted(kept, key=lambda k: points[k].error)
+    """Numbers of the points on the front, the most accurate first, of several at one place the first."""
+    kept = [k for k, point in enumerate(points) if not any(_dominates(other, point) for other in points)]
+    return sorted(kept, key=lambda k: points[k])
 
 
-def cost_ratio(first: Point, second: Point) -> float:
-    """Cost of the first point over that of the second; 1 where they are equal within the noise."""
-    rounds = min(len(first.cpu), len(second.cpu))
-    ratios = np.divide(*(np.maximum(each.cpu[:rounds], SHORTEST) for each in (first, second)))
-    ratio, spread = float(np.median(ratios)), 0.5 * float(np.ptp(ratios))
-    apart = abs(np.median(first.cpu[:rounds]) - np.median(second.cpu[:rounds]))
-    if apart > LEAST_TIME and abs(np.log(ratio)) > np.log1p(max(NOISE, spread / ratio)):
-        return ratio
-    ratio = first.work / second.work
-    return 1.0 if abs(ratio - 1.0) < EQUAL_WORK else ratio
-
-
-def _beats(other: Point, point: Point) -> bool:
-    """Whether a point rules out another one."""
-    ratio = cost_ratio(other, point)
-    if ratio < 1.0:
-        return other.level <= point.level * (1.0 + EQUAL)
-    return ratio == 1.0 and other.level < point.level * (1.0 - EQUAL)
+def _dominates(other: Point, point: Point) -> bool:
+    """Whether a point is left of another one, or below it, and nowhere beyond."""
+    return other.error <= point.error and other.cost <= point.cost and other != point
 
 
 def cheapest_within(points: Sequence[Point], level: float) -> int | None:
-    """Number of the cheapest point on the front with an error of at most `level`; None if all errors are larger.
-
-    Of several at the same cost the one with the least work, then the first.
-    """
-    within = [k for k in front(points) if points[k].error <= level]
-    if not within:
-        return None
+    """Number of the cheapest point with an error of at most `level`, which is on the front; None if there is none."""
     return min(
-        (k for k in within if cost_ratio(points[k], points[within[-1]]) == 1.0), key=lambda k: (points[k].work, k)
+        (k for k, point in enumerate(points) if point.error <= level),
+        key=lambda k: (points[k].cost, points[k].error),
+        default=None,
     )

@@ -27,11 +27,14 @@ FILE = "chart.h5"
 OWN = (FILE, f"{FILE}.new", f"{FILE}.log", f"{FILE}.log.part", "chart.csv", "chart.png")
 """The files of a chart; all others in its folder are somebody else's, and are kept."""
 
-NUMBERS = ("failure", "time_step", "step_limit", "steps", "count", "work", "threads")
+NUMBERS = ("failure", "time_step", "step_limit", "steps", "count", "work", "threads", "late")
 """Attributes of an outcome that are single values."""
 
 MOST = 1e15
 """Beyond all costs and counts of a run."""
+
+LEAST = dict.fromkeys(NUMBERS, 0.0) | {"late": -MOST}
+"""Smallest values of these numbers."""
 
 MOTION = ("displacement", "velocity", "stress")
 """What a gauge records; the last of them only bars have."""
@@ -59,7 +62,7 @@ class Record:
                 return None
             values = {name: _plain(group.attrs[name]) for name in NUMBERS}
             for name, value in values.items():
-                if name != "failure" and not (isinstance(value, int | float) and 0 <= value < MOST):
+                if name != "failure" and not (isinstance(value, int | float) and LEAST[name] <= value < MOST):
                     raise _damaged(group, f"attribute {name}")
             if not isinstance(values["failure"], str) or (not values["failure"] and values["work"] < 1):
                 raise _damaged(group, "attribute failure or work")

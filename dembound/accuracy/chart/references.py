@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Causes
+from dembound.accuracy.cause import SIDES as OF_SIDES
+from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.extended import MOST, extended
 from dembound.accuracy.history import Motions
@@ -17,6 +18,7 @@ from dembound.accuracy.judges import judge_of
 from dembound.accuracy.labels import label
 from dembound.accuracy.reference import Exact, FinerRun, Reference
 from dembound.accuracy.runner import Run
+from dembound.boundaries import SIDES as SIDE_NAMES
 from dembound.casefile import Case
 from dembound.casefile.chart import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
@@ -39,16 +41,24 @@ AFFORDABLE = 16
 
 
 def reference_of(
-    case: Case, choices: Sequence[Choice], outcomes: Sequence[Run], wanted: ReferenceName | None, run: RunOf
+    case: Case,
+    choices: Sequence[Choice],
+    outcomes: Sequence[Run],
+    wanted: ReferenceName | None,
+    run: RunOf,
+    of: Truth | None = None,
 ) -> Reference:
-    """The reference of this name for choices with these outcomes.
+    """The reference of this name for choices with these outcomes, and for errors of these disks or of the rock.
 
-    By default the exact solution if the case has one, and no hole. Else, if choices differ in their sides, the extended
-    scene, if it is affordable. Else of bars the finer run, of disks the choice with the most nodes times steps.
+    of : None: those of the case, see `Judge.truth`; beside exact solutions they are of the rock.
+
+    By default the exact solution if the case has one, no hole, and `of` is not "disks". Else, if choices differ in
+    their sides, the extended scene, if it is affordable. Else of bars the finer run, of disks the choice with the most
+    nodes times steps.
 
     Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
     """
-    return _References(case, choices, outcomes, run).of(wanted)
+    return _References(case, choices, outcomes, run, of).named(wanted)
 
 
 def exact_of(case: Case) -> Exact:
@@ -68,12 +78,14 @@ def exact_of(case: Case) -> Exact:
 class _References:
     """The references for choices with these outcomes."""
 
-    def __init__(self, case: Case, choices: Sequence[Choice], outcomes: Sequence[Run], run: RunOf) -> None:
-        self._case, self._choices, self._outcomes, self._run = case, choices, outcomes, run
+    def __init__(
+        self, case: Case, choices: Sequence[Choice], outcomes: Sequence[Run], run: RunOf, of: Truth | None
+    ) -> None:
+        self._case, self._choices, self._outcomes, self._run, self._of = case, choices, outcomes, run, of
         self._own = _finest(outcomes)
         self._judge = judge_of(case)
 
-    def of(self, wanted: ReferenceName | None) -> Reference:
+    def named(self, wanted: ReferenceName | None) -> Reference:
         """The reference of this name, or the default."""
         if wanted is None:
             return self._default()
@@ -86,7 +98,7 @@ class _References:
 
     def _default(self) -> Reference:
         """The first that the case allows."""
-        if not self._judge.hides_sides(self._case):
+        if self._of != "disks" and not self._judge.hides_sides(self._case):
             with suppress(CaseError):
                 return self._exact()
         if not any(key.startswith(SIDES) for choice in self._choices for key in choice.changes):
@@ -94,9 +106,9 @@ class _References:
         try:
             return self._extended(AFFORDABLE * max(outcome.count for outcome in self._outcomes))
         except CaseError as error:
-            best, unseen = self._best(), "errors of its sides are not seen"
-            caution = f"{unseen}, as there is no extended scene: {error}"
-            return replace(best, sentence=f"{best.sentence}; {unseen}", cautions=(*best.cautions, caution))
+            best = self._best()
+            caution = f"errors of sides are not seen, as there is no extended scene: {error}"
+            return replace(best, cautions=(*best.cautions, caution))
 
     def _best(self) -> Reference:
         """The most accurate run of the same scene."""
@@ -137,7 +149,7 @@ class _References:
         outcome = replace(outcome, findings=findings)
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
-        return self._of_run("extended", sentence, outcome, self._places(fine))
+        return self._of_run("extended", sentence, larger.case, outcome, self._places(fine))
 
     def _sides(self) -> dict[str, Any]:
         """Changes of sides for the extended scene: those of a choice with waves through a continuum; by default none.
@@ -161,12 +173,13 @@ class _References:
         )
         other = {key: value for key, value in own.changes.items() if not key.startswith(DISCRETE)}
         sentence += f", {label(self._case, other)}" if other else ""
-        return self._of_run("finer", sentence, outcome, self._places(fine))
+        return self._of_run("finer", sentence, fine.case, outcome, self._places(fine))
 
     def _finest(self) -> Reference:
         """The run of the finest choice."""
         sentence = f"the finest run, {self._choices[self._own].name}"
-        return self._of_run("finest", sentence, self._outcomes[self._own], lambda run, _: run.motions)
+        own = self._choices[self._own].case
+        return self._of_run("finest", sentence, own, self._outcomes[self._own], lambda run, _: run.motions)
 
     def _done(self, name: str, case: Case, inside: Box | None = None) -> Run:
         """The outcome of a case that is no choice, breaking inside a box; raises RunError if its run fails."""
@@ -179,12 +192,17 @@ class _References:
         """The histories of a run for the outcome of a choice."""
         return (lambda run, _: run.motions) if fine is None else fine.motions
 
-    def _of_run(self, name: str, sentence: str, run: Run, motions: Callable[[Run, Run], Motions]) -> Reference:
-        """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
+    def _of_run(
+        self, name: str, sentence: str, case: Case, run: Run, motions: Callable[[Run, Run], Motions]
+    ) -> Reference:
+        """The reference that the run of a case is, up to its first break, after which histories do not converge."""
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
-        own = self._choices[self._own]
-        rest = _sizes(self._judge.of_reference(own.case, self._outcomes[self._own].motions, run.time_step))
+        of = self._of or self._judge.truth(self._choices[self._own].case)
+        intact = {monitor: own.before(findings.get(at, math.inf)) for monitor, own in run.motions.items()}
+        causes = self._judge.of_reference(case, intact, run.time_step)
+        causes = replace(causes, found=[cause for cause in causes.found if cause.counts(of)])
+        has_sides = name != "extended" and any(_is_left_out(case, side) for side in SIDE_NAMES)
         breaks = [findings[at]] if at in findings and self._case.chart.until == "break" else []
         return Reference(
             name=name,
@@ -194,8 +212,18 @@ class _References:
             findings=findings,
             own=tuple(k for k, outcome in enumerate(self._outcomes) if _is_same_run(outcome, run)),
             cautions=self._judge.cautions([choice.case for choice in self._choices]),
-            rest=rest,
+            rest=_sizes(causes),
+            of=of,
+            late=run.late,
+            added=[cause.name for cause in causes.found if cause.how != "unknown"],
+            unknown=[*([OF_SIDES] if has_sides else []), *(cause.name for cause in causes.unknown)],
         )
+
+
+def _is_left_out(case: Case, side: str) -> bool:
+    """Whether nothing is known of the errors of a side: one that lets no waves in and has no continuum beyond."""
+    table = case.side(side)
+    return table.is_artificial and not table.waves and not table.is_outside
 
 
 def _sizes(causes: Causes) -> dict[str, dict[str, float]]:

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from dembound.accuracy.cause import TITLES, Truth
 from dembound.accuracy.chart.choices import defaults, from_table
-from dembound.accuracy.chart.front import EQUAL, ROUNDING, Point, cheapest_within, front
+from dembound.accuracy.chart.front import NONE, Point, cheapest_within, front, points_of
 from dembound.accuracy.chart.record import Record, record_in
 from dembound.accuracy.chart.references import exact_of, reference_of
 from dembound.accuracy.choice import Choice, choices_of, digest
@@ -27,6 +28,9 @@ from dembound.words import percent
 LEVELS = (0.01, 0.001)
 """Errors within which the cheapest choice is named."""
 
+NOWHERE = Point(np.nan, np.nan)
+"""Place of a choice that has none."""
+
 SHORT, AT_ONCE = 0.1, 25
 """CPU time (s) in which a timed run is repeated, and how often at most; its cost is the median of these runs."""
 
@@ -36,27 +40,28 @@ class Options:
     """What is charted.
 
     named : changes of keys by the name of the choice; None: those of the case's [chart] table, by default `defaults`.
-    repeats, reference : as in the table [chart]; None: those of the table.
+    repeats, reference : as in the table [chart]; None: those of the table. of : what errors are those of, see
+    `reference_of`.
     """
 
     named: Mapping[str, Mapping[str, Any]] | None = None
     repeats: int | None = None
     reference: ReferenceName | None = None
+    of: Truth | None = None
     wanted: Wanted = field(default_factory=Wanted)
 
 
 @dataclass(frozen=True)
 class Line:
-    """A choice in the chart: its results and the errors of its monitors, the largest first; none after a failure."""
+    """A choice in the chart: its results and the errors of its monitors, the largest first; none after a failure.
+
+    point : where it is in the chart: its error, in total, and its cost, s of CPU time, as of `front.points_of`.
+    """
 
     choice: Choice
     outcome: Run
     errors: Sequence[MonitorError] = ()
-
-    @property
-    def cpu(self) -> float:
-        """Median CPU time of stepping, s."""
-        return float(np.median(self.outcome.cpu))
+    point: Point = NOWHERE
 
     @property
     def wall(self) -> float:
@@ -108,30 +113,31 @@ class Charted:
         return [k for k, line in enumerate(self.lines) if line.errors and k not in self.reference.own]
 
     def cheapest(self, level: float) -> int | None:
-        """Number of the cheapest choice with an RMS error of at most `level`; None if there is none."""
+        """Number of the cheapest choice with an error of at most `level`; None if there is none."""
         judged = self.judged
-        found = cheapest_within([_point(self.lines[k]) for k in judged], level)
+        found = cheapest_within([self.lines[k].point for k in judged], level)
         return None if found is None else judged[found]
 
     @property
     def sentence(self) -> str:
-        """The cheapest choices within the `LEVELS`, in words."""
+        """What errors are those of, and the cheapest choices within the `LEVELS`, in words."""
         within: dict[str, list[str]] = {}
         for level in LEVELS:
             found = self.cheapest(level)
             name = "none" if found is None else self._described(self.lines[found])
             within.setdefault(name, []).append(f"within {100.0 * level:g} %")
         parts = [f"cheapest {' and '.join(levels)}: {name}" for name, levels in within.items()]
-        least = self.lines[self.front[0]].errors[0].rms
-        if least > LEVELS[-1] and (best := self.cheapest(least * (1.0 + EQUAL))) is not None:
-            parts.append(f"most accurate: {self._described(self.lines[best])}")
-        own = [f"{line.choice.name} ({line.cpu:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
-        return "; ".join([*parts, *([f"the reference itself: {', '.join(own)}"] if own else [])])
+        best = self.lines[self.front[0]]
+        if best.point.error > LEVELS[-1]:
+            parts.append(f"most accurate: {self._described(best)}")
+        own = [f"{line.choice.name} ({line.point.cost:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
+        parts += [f"the reference itself: {', '.join(own)}"] if own else []
+        return f"errors {TITLES[self.reference.of]}; {'; '.join(parts)}"
 
     def _described(self, line: Line) -> str:
         """A choice with its error and cost."""
-        error = line.errors[0].rms
-        return f"{line.choice.name} ({percent(error if error > ROUNDING else 0.0)}, {line.cpu:.2g} s)"
+        error, cost = line.errors[0].total, line.point.cost
+        return f"{line.choice.name} ({percent(error if error > NONE else 0.0)}, {cost:.2g} s)"
 
 
 def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown) -> Charted:
@@ -152,15 +158,16 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
     outcomes = runs.all_of(choices, options.repeats or case.chart.repeats)
     if all(outcome.failure for outcome in outcomes):
         raise RunError("\n".join(f"{c.name}: {o.failure}" for c, o in zip(choices, outcomes, strict=True)))
-    reference = reference_of(case, choices, outcomes, _wanted_reference(case, options), runs.one)
+    reference = reference_of(case, choices, outcomes, _wanted_reference(case, options), runs.one, options.of)
     lines = [_line(choice, outcome, reference, options) for choice, outcome in zip(choices, outcomes, strict=True)]
+    lines = _placed(lines)
     if not any(line.errors for line in lines):
         raise RunError("\n".join(dict.fromkeys(f"{line.outcome.failure}" for line in lines)))
     unit, lines_out = kind_of(case).work_unit, [*left_out, *reference.cautions]
     charted = Charted(case, reference, options.wanted.quantity, unit, lines, lines_out)
     if not (judged := charted.judged):
         raise RunError(f"nothing is left to compare with the reference, {reference.sentence}, which is a choice itself")
-    return replace(charted, front=[judged[k] for k in front([_point(lines[k]) for k in judged])])
+    return replace(charted, front=[judged[k] for k in front([lines[k].point for k in judged])])
 
 
 def _must_be_comparable(case: Case, options: Options) -> None:
@@ -174,6 +181,8 @@ def _must_be_comparable(case: Case, options: Options) -> None:
     if wanted.quantity == "stress" and (not is_recorded or wanted.component is not None):
         raise CaseError(["--quantity: stress is that along a bar; disks do not have it, nor has it components"])
     if _wanted_reference(case, options) == "exact":
+        if options.of == "disks":
+            raise CaseError(["--of: errors beside an exact solution are those of the rock, not of these disks"])
         exact_of(case)
 
 
@@ -192,8 +201,11 @@ def _line(choice: Choice, outcome: Run, reference: Reference, options: Options) 
         return Line(choice, replace(outcome, failure="; ".join(error.problems)))
 
 
-def _point(line: Line) -> Point:
-    return Point(line.errors[0].rms, line.outcome.cpu, line.outcome.work)
+def _placed(lines: Sequence[Line]) -> list[Line]:
+    """The lines with their places in the chart, where they have errors."""
+    done = [line for line in lines if line.errors]
+    points = iter(points_of([line.errors[0].total for line in done], [min(line.outcome.cpu) for line in done]))
+    return [replace(line, point=next(points)) if line.errors else line for line in lines]
 
 
 class _Runs:

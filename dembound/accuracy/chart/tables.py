@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dembound.accuracy.cause import TITLES
 from dembound.accuracy.chart.record import write_motions
 from dembound.accuracy.chart.study import Charted, Line
 from dembound.accuracy.choice import digest
@@ -34,7 +35,7 @@ COLUMNS = (
         "total",
         "peak",
         "monitor_apart_m",
-        "cpu_s",
+        "cost_s",
         "cpu_min_s",
     ),
     *("cpu_max_s", "run_s", "work", "threads", "stepped", "steps", "time_step_s"),
@@ -67,10 +68,14 @@ def write_results(charted: Charted, path: Path) -> None:
 
 
 def _write_reference(group: h5py.Group, charted: Charted) -> None:
-    """Write the name of the reference and its histories, of an exact solution at the monitors of the first choice."""
+    """Write the name of the reference, what errors beside it are, and its histories.
+
+    Those of an exact solution are at the monitors of the first choice.
+    """
     reference = charted.reference
     own = np.array(reference.own, dtype=int)
     group.attrs.update({"name": reference.name, "sentence": reference.sentence, "choices": own})
+    group.attrs.update({"of": TITLES[reference.of], "covered": reference.covered})
     for name, value in reference.findings.items():
         group.attrs[name] = value
     line = next(line for line in charted.lines if not line.outcome.failure)
@@ -91,7 +96,8 @@ def _write_line(group: h5py.Group, charted: Charted, number: int, line: Line) ->
     )
     if not line.errors:
         return
-    group.attrs.update({"cpu": line.cpu, "wall": line.wall, "work": line.outcome.work})
+    group.attrs.update({"error": line.point.error, "cost": line.point.cost})
+    group.attrs.update({"wall": line.wall, "work": line.outcome.work})
     group.create_dataset("monitor", data=[error.monitor for error in line.errors])
     group.create_dataset("component", data=[error.component for error in line.errors])
     for name, unit in (("rms", "1"), ("total", "1"), ("peak", "1"), ("apart", "m")):
@@ -118,7 +124,7 @@ def _numbers(charted: Charted, number: int, line: Line) -> list[Any]:
         return [False, outcome.failure, *[None] * (len(COLUMNS) - 3)]
     worst = line.errors[0]
     error = worst.monitor, worst.component, worst.rms, worst.total, worst.peak, worst.apart
-    costs = line.cpu, min(outcome.cpu), max(outcome.cpu), line.wall, outcome.work, outcome.threads
+    costs = line.point.cost, min(outcome.cpu), max(outcome.cpu), line.wall, outcome.work, outcome.threads
     return [number in charted.front, "", *error, *costs, outcome.count, outcome.steps, outcome.time_step]
 
 

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from dembound.accuracy.cause import SIDES, Cause, Causes
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.entry import late_by
 from dembound.accuracy.of_disks.formulas import USUAL, Formulas
 from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.casefile.disks import DiskCase
+from dembound.disks.entry import late_by
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import DemboundError
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from dembound.accuracy.cause import STEP, Causes, Truth
+from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import Judge
@@ -99,12 +99,11 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return (REALISATIONS,)
 
     def of_reference(self, case: DiskCase, motions: Motions, time_step: float) -> Causes:
-        """Dispersion, steps, walls and disks near loads, by formula."""
+        """All causes known by formula: dispersion, steps, walls, disks near loads, sides that waves enter through."""
         plane = {
             name: replace(own, values={q: v[:, :2] for q, v in own.values.items()}) for name, own in motions.items()
         }
-        found = Formulas(build(case), time_step).causes(plane)
-        return Causes([cause for cause in found if cause.of_disks or cause.name == STEP], motions=plane)
+        return Causes(Formulas(build(case), time_step).causes(plane), motions=plane)
 
     def quick(self, scene: DiskScene) -> Causes:
         """The continuum and walls by formula."""

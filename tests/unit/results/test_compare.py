@@ -94,3 +94,17 @@ def test_stresses_are_compared_in_megapascals(spalled_run, tmp_path):
     assert found.along == {"x": pytest.approx(0.25)}
     assert (found.rms, found.peak) == (pytest.approx(0.25), pytest.approx(0.25))
     assert (found.last, found.reference_last) == (pytest.approx(last), pytest.approx(last / 1.25))
+
+
+def test_a_shift_is_taken_off_only_where_both_records_know_theirs(tmp_path):
+    wave, still = np.sin(6.0 * TIME), np.zeros_like(TIME)
+    early = record(tmp_path / "a.h5", "a", {"P": (TIME, wave, still)})
+    late = record(tmp_path / "b.h5", "b", {"P": (TIME + 0.01, wave, still)})
+    assert compare(early, [late], "velocity")[0].shift == 0.0
+    for path, by in ((early, -0.002), (late, 0.008)):
+        with h5py.File(path, "r+") as file:
+            file.attrs["late"] = by
+    (found,) = compare(early, [late], "velocity")
+    assert found.shift == pytest.approx(0.01)
+    assert found.rms < 1e-6
+    assert compare(early, [late], "velocity", as_recorded=True)[0].rms > 0.05  # ωΔt = 0.06

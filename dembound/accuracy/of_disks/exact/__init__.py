@@ -78,6 +78,7 @@ def write_exact(case: DiskCase, path: Path, name: str | None = None) -> Problem:
     path.parent.mkdir(parents=True, exist_ok=True)
     with new_file(path) as file:
         facts = {"name": case.name, "case": case.text, "version": __version__, "size": scene.size, "complete": True}
+        facts |= {"late": 0.0}
         describe(file, facts)
         histories = file.create_group("histories", track_order=True)
         for monitor in case.monitor:

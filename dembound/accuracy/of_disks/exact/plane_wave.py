@@ -18,8 +18,8 @@ from dembound.disks.scene import build, ground_of
 class ExactPlaneWave(Exact[DiskCase]):
     """A plane wave that enters at one side of a block of disks and leaves at the opposite one.
 
-    It runs with the homogenised speed of the packing of each choice; whatever a choice has on the opposite side, the
-    wave of the solution leaves without reflection.
+    It enters through the plane of the side, at once, and runs with the homogenised speed of the packing of each choice;
+    whatever a choice has on the opposite side, the wave of the solution leaves without reflection.
     """
 
     side: str
@@ -42,7 +42,7 @@ class ExactPlaneWave(Exact[DiskCase]):
         """The wave at the monitors' particles, at the same times."""
         scene, axis = build(case), normal_axis(self.side)
         speed = scene.ground.wave_speeds(axis)[0 if self.motion == "p" else 1]
-        start = float(scene.positions[scene.edges[self.side].nodes, axis].mean())
+        start = 0.0 if self.side in ("left", "bottom") else float(scene.assembly.extent[axis])
         wave, column = case.wave[case.driving[self.side][self.motion]], axis_of_motion(self.side, self.motion)
         found = {}
         for name, history in recorded.items():

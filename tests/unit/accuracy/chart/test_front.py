@@ -1,68 +1,71 @@
-"""The Pareto front, which noise of the machine must not change."""
+"""The Pareto front, which is that of the points as they are drawn, and which noise of the machine does not change."""
 
 import numpy as np
 import pytest
 
-from dembound.accuracy.chart.front import NOISE, Point, cheapest_within, cost_ratio, front
-
-
-def point(error: float, cost: float, work: int = 0, noise: float = 0.0, seed: int = 0, rounds: int = 3) -> Point:
-    """A point of this cost (s), by default with work in proportion, and with noise by these parts of it."""
-    factors = 1.0 + noise * np.random.default_rng(seed).standard_normal(rounds)
-    return Point(error, list(cost * factors), work or round(1e6 * cost))
+from dembound.accuracy.chart.front import TIE, Point, alike, cheapest_within, front, points_of
 
 
 @pytest.mark.parametrize(
     ("points", "expected"),
     [
-        # no point on the front is beaten
-        ([point(0.1, 1.0), point(0.05, 4.0), point(0.2, 2.0), point(0.01, 16.0), point(0.01, 64.0)], [3, 1, 0]),
-        # three sides of one scene: the times differ by 20 %, which is less than what a busy machine adds
-        ([point(0.1, 1.0, work=100), point(0.05, 1.2, work=100), point(0.2, 0.9, work=100)], [1]),
-        # a law that takes twice as long for the same work is dearer
-        ([point(0.1, 1.0, work=100), point(0.05, 2.0, work=100), point(0.2, 2.0, work=100)], [1, 0]),
-        # a row of disks more is no cost
-        ([point(0.2, 1.0, work=100), point(0.1, 1.0, work=104)], [1]),
-        ([point(0.2, 1.0, work=100), point(0.1, 1.0, work=106)], [1, 0]),
-        # equal errors are those of rounding, and those within a hundredth
-        ([point(1e-14, 1.0), point(1e-16, 4.0)], [0]),
-        ([point(0.1000, 1.0), point(0.0995, 4.0)], [0]),
-        ([point(0.1000, 1.0), point(0.0980, 4.0)], [1, 0]),
+        ([(0.1, 1.0), (0.05, 4.0), (0.2, 2.0), (0.01, 16.0), (0.01, 64.0)], [3, 1, 0]),
+        # three sides of one scene: the times differ by 20 %, which a busy machine may add
+        ([(0.1, 1.0), (0.05, 1.1), (0.2, 0.92)], [1]),
+        ([(0.1, 1.0), (0.05, 1.3), (0.2, 0.9)], [1, 0]),
+        # nothing is left of errors that cannot be drawn, and errors within a twentieth are one
+        ([(1e-14, 1.0), (1e-16, 4.0)], [0]),
+        ([(0.1000, 1.0), (0.0970, 4.0)], [0]),
+        ([(0.1000, 1.0), (0.0930, 4.0)], [1, 0]),
+        # at one place all are on the front
+        ([(0.1, 1.0), (0.1, 1.0), (0.2, 1.0)], [0, 1]),
     ],
 )
-def test_the_front_is_of_those_that_none_beats(points: list[Point], expected: list[int]) -> None:
-    assert front(points) == expected
+def test_the_front_is_of_those_that_none_dominates(points: list[tuple[float, float]], expected: list[int]) -> None:
+    assert front(points_of(*zip(*points, strict=True))) == expected
 
 
-ABOVE = 1.0 + 1.1 * NOISE
+@pytest.mark.parametrize("seed", range(20))
+def test_all_that_is_dominated_is_off_the_front_and_nothing_else(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    errors, costs = 10.0 ** rng.uniform(-8, 0, 30), 10.0 ** rng.uniform(-2, 0, 30)
+    errors[rng.integers(30, size=5)], costs[rng.integers(30, size=5)] = errors[0], costs[0]
+    points = points_of(errors, costs)
+    on = set(front(points))
+    for k, (error, cost) in enumerate(points):
+        others = [other for other in points if other != (error, cost)]
+        assert (k in on) == (not any(other.error <= error and other.cost <= cost for other in others))
+        if k not in on:  # what dominates it, or what dominates that, is on the front
+            assert any(points[n].error <= error and points[n].cost <= cost for n in on)
+    for level in (1e-9, 1e-4, 1e-2, 1.0):
+        found = cheapest_within(points, level)
+        assert found is None or found in on
 
 
-@pytest.mark.parametrize(
-    ("one", "other", "ratio"),
-    [
-        # work decides between times that differ little
-        (point(0.1, 1.1, work=90), point(0.1, 1.0, work=100), 0.9),
-        (point(0.1, ABOVE, work=90), point(0.1, 1.0, work=100), ABOVE),
-        (point(0.1, 1.0, work=1000), point(0.1, 1.0, work=1001), 1.0),
-        # and between the shortest runs
-        (point(0.1, 1.2e-3, work=50), point(0.1, 0.4e-3, work=100), 0.5),
-        (point(0.1, 3.2e-3, work=50), point(0.1, 1.6e-3, work=100), 2.0),
-        # a load that slows a whole round does not count; rounds that contradict each other leave it to the work
-        (Point(0.1, [1.0, 5.0, 1.0], 300), Point(0.1, [0.5, 2.5, 0.5], 100), 2.0),
-        (Point(0.1, [1.0, 2.0, 6.0], 50), Point(0.1, [1.0, 1.0, 1.0], 100), 0.5),
-    ],
-)
-def test_costs_are_compared_by_times_or_by_work(one: Point, other: Point, ratio: float) -> None:
-    assert cost_ratio(one, other) == pytest.approx(ratio, rel=1e-12)
+def test_noise_of_the_machine_does_not_change_the_front() -> None:
+    """Times of one scene, of a twice and of a ten times larger one, each with other sides, 8 % more or less."""
+    rng = np.random.default_rng(1)
+    scenes = np.repeat([1.0, 2.0, 20.0], 4)
+    errors = rng.permutation(np.linspace(0.01, 0.3, 12))
+    quiet = front(points_of(errors, scenes))
+    # the largest ratio within a scene is 1.08² = 1.17 < TIE, the smallest between two 2/1.17 = 1.7 > TIE
+    for _ in range(50):
+        assert front(points_of(errors, scenes * rng.uniform(1.0 / 1.08, 1.08, 12))) == quiet
 
 
-def test_of_equal_costs_and_errors_the_least_work_then_the_first_is_named() -> None:
-    levels = [point(0.1, 1.0), point(0.05, 4.0), point(0.01, 16.0)]
-    assert [cheapest_within(levels, level) for level in (0.2, 0.06, 0.01, 0.001)] == [0, 1, 2, None]
-    # errors within 1 % of each other: none rules out another
-    points = [point(0.1, 1.0, work=100), point(0.1004, 1.3, work=98), point(0.1005, 0.9, work=98), point(0.5, 1.0)]
-    assert front(points) == [0, 1, 2]
-    assert cheapest_within(points, 0.2) == 1
-    assert cheapest_within(points[:1] + points[2:], 0.2) == 1
-    # a choice that costs less is named before one with the same error
-    assert cheapest_within([point(0.1, 1.0), point(0.15, 0.2)], 0.2) == 1
+def test_groups_are_of_the_nearest_and_no_wider_than_the_ratio() -> None:
+    # a chain in which each is within 1.2 of the next: 1.1 and 1.15 first, then with 1.0, as 1.15 < 1.25; 1.35 is apart
+    assert alike(np.array([1.35, 1.0, 1.15, 1.1]), TIE) == [1.35, 1.1, 1.1, 1.1]
+    assert alike(np.array([0.3, 3.0]), TIE) == [0.3, 3.0]
+    chain = np.geomspace(1.0, 10.0, 40)
+    found = alike(chain, TIE)
+    for value in set(found):
+        group = [each for each, own in zip(chain, found, strict=True) if own == value]
+        assert max(group) / min(group) < TIE
+
+
+def test_of_equal_costs_the_most_accurate_then_the_first_is_named() -> None:
+    points = [Point(0.1, 1.0), Point(0.05, 4.0), Point(0.01, 16.0), Point(0.01, 16.0), Point(0.02, 16.0)]
+    assert [cheapest_within(points, level) for level in (0.2, 0.06, 0.01, 0.001)] == [0, 1, 2, None]
+    assert cheapest_within([Point(0.1, 1.0), Point(0.15, 0.2)], 0.2) == 1
+    assert cheapest_within([Point(0.15, 1.0), Point(0.1, 1.0)], 0.2) == 1

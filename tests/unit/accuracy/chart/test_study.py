@@ -11,6 +11,7 @@ import pytest
 from dembound.accuracy import runner
 from dembound.accuracy.chart import references as reference
 from dembound.accuracy.chart import study
+from dembound.accuracy.chart.front import front
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.chart.tables import COLUMNS, write_results, write_table
 from dembound.accuracy.choice import choices_of, combinations
@@ -63,7 +64,7 @@ def test_runs_compile_first_and_are_timed_in_turn(charted, spalling) -> None:
         *(f"{k} of 2 choices, timed run {n} of 2" for n in (1, 2) for k in (1, 2)),
     ]
     assert [len(line.outcome.cpu) for line in found.lines] == [2, 2]
-    assert all(0.0 < line.cpu < line.wall for line in found.lines)
+    assert all(0.0 < line.point.cost < line.wall for line in found.lines)
     assert found.lines[1].outcome.work > 3.9 * found.lines[0].outcome.work  # twice the bonds in twice the steps
     assert found.lines[1].errors[0].rms < found.lines[0].errors[0].rms
     assert found.reference.name == "exact"
@@ -102,7 +103,7 @@ def test_the_finest_choice_is_the_reference_of_disks_without_a_solution(charted,
     assert found.reference.sentence == "the finest run, radius 0.25 m"
     assert found.judged == found.front == [1]
     assert found.lines[0].errors[0].rms == 0.0
-    assert found.sentence.endswith(f"the reference itself: radius 0.25 m ({found.lines[0].cpu:.2g} s)")
+    assert found.sentence.endswith(f"the reference itself: radius 0.25 m ({found.lines[0].point.cost:.2g} s)")
     # a choice that is the reference run again is not its cheapest: the number of snapshots changes no run
     found, _ = charted(case, {"run.safety": [0.45, 0.9], "output.snapshots": [0, 2]}, repeats=1)
     assert (found.reference.own, found.judged) == ((0, 1), [2, 3])
@@ -112,19 +113,19 @@ def test_the_finest_choice_is_the_reference_of_disks_without_a_solution(charted,
 @pytest.mark.parametrize(
     ("costs", "named"),
     [
-        ((1.0, 0.8), "boundary.right viscous (10 %, 1 s)"),  # within the noise of CPU times the works decide: equal
+        ((1.0, 0.9), "boundary.right viscous (10 %, 0.95 s)"),  # one cost and one error: the first
         ((1.0, 0.4), "boundary.right free (10 %, 0.4 s)"),
     ],
 )
 def test_of_equally_accurate_choices_the_cheaper_or_else_the_first_is_named(charted, bar, costs, named) -> None:
     sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}]}
     found, _ = charted(bar({"run.duration": 0.01}), sides, repeats=1, reference="exact")
-    assert found.lines[0].outcome.work == found.lines[1].outcome.work
     lines = [
-        replace(line, outcome=replace(line.outcome, cpu=[cost]), errors=[replace(line.errors[0], rms=rms)])
+        replace(line, outcome=replace(line.outcome, cpu=[2.0 * cost, cost]), errors=[replace(line.errors[0], rms=rms)])
         for line, cost, rms in zip(found.lines, costs, (0.1001, 0.1), strict=True)
     ]
-    equal = replace(found, lines=lines, front=[1, 0])  # the second is more accurate by a thousandth
+    placed = study._placed(lines)
+    equal = replace(found, lines=placed, front=front([line.point for line in placed]))  # a thousandth is no difference
     assert equal.sentence.endswith(f"most accurate: {named}")
 
 

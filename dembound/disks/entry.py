@@ -72,6 +72,17 @@ def entries_of(scene: DiskScene) -> dict[str, dict[Motion, Entry]]:
     return found
 
 
+def all_late_by(scene: DiskScene) -> float | None:
+    """Time (s) by which all motion is later than that of waves through the planes of sides.
+
+    None where that of several waves differs, by more than `WITHIN` diameters.
+    """
+    entries = [entry for waves in entries_of(scene).values() for entry in waves.values()]
+    delays = [entry.delay for entry in entries]
+    error = WITHIN * scene.ground.brick.mean_diameter / min((entry.speed for entry in entries), default=math.inf)
+    return None if delays and max(delays) - min(delays) > error else late_by(scene)
+
+
 def late_by(scene: DiskScene) -> float:
     """Time (s) by which the motion is later than that of waves through the planes of sides; of several the largest."""
     delays = [entry.delay for entries in entries_of(scene).values() for entry in entries.values()]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.accuracy.of_disks.entry import entries_of, late_by
 from dembound.accuracy.runner import measure
+from dembound.disks.entry import entries_of, late_by
 from dembound.disks.scene import build
 from dembound.running import Progress
 
