@@ -141,7 +141,7 @@ def _print(charted: Charted) -> None:
     out.print("* on the Pareto front; cost: least CPU time of stepping, within a quarter of each other the same")
     out.print(f"run: time of the whole run without files, median; work: {charted.work_unit}")
     if farthest := max(line.apart for line in charted.lines):
-        out.print(f"† monitors record elsewhere than in the reference, up to {farthest:.2g} m away")
+        out.print(f"† monitors record elsewhere than in the reference, up to {farthest:.3g} m away")
     out.print(f"{charted.case.name}: {charted.sentence}")
 
 

@@ -245,7 +245,7 @@ def _entries(
 def _footnote(dots: Sequence[Dot]) -> list[tuple[str, str, bool]]:
     """The meaning of the mark, if any choice has it."""
     farthest = max(dot.apart for dot in dots)
-    text = f"{MARK} monitors record elsewhere than in the reference, up to {farthest:.2g} m away"
+    text = f"{MARK} monitors record elsewhere than in the reference, up to {farthest:.3g} m away"
     return [("", DARK, False), (_wrapped(text, WIDTH), DARK, False)] if farthest > 0.0 else []
 
 
