@@ -108,5 +108,5 @@ class Causes:
 
     @property
     def unknown(self) -> list[Cause]:
-        """Those of which nothing is known."""
+        """The causes of which nothing is known."""
         return [cause for cause in self.found if cause.how == "unknown"]

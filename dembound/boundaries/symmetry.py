@@ -22,7 +22,7 @@ class Symmetry(Boundary):
     type: Literal["symmetry"]
 
     def equal_supports(self, own: Place, other: Place) -> Self:
-        """The same side, as its springs are those of the contacts."""
+        """The side itself, as its springs are those of the contacts."""
         return self
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:

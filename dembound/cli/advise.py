@@ -186,7 +186,7 @@ def _lines(best: Proposal) -> list[str]:
 
 
 def _missed(case: Case, found: Advice, bound: float) -> str:
-    """That no choice keeps a bound, and the best one."""
+    """A message that no choice keeps a bound, with the best one."""
     best = found.best[bound]
     said = f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_lines(best)[0]}"
     return "\n".join([said, *best.choice.toml])

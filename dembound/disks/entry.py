@@ -52,7 +52,7 @@ class Entry(NamedTuple):
 
     @property
     def delay(self) -> float:
-        """The same in time, s."""
+        """Time (s) by which waves enter later; negative where they enter earlier."""
         return self.late / self.speed
 
 

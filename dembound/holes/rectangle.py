@@ -44,7 +44,7 @@ class Rectangle(Hole):
         return self.corners
 
     def wall_error(self, diameter: float, apart: Apart) -> float:
-        """That of walls between disks, and what walls elsewhere take off its width: half of that over the smaller half.
+        """Error of walls between disks, and what walls elsewhere take off the width: half of it over the smaller half.
 
         What a hole does grows with its size, by as large a part; both may add or cancel.
         """

@@ -87,7 +87,7 @@ class BarMotions:
 
     @property
     def loaded_at_ends(self) -> BarMotions:
-        """The same bar with all loads on its last nodes alone."""
+        """A bar like this one with all loads on its last nodes alone."""
         loads = tuple(load.model_copy(update={"nodes": 1}) for load in self.case.load)
         case = replace(self.case, load=loads)
         return replace(self, case=case, scene=build_bar(case))

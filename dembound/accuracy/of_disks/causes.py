@@ -101,7 +101,7 @@ def _breaks(companions: Companions) -> list[str]:
 
 
 def _echoes(companions: Companions) -> list[str]:
-    """That the larger companion is not large enough, if it is not."""
+    """A sentence that the larger companion is not large enough, where it is not."""
     if companions.echo_free:
         return []
     return [f"{SIDES}: the larger scene, {companions.far_size}, has echoes of its own"]

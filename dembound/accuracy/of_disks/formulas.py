@@ -47,7 +47,7 @@ class Formulas:
         ]
 
     def without_motion(self, names: Sequence[str]) -> list[Cause]:
-        """Those of them that do not depend on the motion, at monitors of these names."""
+        """The causes that do not depend on the motion, at monitors of these names."""
         places = {name: self.scene.monitored[name] for name in names}
         return [*self._continuum(places), *self._walls(names)]
 

@@ -94,7 +94,7 @@ def wall_error(case: DiskCase, diameter: float) -> float:
 
 
 def _wall_error(case: DiskCase, hole: Hole, diameter: float) -> float:
-    """That of one hole."""
+    """Error of the motion beside the wall of one hole."""
     is_pressed = any(load.pressure is not None and case.hole_of(load) is hole for load in case.load)
     part = 1.0 if is_pressed else OF_WAVES
     if case.packing.is_lattice:

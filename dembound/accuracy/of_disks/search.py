@@ -82,7 +82,7 @@ def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
 
 
 def _before_breaks(companions: Companions) -> str:
-    """That errors are those before bonds break, if they do."""
+    """Words that errors are those before bonds break, where they do."""
     breaks = companions.first_break
     if breaks >= companions.case.run.duration:
         return ""

@@ -79,7 +79,7 @@ def modes_of(stiffness: np.ndarray) -> Modes:
 
 
 def modes_of_copies(stiffness: np.ndarray, shifts: np.ndarray) -> Modes:
-    """The same for bricks of several copies side by side, from the waves of each growth of phase from copy to copy.
+    """Modes of bricks of several copies side by side, from the waves of each growth of phase from copy to copy.
 
     shifts : (c, k, k/c) orthonormal motions of an interface for each of these, which contacts do not couple.
     """
