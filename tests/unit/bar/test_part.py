@@ -98,24 +98,6 @@ def test_a_run_may_be_cut_anywhere_every_break_is_told_once_and_the_books_close(
     assert (abs(ledger.entries[-1].law_switch) > 1e-6 * came_in) == (method["type"] in ("switch", "patch"))
 
 
-def test_another_run_goes_on_from_what_is_remembered(simulation, method: dict) -> None:
-    step = 45
-    whole, later = (simulation(probes=(20, 35), method=method) for _ in range(2))
-    whole.advance(step)
-    whole.system.take_cracks(step)
-    later.state.take(whole.state.arrays())
-
-    assert np.array_equal(later.advance(70 - step), whole.advance(70 - step))
-    assert later.state.laws == whole.state.laws
-    ours, theirs = whole.state.arrays(), later.state.arrays()
-    assert ours.keys() == theirs.keys()
-    for name in ours:
-        assert np.array_equal(ours[name], theirs[name]), name
-    ours, theirs = (part_of(run).take_cracks(70) for run in (whole, later))
-    assert len(ours.step) > 0
-    assert np.array_equal(ours.pair, theirs.pair)
-
-
 def test_laws_are_told_with_the_step_of_the_change(simulation) -> None:
     for kind, name in (("switch", "peridynamics, m = 3"), ("patch", "finite differences and peridynamics, m = 3")):
         run = simulation(method=METHODS[kind])

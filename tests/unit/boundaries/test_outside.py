@@ -80,10 +80,3 @@ def test_the_opposite_side_may_be_anything_but_a_free_field(kind: str) -> None:
     side = loads(f"{CASE}[boundary.right]\ntype = {kind}\n").side("left")
     assert side.is_artificial
     assert side.is_outside
-
-
-def test_a_hole_that_reaches_it_is_refused() -> None:
-    hole = '[[hole]]\nname = "h"\ntype = "circle"\nradius = 1.0\ncentre = '
-    with pytest.raises(CaseError, match=r"hole\[1, h\]: reaches boundary.left, where the continuum has no hole"):
-        build(loads(CASE + hole + "[0.5, 2.5]\n"))
-    assert build(loads(CASE + hole + "[5.0, 2.5]\n")).outside is not None

@@ -102,44 +102,24 @@ def test_a_broken_pair_across_the_seam_stays_listed_however_far_apart(scene) -> 
     assert set(column.arrays.state[seam_ends(beside) >> 1]) == {TENSION}
 
 
-def plain_near(
-    ground: DiskScene, skin: float, body: slice, period: float, displacement: np.ndarray
-) -> set[tuple[int, ...]]:
-    """Pairs of a part of the disks within the skin, at times a period apart, found by trying all: (i, j, periods)."""
-    here, radii = (ground.positions + displacement[:2].T)[body], ground.assembly.radii[body]
-    found = set()
-    for image in (-1, 0, 1) if period else (0,):
-        apart = np.hypot(*(here[None] + [image * period, 0.0] - here[:, None]).transpose(2, 0, 1))
-        for i, j in zip(*np.nonzero(apart - radii - radii[:, None] <= skin), strict=True):
-            if i != j or image:
-                there, back = (i + body.start, j + body.start, image), (j + body.start, i + body.start, -image)
-                found.add(tuple(int(number) for number in min(there, back)))
-    return found
+def keyed(ground: DiskScene, width: float, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> list[tuple]:
+    """Pairs (i, j, periods between), the same whichever way round they are listed."""
+    images = np.rint((vectors - (ground.positions[second] - ground.positions[first]))[:, 0] / width).astype(int)
+    pairs = zip(first.tolist(), second.tolist(), images.tolist(), strict=True)
+    return [min((i, j, image), (j, i, -image)) for i, j, image in pairs]
 
 
-def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple[int, ...]]:
-    """All pairs (i, j, periods) of a list as `plain_near` has them."""
-    pairs, places = contacts.arrays, ground.positions
-    beyond = pairs.constants[pairs.contact_type, :2] - (places[pairs.second] - places[pairs.first])
-    images = np.rint(beyond[:, 0] / width)
-    return [
-        tuple(int(number) for number in min((i, j, image), (j, i, -image)))
-        for i, j, image in zip(pairs.first.astype(int), pairs.second.astype(int), images, strict=True)
-    ]
+def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple]:
+    """All pairs of a list."""
+    pairs = contacts.arrays
+    return keyed(ground, width, pairs.first, pairs.second, pairs.constants[pairs.contact_type, :2])
 
 
-def twins_keys(lists: dict[str, ContactList], ground: DiskScene) -> list[tuple[int, ...]]:
-    """Of each pair (i, j, periods) of its twin in the column, as `plain_near` has them."""
-    places, twin = ground.positions, ground.seam.twin
-    first, second = twin[both(lists, "first")], twin[both(lists, "second")]
-    vectors = np.concatenate(
-        [contacts.arrays.constants[contacts.arrays.contact_type, :2] for contacts in lists.values()]
-    )
-    images = np.rint((vectors - (places[second] - places[first]))[:, 0] / ground.seam.width)
-    return [
-        tuple(int(number) for number in min((i, j, image), (j, i, -image)))
-        for i, j, image in zip(first, second, images, strict=True)
-    ]
+def twins_keys(lists: dict[str, ContactList], ground: DiskScene) -> list[tuple]:
+    """Of each pair that of its twins in the column."""
+    twin, rows = ground.seam.twin, [each.arrays.constants[each.arrays.contact_type, :2] for each in lists.values()]
+    ends = (twin[both(lists, name)] for name in ("first", "second"))
+    return keyed(ground, ground.seam.width, *ends, np.concatenate(rows))
 
 
 def copy_column(lists: dict[str, ContactList], column: ContactList, ground: DiskScene, moved: np.ndarray) -> None:

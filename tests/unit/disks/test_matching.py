@@ -25,10 +25,6 @@ def test_factors_make_up_for_another_speed(bar) -> None:
     assert homogenised_beta(scene, "right", "s") == pytest.approx(2.0, rel=1e-12)
 
 
-def test_a_motion_that_is_held_has_no_factor(bar) -> None:
-    assert np.isnan(homogenised_beta(build(bar()), "right", "s"))
-
-
 def test_reflection_by_the_impedance_relation() -> None:
     # a free end, a matched one, dashpots of three times the impedance
     assert [reflected(beta, 0.8) for beta in (0.0, 0.8, 2.4)] == pytest.approx([1.0, 0.0, -0.5], rel=1e-15)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from disk_systems import fitted, turn
 
 from dembound.kernels.follower import extra_work, side_rotation, side_rotations, turn_forces
 from dembound.kernels.tables import Followers
@@ -16,11 +17,6 @@ NODE = np.array([7, 9, 11, 12, 15, 16, 20])
 SIDE = np.array([[0, 0, 0, 1, 1, 2, 2], [-1, -1, 2, 2, -1, -1, -1]])
 """Of the particles with forces; the last one belongs to a side without being its member."""
 STEP = 0.1
-
-
-def turn(angle: float) -> np.ndarray:
-    """Rotation matrix (2, 2)."""
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 DATUM = np.random.default_rng(2).integers(-1024, 1024, (3, PARTICLES)) / 1024.0
@@ -67,14 +63,6 @@ def turned(places: np.ndarray, angle: float) -> np.ndarray:
     """Displacements (3, n) of a turn about a point outside."""
     centre = np.array([[3.0], [-2.0]])
     return np.vstack([(turn(angle) - np.eye(2)) @ (places - centre), np.zeros(PARTICLES)])
-
-
-def fitted(places: np.ndarray, moved: np.ndarray) -> float:
-    """The rotation that is nearest to the motion of some places (2, m), by the polar decomposition of Σ r ⊗ a."""
-    a, r = (x - x.mean(axis=1, keepdims=True) for x in (places, places + moved))
-    left, _, right = np.linalg.svd(r @ a.T)
-    rotation = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
-    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
 
 
 @pytest.mark.parametrize(("angle", "twinned"), [(1e-7, False), (2.0, False), (-0.3, True), (-2.5, True)])

@@ -149,21 +149,6 @@ def test_the_constants_do_not_grow_from_search_to_search(contacts: ContactList) 
         assert len(contacts.arrays.constants) == own + len(np.unique(contacts.arrays.contact_type[others]))
 
 
-def test_pairs_are_listed_in_one_order_whatever_went_before(scene) -> None:
-    straight, roundabout = list_of(scene("periodic")), list_of(scene("periodic"))
-    roundabout.search(shaken(roundabout, 0.3))
-    for contacts in (straight, roundabout):
-        contacts.search(still(contacts))
-        order = np.lexsort((contacts.arrays.second, contacts.arrays.first))
-        assert np.array_equal(order, np.arange(len(order)))
-    assert sorted(keys(straight)) == sorted(keys(roundabout))
-
-    again = list_of(scene("periodic"))
-    again.search(still(again))
-    for one, other in zip(straight.arrays, again.arrays, strict=True):
-        assert np.array_equal(one, other)
-
-
 def test_cracks_are_told_once_and_in_the_order_they_happened(scene) -> None:
     contacts = list_of(scene())
     pairs, moved = contacts.arrays, {step: shaken(contacts, 0.01, step) for step in (7, 9, 12)}

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.disks.contacts.row_plan import plan_rows
 from dembound.disks.scene import DiskScene, build
-from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import LaneRows
 
 LATTICE = {"pattern": "A", "size": [9.0, 2.0], "radius": 0.25}
@@ -34,18 +32,6 @@ def scene(bar, request) -> DiskScene:
 
 def lanes_of(scene: DiskScene) -> list[LaneRows]:
     return [rows for rows in scene.rows if isinstance(rows, LaneRows)]
-
-
-def test_disks_have_slots_of_their_own_in_rows_of_their_copies(scene: DiskScene) -> None:
-    slot, assembly = scene.layout.slot, scene.assembly
-    assert len(np.unique(slot)) == scene.count
-    assert slot.min() >= LANES
-    assert slot.max() < scene.layout.count - LANES
-    for name, nodes in scene.parts.items():
-        part = assembly.part(nodes)
-        plan = plan_rows(part)
-        key = plan.row * 1000 + part.brick_particle
-        assert len(np.unique(key)) == len(np.unique(plan.row)), name
 
 
 def test_forces_are_those_of_the_contacts_one_by_one(scene: DiskScene, in_order) -> None:

@@ -140,28 +140,6 @@ def test_what_balances_ends_on_what_has_broken_away(loose, why: int, ends: bool)
             assert np.array_equal(system.steady, steady)
 
 
-def test_a_system_goes_on_from_what_another_remembers(loose) -> None:
-    body = loose(**WITH_HISTORY)
-    start = settled(body, has_history=False)
-    system, other = DiskSystem(body, STEP, start), DiskSystem(body, STEP)
-    state = begun(system, start.displacement)
-    system.react(LAW_ENDS, 1, state)
-    memory = {name: np.array(values) for name, values in system.memory().items()}
-    begun(other)
-    other.recall(memory)
-    again = other.memory()
-
-    assert other.law_name == BONDED
-    assert other.turning is other.balance.followers
-    assert all(part.stops_at_breaks for part in other.parts)
-    assert again.keys() == memory.keys()
-    for name, values in memory.items():
-        assert np.array_equal(again[name], values)
-    # and it shares nothing with the memory
-    other.balance.force += 1.0
-    assert np.array_equal(memory["balance/force"], system.balance.force)
-
-
 def test_a_law_that_changes_in_good_time_changes_no_force(loose) -> None:
     body = loose(**WITH_HISTORY, **REFERENCE)
     system = DiskSystem(body, STEP)
