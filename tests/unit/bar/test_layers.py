@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from dembound.bar.layers import continued
 from dembound.bar.scene import build_bar
 from dembound.errors import CaseError
 from dembound.motion.simulation import Simulation
@@ -29,18 +28,6 @@ def pair(request, spalling):
     short = build_bar(spalling(common | ends(reflection=STILL)))
     longer = build_bar(spalling(common | {"bar.length": 0.025 * (40 + sum(NODES.values()))}))
     return short, longer
-
-
-def test_bonds_and_masses_are_those_of_a_longer_bar(pair) -> None:
-    """But for its ends, which are half cells and soft: 4 nodes, a horizon and one."""
-    short, longer = pair
-    bonds, other = (scene.case.method.begin(scene.rod) for scene in pair)
-    bands, mass, held = continued(short.layers, bonds.stiffness(), short.mass, np.array([2]))
-    inside = slice(4, -7)
-    scale = np.abs(other.stiffness()).max()
-    np.testing.assert_allclose(bands[:, inside], other.stiffness()[:, inside], rtol=0.0, atol=1e-13 * scale)
-    np.testing.assert_allclose(mass[1:-1], longer.mass[1:-1], rtol=1e-14)
-    assert held.tolist() == [2 + NODES["left"]]
 
 
 def test_motion_without_decay_is_that_of_a_longer_bar(pair) -> None:
