@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import FREE_FIELD, STEP, shaken
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build, column_alone
@@ -10,8 +11,6 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
 from dembound.motion.cracks import joined
 
-FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
-STEP = 1e-4
 RANDOM = {"size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 PACKINGS = {
     "A": {"pattern": "A", "size": [2.0, 1.5], "radius": 0.25},
@@ -37,11 +36,6 @@ def scene(bar, in_order):
 def beside(scene, request) -> DiskSystem:
     """Column and body."""
     return DiskSystem(scene(request.param), STEP)
-
-
-def shaken(body: DiskScene, size: float, seed: int = 1) -> np.ndarray:
-    """A random motion (3, n) m of all particles."""
-    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, body.count))
 
 
 def seam_ends(beside: DiskSystem) -> np.ndarray:

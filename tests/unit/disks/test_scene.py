@@ -50,15 +50,6 @@ def test_rows_and_constants_make_the_forces_of_the_assemblys_contacts(case: Case
     np.testing.assert_allclose(forces(scene, u), expected, atol=1e-13 * law.normal.max())
 
 
-def test_edges_are_the_outer_rows_with_their_lengths(bar) -> None:
-    edges = build(bar()).edges
-
-    assert list(edges) == ["left", "right", "bottom", "top"]
-    assert [len(edge.nodes) for edge in edges.values()] == [2, 2, 20, 20]
-    assert [edge.length for edge in edges.values()] == [1.0, 1.0, 10.0, 10.0]
-    assert all(edge.diameter_sum_ratio == 1.0 for edge in edges.values())
-
-
 def test_supports_come_from_all_sides_but_not_for_held_motions(bar) -> None:
     scene = build(bar({"boundary.bottom": {"type": "fixed"}, "motion.held": ["y", "rotation"]}))
     supports = scene.supports

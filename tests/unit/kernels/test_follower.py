@@ -78,19 +78,6 @@ def test_a_side_that_turns_as_one_has_turned_by_just_that(followers, angle: floa
         assert side_rotation(side, u, table) == pytest.approx(angle, rel=0.0, abs=1e-14)
 
 
-@pytest.mark.parametrize("twinned", [False, True])
-def test_of_a_side_that_bends_the_rotation_is_the_nearest_one(followers, twinned: bool) -> None:
-    table, places = followers(twinned=twinned)
-    moved = 3.0 * shaken()
-    for side, nodes in SIDES.items():
-        members = slice(table.start[side], table.start[side + 1])
-        relative = moved[:2, nodes] - (moved[:2, table.twin[members]] if twinned else 0.0)
-        # as above
-        assert side_rotation(side, DATUM + moved, table) == pytest.approx(
-            fitted(places[:, nodes], relative), rel=0.0, abs=1e-14
-        )
-
-
 def test_the_load_is_what_was_steady_with_its_forces_turned(followers) -> None:
     table, places = followers()
     u, v = DATUM + 3.0 * shaken(), shaken(3)

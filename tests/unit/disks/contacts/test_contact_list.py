@@ -251,15 +251,3 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene) -> None:
     forces_of(contacts, moved)
     forces_of(left, moved[:, kept])
     assert np.array_equal(contacts.force[among], left.force)
-
-
-def test_a_list_is_old_once_two_disks_may_have_closed_its_skin(contacts: ContactList) -> None:
-    count = len(contacts.assembly.radii)
-    for share, old in ((0.999, False), (1.001, True)):
-        moved = still(contacts) + 0.3  # all are carried along
-        moved[0, count // 2] -= share * contacts.skin  # towards any other one nearby
-        assert contacts.is_old(moved) == old
-
-    # counted from where it was made
-    contacts.search(moved)
-    assert not contacts.is_old(moved)

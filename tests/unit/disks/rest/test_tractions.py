@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from disk_systems import fitted, turn
+from disk_systems import fitted, shaken, turn
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.rest.tractions import Tractions
@@ -26,9 +26,8 @@ def random_body(bar):
     return make
 
 
-def moved(scene: DiskScene, seed: int = 1, size: float = 0.1) -> np.ndarray:
-    """Random displacements (3, n)."""
-    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, scene.count))
+def moved(scene: DiskScene, seed: int = 1) -> np.ndarray:
+    return shaken(scene, 0.1, seed)
 
 
 def turned(scene: DiskScene, angle: float) -> np.ndarray:

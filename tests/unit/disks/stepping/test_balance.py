@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disk_systems import fitted
+from disk_systems import fitted, turn
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
@@ -158,14 +158,13 @@ def test_on_a_box_in_the_ground_forces_turn_at_all_four_sides(scene) -> None:
         low, high = positions[axis, box].min(), positions[axis, box].max()
         across[axis, box] = np.isclose(positions[axis, box], low) * 1.0 - np.isclose(positions[axis, box], high)
     angle = 1e-3
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     moved = still.copy()
-    moved[:2, box] = (turn - np.eye(2)) @ arm[:, box]
+    moved[:2, box] = (turn(angle) - np.eye(2)) @ arm[:, box]
 
     assert mean_rotations(body, moved) == pytest.approx(dict.fromkeys(OPPOSITE, angle), rel=1e-9)
     balance, load = Balance(body, still, still, still, across), still.copy()
     turn_forces(balance.followers, moved, still, load, STEP)
-    np.testing.assert_allclose((across + load)[:2], turn @ across[:2], rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose((across + load)[:2], turn(angle) @ across[:2], rtol=0.0, atol=1e-15)
     places = arm + moved[:2]
     torque = np.sum(places[0] * (across + load)[1] - places[1] * (across + load)[0])
     assert abs(torque) < 1e-12
@@ -212,10 +211,8 @@ def test_what_is_left_of_the_sides_turns_by_its_own_rotation(scene) -> None:
     isolate(parts, debris)
     balance.end_on_debris(parts, datum.copy(), np.zeros((3, body.count)), STEP, steady + balance.force)
 
-    places, angle = body.positions.T + datum[:2], 0.3
-    turn = np.array([[np.cos(angle) - 1.0, -np.sin(angle)], [np.sin(angle), np.cos(angle) - 1.0]])
-    moved = datum.copy()
-    moved[:2] += turn @ places
+    places, angle, moved = body.positions.T + datum[:2], 0.3, datum.copy()
+    moved[:2] += (turn(angle) - np.eye(2)) @ places
     moved[:2, debris] += 7.0
     # some ten operations on numbers of size 1
     assert side_rotations(moved, balance.followers) == pytest.approx(np.full(4, angle), rel=1e-14)

@@ -1,4 +1,4 @@
-"""Bonded disks in motion: other loads, the change of law, debris, and what a checkpoint keeps."""
+"""Bonded disks in motion: other loads, and the change of law."""
 
 import numpy as np
 import pytest
@@ -20,8 +20,7 @@ from disk_systems import (
 
 from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.system import DiskSystem
-from dembound.kernels.common import BROKE, DONE, LAW_ENDS, LIST_ENDS
-from dembound.kernels.contacts import TENSION
+from dembound.kernels.common import DONE, LAW_ENDS, LIST_ENDS
 
 
 def test_other_loads_take_the_place_of_the_old_ones(loose) -> None:
@@ -114,30 +113,6 @@ def test_what_balances_turns_under_a_law_that_follows_the_motion(
     assert (system.turning is not None) == turns
     if turns:
         assert system.turning is system.balance.followers
-
-
-@pytest.mark.parametrize(("why", "ends"), [(BROKE, True), (LIST_ENDS, True), (DONE, False)])
-def test_what_balances_ends_on_what_has_broken_away(loose, why: int, ends: bool) -> None:
-    body = loose(**TOUGH)
-    for has_history in (True, False):
-        start, load = settled(body, has_history=has_history), shaken(body, 1.0, 5)
-        system = DiskSystem(body, STEP, start, load=load)
-        state = begun(system, start.displacement)
-        pairs, loose = system.parts[0].pairs, 0
-        broken = (pairs.first == loose) | (pairs.second == loose)
-        pairs.state[broken], pairs.cracked[broken], pairs.force[:, broken] = TENSION, 1, 0.0
-        force, steady = system.balance.force.copy(), system.steady.copy()
-        assert force[:, loose].all()
-        system.react(why, 1, state)
-
-        if ends and has_history:  # only the law with a history breaks bonds
-            assert not system.balance.force[:, loose].any()
-            # what is taken off has been added
-            scale = np.abs(force).max()
-            np.testing.assert_allclose(system.steady[:, loose], load[:, loose], rtol=0.0, atol=4.0 * EPS * scale)
-        else:
-            assert np.array_equal(system.balance.force, force)
-            assert np.array_equal(system.steady, steady)
 
 
 def test_a_law_that_changes_in_good_time_changes_no_force(loose) -> None:
