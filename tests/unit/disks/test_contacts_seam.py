@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from disk_systems import FREE_FIELD, STEP, shaken
+from disk_systems import BODY, FREE_FIELD, STEP, shaken
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build, column_alone
@@ -26,7 +26,7 @@ def scene(bar, in_order):
     """Makes scenes between free-field sides under the law with a history."""
 
     def make(packing: str = "B", **changes: object) -> DiskScene:
-        tables = {"packing": PACKINGS[packing], "boundary": FREE_FIELD, "wave": {}, "monitor": [], "motion.held": []}
+        tables = {**BODY, "packing": PACKINGS[packing], "boundary": FREE_FIELD}
         return in_order(build(bar({**tables, "material.law": "linearpbond", **changes})))
 
     return make
@@ -188,7 +188,7 @@ HALF = {"right": {"type": "viscous", "half_mass": True}}
 def half_cells(bar, **strength: float) -> tuple[ContactList, np.ndarray, np.ndarray]:
     """Four disks by two, those on the right half cells; which pairs are upright, and which of these on the right."""
     material = {"material.law": "linearpbond", "material.geometry": "reference", **strength}
-    tables = {"packing": LATTICE, "boundary": HALF, "wave": {}, "monitor": [], "motion.held": []}
+    tables = {**BODY, "packing": LATTICE, "boundary": HALF}
     contacts = contact_lists(build(bar({**tables, **material})))["body"]
     first, second = (contacts.assembly.positions[end, 0] for end in contacts.pairs)
     return contacts, first == second, (first == second) & (first == 1.75)

@@ -79,17 +79,6 @@ def test_every_contact_that_a_side_cuts_is_listed_once(brick, copies, sides) -> 
     assert listed(cut, body) == expected
 
 
-def test_vectors_point_outwards(random_brick) -> None:
-    body = tile(random_brick, (2, 2), OPEN)
-    cut = cut_contacts(random_brick, body, ("left", "bottom"))
-    ends = body.positions[cut.node] + cut.vectors(random_brick)
-    there = random_brick.positions[cut.other] + cut.tile * random_brick.size
-
-    np.testing.assert_allclose(ends, there, rtol=0.0, atol=1e-12 * body.size.max())
-    assert ((there < 0.0).any(axis=1)).all()
-    assert np.array_equal(cut.tile - cut.image, body.tile[cut.node])
-
-
 def test_periodic_sides_cut_nothing(brick) -> None:
     """A body that goes on sideways has the contacts of the middle bricks of a wider one."""
     periodic = tile(brick, (2, 2), (True, False))

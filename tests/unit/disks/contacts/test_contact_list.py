@@ -4,21 +4,19 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from disk_systems import BODY, TWO_BRICKS, WRAP
 
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION, UPDATED, note_places
+from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION, note_places
 
-WRAP = {"type": "periodic"}
 SIDES = {
     "open": {},
-    "periodic sideways": {"left": WRAP, "right": WRAP},
-    "periodic": {"left": WRAP, "right": WRAP, "bottom": WRAP, "top": WRAP},
+    "periodic sideways": {side: WRAP[side] for side in ("left", "right")},
+    "periodic": WRAP,
 }
-RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-LOCKED_IN = {"material.locked_in": 2e6, "static": {}}
 Key = tuple[int, int, int, int]
 
 
@@ -27,7 +25,7 @@ def scene(bar, in_order):
     """Makes scenes of the history-dependent law: a random packing, or changed."""
 
     def make(sides: str = "open", **changes: object) -> DiskScene:
-        tables = {"packing": RANDOM, "boundary": SIDES[sides], "wave": {}, "monitor": [], "motion.held": []}
+        tables = {**BODY, "packing": TWO_BRICKS, "boundary": SIDES[sides]}
         return in_order(build(bar({**tables, "material.law": "linearpbond", **changes})))
 
     return make
@@ -37,14 +35,6 @@ def list_of(body: DiskScene) -> ContactList:
     """The pairs of a scene without a column."""
     (pairs,) = contact_lists(body).values()
     return pairs
-
-
-def forces_of(contacts: ContactList, displacement: np.ndarray, *, reference: bool = False) -> np.ndarray:
-    """Forces and moments (3, n) at displacements (3, n) reached at rest."""
-    contacts.push(displacement, reference=reference)
-    total = np.zeros_like(displacement)
-    contacts.add_forces(total)
-    return total
 
 
 @pytest.fixture(params=SIDES)
@@ -189,21 +179,6 @@ def test_a_crack_across_the_seam_lies_at_the_seam(scene) -> None:
     assert min(abs(x), abs(x - 8.0)) < 0.3  # the largest radius
 
 
-def test_bonds_and_contacts_that_push_count_as_neighbours(scene) -> None:
-    contacts = list_of(scene(**LOCKED_IN))
-    forces_of(contacts, still(contacts))
-    pairs = contacts.arrays
-    radii = contacts.assembly.radii
-    overlaps = radii[pairs.first] + radii[pairs.second] > pairs.constants[pairs.contact_type, 2]
-    pairs.state[pairs.state == INTACT] = SHEAR
-    ends = np.concatenate([pairs.first[overlaps], pairs.second[overlaps]])
-
-    assert np.array_equal(contacts.coordination(UPDATED), np.bincount(ends, minlength=len(radii)))
-    pairs.state[~overlaps] = INTACT
-    everybody = np.concatenate([pairs.first, pairs.second])
-    assert np.array_equal(contacts.coordination(UPDATED), np.bincount(everybody, minlength=len(radii)))
-
-
 @pytest.mark.parametrize("share", [0.5, 1.0, 1.5])
 def test_arms_reach_to_the_contacts_and_to_the_ends_of_the_bonds(scene, share: float) -> None:
     body = scene(**{"material.pb_rmul": share})
@@ -248,6 +223,6 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene) -> None:
         assert np.array_equal(getattr(old, name)[among], getattr(new, name))
     assert np.array_equal(left.origin, moved[:2, kept])
     # the same pairs, so the same forces, across periodic sides as well
-    forces_of(contacts, moved)
-    forces_of(left, moved[:, kept])
+    contacts.push(moved)
+    left.push(moved[:, kept])
     assert np.array_equal(contacts.force[among], left.force)

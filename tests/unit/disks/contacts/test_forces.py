@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import BODY, DENSE, FREE_FIELD, WRAP
 
 from dembound.disks.contacts import forces as module
 from dembound.disks.contacts.arrays import plain_contacts
@@ -12,10 +13,7 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import INTACT, REFERENCE, SHEAR, TENSION
 from dembound.motion.simulation import Simulation
 
-FREE = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": [], "output.contacts": True}
-RANDOM = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
-FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+FREE = {**BODY, "output.contacts": True}
 STEP = 1e-5
 
 
@@ -69,7 +67,7 @@ def test_tension_is_positive_and_shear_pulls_the_first_disk_to_its_left(bar, alo
 @pytest.mark.parametrize(("boundary", "piece"), [({}, 50), (WRAP, module.PIECE)], ids=["free", "periodic"])
 def test_sums_over_contacts_are_the_forces_of_the_motion(bar, monkeypatch, boundary: dict, piece: int) -> None:
     monkeypatch.setattr(module, "PIECE", piece)
-    scene = build(bar({**FREE, "packing": RANDOM, "boundary": boundary}))
+    scene = build(bar({**FREE, "packing": DENSE, "boundary": boundary}))
     displacement = shaken(scene, 1e-4)
     columns = columns_of(scene, displacement)
     expected = DiskSystem(scene, STEP).forces.elastic(displacement)[:2]
@@ -86,7 +84,7 @@ BRITTLE = {**WITH_HISTORY, "material.pb_ten": 1e6, "material.pb_coh": 1e6}
 
 def broken(bar, **changes: object) -> Simulation:
     """A random packing under the history-dependent law after random velocities have broken some of its bonds."""
-    scene = build(bar({**FREE, "packing": RANDOM, **BRITTLE, "material.elastic_start": False, **changes}))
+    scene = build(bar({**FREE, "packing": DENSE, **BRITTLE, "material.elastic_start": False, **changes}))
     simulation = Simulation(scene, choose_step(scene)[0])
     simulation.state.velocity = shaken(scene, 0.4)
     simulation.advance(30)
@@ -117,7 +115,7 @@ def test_under_the_law_with_a_history_they_are_those_of_the_last_step(bar, geome
 
 
 def test_disks_of_a_column_are_numbered_as_in_the_scene(bar) -> None:
-    scene = build(bar({**FREE, **WITH_HISTORY, "packing": RANDOM, "boundary": FREE_FIELD}))
+    scene = build(bar({**FREE, **WITH_HISTORY, "packing": DENSE, "boundary": FREE_FIELD}))
     columns = columns_of(scene, np.zeros((3, scene.count)))
     in_column = columns["particles"] < scene.seam.count
 
@@ -130,8 +128,3 @@ def test_disks_of_a_column_are_numbered_as_in_the_scene(bar) -> None:
     size = np.abs(stress).max()
     np.testing.assert_allclose(stress[inside], stress[scene.seam.twin[inside]], rtol=0.0, atol=1e-12 * size)
     assert size > 0.0
-
-
-def test_they_are_there_only_if_the_case_asks_for_them(bar) -> None:
-    scene = build(bar({**FREE, "output.contacts": False}))
-    assert DiskSystem(scene, STEP).contact_forces(np.zeros((3, scene.count))) == {}

@@ -61,7 +61,9 @@ TEN = "of material.pb_ten, 5 MPa: Pa and MPa?"
 SUDDEN = STEP | {"boundary.left": GRIP} | lasting(1.01)
 TAPPED = {"load": [TAP | {"position": [5.0, 0.5], "force": [1.0, 0.0]}]}
 PRESSED = SLOW | TWO_WAYS | static(-1e6, -3e6, 0.5e6)
-UPRIGHT = GRIPPED | TWO_WAYS | {"boundary": {"bottom": GRIP, "top": {"type": "fixed"}}}
+FREE = {"type": "free"}
+ENDS = {"bottom": GRIP, "top": {"type": "fixed"}, "left": FREE, "right": FREE}
+UPRIGHT = GRIPPED | TWO_WAYS | {"boundary": ENDS}
 LIMITS = [
     # the mean frequency of a Hann lobe's energy, sin²πx/[πx(1 − x²)]² over x = fT, is 0.505/T
     (lasting(0.1), shortest(20.1), shortest(19.9), "has 19.9 particles in its shortest wavelength, fewer than 20"),

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disk_systems import fitted, turn
+from disk_systems import BODY, FREE_FIELD, TWO_BRICKS, fitted, turn
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
@@ -14,10 +14,7 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import TENSION
 from dembound.kernels.follower import extra_work, side_rotations, turn_forces
 
-BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": [], "material.law": "linearpbond"}
 LATTICE = {"pattern": "A", "size": [2.5, 2.0], "radius": 0.25}
-RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-FREE_FIELD = {"type": "free_field"}
 STEP = 0.1
 
 
@@ -26,7 +23,8 @@ def scene(bar, in_order):
     """Makes five disks by four that nothing holds, or other packings under other boundaries."""
 
     def make(packing: dict = LATTICE, ground: dict | None = None, **boundary: dict) -> DiskScene:
-        return in_order(build(bar({**BODY, "packing": packing, "boundary": boundary, **(ground or {})})))
+        law = {"material.law": "linearpbond"}
+        return in_order(build(bar({**BODY, **law, "packing": packing, "boundary": boundary, **(ground or {})})))
 
     return make
 
@@ -88,7 +86,7 @@ def test_sides_turn_by_their_mean_with_the_opposite_one(scene) -> None:
 
 @pytest.mark.parametrize("sides", [("left", "right"), ("right",)])
 def test_beside_a_free_field_forces_turn_with_the_body_relative_to_its_column(scene, sides: tuple[str, ...]) -> None:
-    body = scene(RANDOM, **{side: FREE_FIELD for side in sides})
+    body = scene(TWO_BRICKS, **{side: FREE_FIELD[side] for side in sides})
     count = body.seam.count
     # a disk of the right side, which has contacts beyond it, counts as no disk of that side
     right = body.edges["right"]
@@ -266,7 +264,7 @@ def test_the_work_goes_on_from_where_forces_end(scene) -> None:
 
 
 def test_what_keeps_coming_through_a_seam_is_taken_off(scene) -> None:
-    body = scene(RANDOM, left=FREE_FIELD, right=FREE_FIELD)
+    body = scene(TWO_BRICKS, **FREE_FIELD)
     across = np.zeros((3, body.count))
     across[:, body.seam.node] = np.random.default_rng(7).uniform(-1.0, 1.0, (3, len(body.seam.node)))
     parts, (balance, steady) = parts_of(body), balance_of(body, across)
