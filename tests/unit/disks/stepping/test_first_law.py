@@ -17,7 +17,6 @@ from disk_systems import (
     shaken,
 )
 
-from dembound.disks.stepping.start import Start
 from dembound.disks.stepping.system import DiskSystem
 
 
@@ -83,11 +82,3 @@ def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(loose,
     assert np.abs(found).max() > 1e6 * 20.0 * EPS * scale
     assert [part.name for part in system.parts] == (["column", "body"] if boundary else ["body"])
     assert len(system.ties) == bool(boundary)
-
-
-def test_displacements_of_a_start_lie_row_after_row_in_memory() -> None:
-    """As those that are read from a record do: sums of them then have one order of terms."""
-    moved = np.arange(12.0).reshape(4, 3).T
-    assert not moved.flags.c_contiguous
-    assert Start(moved).displacement.flags.c_contiguous
-    assert np.array_equal(Start(moved).displacement, moved)

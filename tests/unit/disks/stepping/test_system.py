@@ -1,4 +1,4 @@
-"""Bonded disks in motion: other loads, and the change of law."""
+"""Bonded disks in motion: the change of law."""
 
 import numpy as np
 import pytest
@@ -21,22 +21,6 @@ from disk_systems import (
 from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import DONE, LAW_ENDS, LIST_ENDS
-
-
-def test_other_loads_take_the_place_of_the_old_ones(loose) -> None:
-    for changes in ({}, WITH_HISTORY):
-        body = loose(**changes)
-        system = DiskSystem(body, STEP, settling=True)
-        begun(system)
-        before = system.steady.copy() if changes else np.zeros((3, body.count))
-        for seed in (5, 6):
-            load = shaken(body, 1.0, seed)
-            system.apply(load)
-            # a difference of differences
-            np.testing.assert_allclose(
-                system.steady, before + load, rtol=0.0, atol=4.0 * EPS * np.abs(before).max() + 4.0 * EPS
-            )
-            assert system.load is load
 
 
 @pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
