@@ -4,18 +4,21 @@ import numpy as np
 import pytest
 from settling import FIXED, MASS, STANDING, WRAP, G, scene
 
+from dembound.disks.rest import until_at_rest
 from dembound.disks.rest.loading import LOOK
 from dembound.disks.rest.stage import settle
-from dembound.disks.rest.until_at_rest import PATIENCE
 from dembound.errors import RunError
 from dembound.motion.kind import StalledError
 
+PATIENCE = 10_000
 
-def test_a_body_that_slides_without_end_stalls(bar) -> None:
+
+def test_a_body_that_slides_without_end_stalls(bar, monkeypatch) -> None:
     # two rows of loose disks of which the upper, held at its height, has nothing to stop it
     loose = {"material.law": "linearpbond", "material.contact_share": 1.0, "material.fric": 0.1}
     push = {"name": "push", "acceleration": [G, 0.0]}
     changes = {"packing.size": [1.0, 1.0], "motion.held": ["y", "rotation"], "boundary": WRAP, "load": [push]}
+    monkeypatch.setattr(until_at_rest, "PATIENCE", PATIENCE)
     looks: list[float] = []
     with pytest.raises(RunError, match=r"stalls at a force ratio of (?s:.*)is the body held") as caught:
         settle(scene(bar, **{**changes, **loose}), lambda _, ratio: looks.append(ratio))
