@@ -1,28 +1,15 @@
 """Sides with a continuum beyond them: what cannot be beside them."""
 
 import pytest
+from small_cases import BODY
 
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import loads
 
-BODY = """
-[packing]
-pattern = "A"
-size = [10.0, 5.0]
-radius = 0.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[wave.w]
-type = "cosine"
-amplitude = 1.0
-period = 0.1
-[run]
-duration = 0.1
-"""
-CASE = BODY + '[boundary.left]\ntype = "outside"\n'
-BELOW = BODY + '[boundary.bottom]\ntype = "outside"\nwave_s = "w"\n'
+WAVES = BODY + '[wave.w]\ntype = "cosine"\namplitude = 1.0\nperiod = 0.1\n'
+CASE = WAVES + '[boundary.left]\ntype = "outside"\n'
+BELOW = WAVES + '[boundary.bottom]\ntype = "outside"\nwave_s = "w"\n'
 PERIODIC = '[boundary.left]\ntype = "periodic"\n[boundary.right]\ntype = "periodic"\n'
 
 
