@@ -25,6 +25,16 @@ TOUGH = {"material.law": "linearpbond", "material.fric": 0.5}
 WITH_HISTORY = {**TOUGH, "material.locked_in": 10e6, "static": {}}
 """Contacts that the locked-in stress keeps closed."""
 
+LAMB = {
+    "packing": {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5},
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "motion.held": [],
+    "monitor": [],
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.2}},
+    "load": [{"name": "f", "position": [20.5, 19.5], "force": [0.0, -1e6], "wave": "pulse"}],
+}
+"""Changes of the small bar into Lamb's problem on 40 m × 20 m of a lattice in a continuum."""
+
 AT_ONCE = {"material.elastic_start": False}
 REFERENCE = {"material.geometry": "reference"}
 WEIGHT = {

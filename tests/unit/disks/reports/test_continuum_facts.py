@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from disk_systems import LAMB
 
 from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.bragg import sent_back
@@ -19,19 +20,8 @@ RANDOM = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1
 
 @pytest.fixture
 def case(bar):
-    """Lamb's problem on 40 m × 20 m of a lattice with c_p = 1000 m/s, c_s = 707 m/s."""
-    return bar(
-        {
-            "packing": {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5},
-            "material.fric": 0.5,
-            "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
-            "motion.held": [],
-            "monitor": [],
-            "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.2}},
-            "load": [{"name": "f", "position": [20.5, 19.5], "force": [0.0, -1e6], "wave": "pulse"}],
-            "run.duration": 10.0,
-        }
-    )
+    """With c_p = 1000 m/s, c_s = 707 m/s."""
+    return bar(LAMB | {"material.fric": 0.5, "run.duration": 10.0})
 
 
 def facts_of(case, **changes) -> dict[str, str]:
