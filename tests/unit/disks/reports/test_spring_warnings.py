@@ -2,17 +2,11 @@
 
 import pytest
 from small_cases import small
+from warned_cases import GROUND
 
 from dembound.disks.reports.spring_warnings import spring_warnings
 from dembound.disks.scene import build
 
-GROUND = {
-    "packing": {"pattern": "A", "size": [20.0, 10.0], "radius": 0.5},
-    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
-    "boundary": {"bottom": {"type": "viscoelastic", "distance": 10.0}},
-    "wave": {"blow": {"type": "cosine", "amplitude": 1.0, "period": 0.05}},
-    "run": {"duration": 0.01},
-}
 BLOW = {"name": "blow", "force": [0.0, -1e5], "position": [9.5, 9.5], "wave": "blow"}
 PRESS = {"name": "press", "pressure": 1e5, "hole": "cavity", "wave": "blow"}
 CAVITY = {"name": "cavity", "type": "circle", "centre": [10.0, 5.0], "radius": 2.0}

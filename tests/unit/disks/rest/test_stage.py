@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import DENSE
 from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
 
 from dembound.disks.rest.loading import LOOK
@@ -91,9 +92,6 @@ def test_bonds_may_break_on_the_way_and_stay_broken(bar) -> None:
     assert np.count_nonzero(settled.start.contacts["body"].arrays.state == TENSION) == 1
 
 
-PACKED = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-
-
 NICHE = {"hole": [{"name": "niche", "type": "circle", "centre": [2.0, 4.0], "radius": 0.7}]}
 """A hole in the top, beside which the ground comes to rest otherwise than the column."""
 
@@ -105,7 +103,7 @@ def packed_ground(bar, sides: str | None, **changes: object) -> DiskScene:
     supports = {"bottom": FIXED} | ({} if sides is None else {side: {"type": sides} for side in ("left", "right")})
     boundary = {side: {"type": "free_field"} for side in ("left", "right")}
     static = {"ratio": 1e-7, "boundary": supports}
-    return scene(bar, packing=PACKED, boundary=boundary, static=static, **LOCKED_IN, **changes)
+    return scene(bar, packing=DENSE, boundary=boundary, static=static, **LOCKED_IN, **changes)
 
 
 @pytest.mark.parametrize(("sides", "still"), [("fixed", [0, 1]), ("roller", [0])])

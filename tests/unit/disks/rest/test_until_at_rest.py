@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import DENSE
 from settling import FIXED, MASS, STANDING, WRAP, G, scene
 
 from dembound.disks.rest import until_at_rest
@@ -120,9 +121,8 @@ def test_what_dashpots_alone_hold_lacks_its_force(bar) -> None:
 
 
 def test_a_floating_body_is_kept_from_moving_and_turning_as_a_whole(bar) -> None:
-    uneven = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
     static = {"ratio": 1e-8, "max_steps": LOOK // 2, "stress": [-3e6, 2e6, 1e6]}
-    body = scene(bar, packing=uneven, static=static)
+    body = scene(bar, packing=DENSE, static=static)
     with pytest.raises(StalledError) as caught:  # right after a look
         settle(body)
     state = caught.value.run.state
