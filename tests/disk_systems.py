@@ -15,10 +15,25 @@ STEP = 1e-4
 EPS = np.finfo(float).eps
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 SIDES = {"free": {}, "free field": FREE_FIELD}
+WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
+BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
+"""Changes by which nothing holds or drives the small bar of disks."""
+
 DENSE = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+TWO_BRICKS = DENSE | {"size": [8.0, 4.0]}
 TOUGH = {"material.law": "linearpbond", "material.fric": 0.5}
 WITH_HISTORY = {**TOUGH, "material.locked_in": 10e6, "static": {}}
 """Contacts that the locked-in stress keeps closed."""
+
+LAMB = {
+    "packing": {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5},
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "motion.held": [],
+    "monitor": [],
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.2}},
+    "load": [{"name": "f", "position": [20.5, 19.5], "force": [0.0, -1e6], "wave": "pulse"}],
+}
+"""Changes of the small bar into Lamb's problem on 40 m × 20 m of a lattice in a continuum."""
 
 AT_ONCE = {"material.elastic_start": False}
 REFERENCE = {"material.geometry": "reference"}

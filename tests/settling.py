@@ -1,12 +1,13 @@
 """Small bodies of a lattice in a static stage."""
 
+from disk_systems import BODY
+
 from dembound.disks.scene import DiskScene, build
 
 G = 9.81
 MASS = 2500.0 * 0.5**2
 """Of a disk, kg."""
 
-BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
 FIXED = {"type": "fixed"}
 WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -G]}]}
 STANDING = {**BODY, **WEIGHT, "packing.size": [1.0, 2.0]}

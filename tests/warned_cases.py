@@ -14,6 +14,14 @@ DENSE = {
 }
 """A packing with its default of 10 MPa locked in."""
 
+GROUND = {
+    "packing": {"pattern": "A", "size": [20.0, 10.0], "radius": 0.5},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
+    "wave": {"blow": {"type": "cosine", "amplitude": 1.0, "period": 0.05}},
+    "run": {"duration": 0.01},
+}
+"""Ground for a blow."""
+
 
 def warned(case: Case) -> list[str]:
     """The warnings about a case before its run."""

@@ -5,8 +5,6 @@ import pytest
 
 from dembound.bar.facts import bar_facts, cells_of_waves
 from dembound.bar.scene import build_bar
-from dembound.bar.warnings import bar_warnings
-from dembound.check import check
 from dembound.exact.dispersion import cells_per_wavelength, courant_limit
 from dembound.running import plan
 
@@ -88,13 +86,3 @@ def test_waves_count_where_they_load_the_bar_or_enter_it(spalling) -> None:
 
     assert set(cells) == {"hit", "in"}
     assert cells["hit"][0] == 0.0 < cells["hit"][1] < np.inf
-
-
-def test_check_tells_of_the_run_and_the_bar(spalling) -> None:
-    facts, warnings = check(spalling())
-
-    assert facts["steps"] == "60 for 0.0015 s"
-    assert facts["time step"].startswith("2.5e-05 s, ")
-    assert facts["estimated time"] == "less than 1 s with 1 thread, without building, pictures"
-    assert facts["nodes"] == "41, 0.025 m apart"
-    assert warnings == bar_warnings(build_bar(spalling()), 2.5e-5)

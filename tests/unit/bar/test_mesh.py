@@ -6,7 +6,6 @@ import pytest
 import pyvista
 
 from dembound.bar.kind import Bars
-from dembound.bar.mesh import broken_across
 from dembound.results.vtk import write_paraview
 
 
@@ -20,12 +19,6 @@ def exported(spalled_run, tmp_path_factory):
         file["particles/peak_velocity"] = np.linspace(0.0, 3.0, 41)
     write_paraview(run, folder / "paraview", Bars())
     return folder / "paraview"
-
-
-def test_a_broken_bond_counts_on_every_plane_between_its_nodes():
-    pairs = np.array([[0, 1], [0, 3], [4, 2]])
-    np.testing.assert_array_equal(broken_across(pairs, 6), [2, 1, 2, 1, 0])
-    np.testing.assert_array_equal(broken_across(np.empty((0, 2), dtype=int), 3), [0, 0])
 
 
 @pytest.mark.parametrize("number", ["0003", "0011"])

@@ -25,14 +25,6 @@ def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
     assert bar_ram.opening_bytes(nodes, lengths) == sum(each.nbytes for each in listed)
 
 
-def test_memory_grows_with_nodes_lengths_of_bonds_and_snapshots(spalling) -> None:
-    def need(**changes) -> float:
-        return bar_ram.run_bytes(spalling({"bar.spacing": 1e-6, "output.snapshots": 2, **changes}))
-
-    assert need(**{"bar.spacing": 2e-6}) < need() < need(**{"method.horizon": 6})
-    assert need(**{"output.snapshots": 0}) < need()
-
-
 def test_a_bar_too_large_is_refused_before_its_nodes_are_placed(spalling, monkeypatch) -> None:
     monkeypatch.setattr(ram, "memory_here", lambda: Memory(300e6, 250e6))
     said = r"^bar.spacing: 1,000,001 nodes with a horizon of 3 spacings need about \d+ MB of "

@@ -48,21 +48,11 @@ def test_a_bar_and_its_ends_in_numbers(spalling) -> None:
     ends = {"boundary.left": {"type": "fixed"}, "boundary.right": {"type": "viscous", "beta_p": 0.9}, "load": []}
     scene = build_bar(spalling({"bar.section": 0.5, "bar.attenuation": 0.1, **ends}))
 
-    assert describe_bar(scene) == {
-        "length": 1.0,
-        "spacing": 0.025,
-        "section": 0.5,
-        "density": 2500.0,
-        "youngs_modulus": 2.5e9,
-        "wave_speed": 1000.0,
-        "impedance": 2.5e6,
-        "critical_stretch": 8e6 / 2.5e9,
-        "strength": pytest.approx(8e6, rel=1e-15),
-        "attenuation": 0.1,
-        "fracture_energy": None,
-        "crack_opening": None,
-        "characteristic_length": None,
-    }
+    described = describe_bar(scene)
+    assert (described["youngs_modulus"], described["impedance"], described["section"]) == (2.5e9, 2.5e6, 0.5)
+    assert described["critical_stretch"] == 8e6 / 2.5e9
+    assert described["strength"] == pytest.approx(8e6, rel=1e-15)
+    assert described["fracture_energy"] is described["crack_opening"] is described["characteristic_length"] is None
     assert describe_end(scene, "left") == {"type": "fixed"}
     assert describe_end(scene, "right") == {"type": "viscous", "beta_p": 0.9}
     bar = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}

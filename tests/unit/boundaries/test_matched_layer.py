@@ -28,11 +28,3 @@ def test_usual_reflections(nodes: int, reflection: float) -> None:
     for keys in ({"nodes": 3}, {"power": 0.5}, {"reflection": 0.0}, {"reflection": 1.0}, {"nodes": 20_000}):
         with pytest.raises(ValidationError):
             MatchedLayer(type="matched_layer", **keys)
-
-
-def test_it_stands_in_for_more_of_the_bar() -> None:
-    table = MatchedLayer(type="matched_layer", wave_p="pulse")
-    assert table.is_artificial
-    assert table.waves == {"p": "pulse"}
-    assert table.at_rest().waves == {}
-    assert table.at_rest().layer == table.layer

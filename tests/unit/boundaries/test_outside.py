@@ -1,28 +1,15 @@
 """Sides with a continuum beyond them: what cannot be beside them."""
 
 import pytest
+from small_cases import BODY
 
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import loads
 
-BODY = """
-[packing]
-pattern = "A"
-size = [10.0, 5.0]
-radius = 0.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[wave.w]
-type = "cosine"
-amplitude = 1.0
-period = 0.1
-[run]
-duration = 0.1
-"""
-CASE = BODY + '[boundary.left]\ntype = "outside"\n'
-BELOW = BODY + '[boundary.bottom]\ntype = "outside"\nwave_s = "w"\n'
+WAVES = BODY + '[wave.w]\ntype = "cosine"\namplitude = 1.0\nperiod = 0.1\n'
+CASE = WAVES + '[boundary.left]\ntype = "outside"\n'
+BELOW = WAVES + '[boundary.bottom]\ntype = "outside"\nwave_s = "w"\n'
 PERIODIC = '[boundary.left]\ntype = "periodic"\n[boundary.right]\ntype = "periodic"\n'
 
 
@@ -80,10 +67,3 @@ def test_the_opposite_side_may_be_anything_but_a_free_field(kind: str) -> None:
     side = loads(f"{CASE}[boundary.right]\ntype = {kind}\n").side("left")
     assert side.is_artificial
     assert side.is_outside
-
-
-def test_a_hole_that_reaches_it_is_refused() -> None:
-    hole = '[[hole]]\nname = "h"\ntype = "circle"\nradius = 1.0\ncentre = '
-    with pytest.raises(CaseError, match=r"hole\[1, h\]: reaches boundary.left, where the continuum has no hole"):
-        build(loads(CASE + hole + "[0.5, 2.5]\n"))
-    assert build(loads(CASE + hole + "[5.0, 2.5]\n")).outside is not None

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import BODY, FREE_FIELD, STEP, shaken
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build, column_alone
@@ -10,8 +11,6 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
 from dembound.motion.cracks import joined
 
-FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
-STEP = 1e-4
 RANDOM = {"size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 PACKINGS = {
     "A": {"pattern": "A", "size": [2.0, 1.5], "radius": 0.25},
@@ -27,7 +26,7 @@ def scene(bar, in_order):
     """Makes scenes between free-field sides under the law with a history."""
 
     def make(packing: str = "B", **changes: object) -> DiskScene:
-        tables = {"packing": PACKINGS[packing], "boundary": FREE_FIELD, "wave": {}, "monitor": [], "motion.held": []}
+        tables = {**BODY, "packing": PACKINGS[packing], "boundary": FREE_FIELD}
         return in_order(build(bar({**tables, "material.law": "linearpbond", **changes})))
 
     return make
@@ -37,11 +36,6 @@ def scene(bar, in_order):
 def beside(scene, request) -> DiskSystem:
     """Column and body."""
     return DiskSystem(scene(request.param), STEP)
-
-
-def shaken(body: DiskScene, size: float, seed: int = 1) -> np.ndarray:
-    """A random motion (3, n) m of all particles."""
-    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, body.count))
 
 
 def seam_ends(beside: DiskSystem) -> np.ndarray:
@@ -102,44 +96,24 @@ def test_a_broken_pair_across_the_seam_stays_listed_however_far_apart(scene) -> 
     assert set(column.arrays.state[seam_ends(beside) >> 1]) == {TENSION}
 
 
-def plain_near(
-    ground: DiskScene, skin: float, body: slice, period: float, displacement: np.ndarray
-) -> set[tuple[int, ...]]:
-    """Pairs of a part of the disks within the skin, at times a period apart, found by trying all: (i, j, periods)."""
-    here, radii = (ground.positions + displacement[:2].T)[body], ground.assembly.radii[body]
-    found = set()
-    for image in (-1, 0, 1) if period else (0,):
-        apart = np.hypot(*(here[None] + [image * period, 0.0] - here[:, None]).transpose(2, 0, 1))
-        for i, j in zip(*np.nonzero(apart - radii - radii[:, None] <= skin), strict=True):
-            if i != j or image:
-                there, back = (i + body.start, j + body.start, image), (j + body.start, i + body.start, -image)
-                found.add(tuple(int(number) for number in min(there, back)))
-    return found
+def keyed(ground: DiskScene, width: float, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> list[tuple]:
+    """Pairs (i, j, periods between), the same whichever way round they are listed."""
+    images = np.rint((vectors - (ground.positions[second] - ground.positions[first]))[:, 0] / width).astype(int)
+    pairs = zip(first.tolist(), second.tolist(), images.tolist(), strict=True)
+    return [min((i, j, image), (j, i, -image)) for i, j, image in pairs]
 
 
-def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple[int, ...]]:
-    """All pairs (i, j, periods) of a list as `plain_near` has them."""
-    pairs, places = contacts.arrays, ground.positions
-    beyond = pairs.constants[pairs.contact_type, :2] - (places[pairs.second] - places[pairs.first])
-    images = np.rint(beyond[:, 0] / width)
-    return [
-        tuple(int(number) for number in min((i, j, image), (j, i, -image)))
-        for i, j, image in zip(pairs.first.astype(int), pairs.second.astype(int), images, strict=True)
-    ]
+def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple]:
+    """All pairs of a list."""
+    pairs = contacts.arrays
+    return keyed(ground, width, pairs.first, pairs.second, pairs.constants[pairs.contact_type, :2])
 
 
-def twins_keys(lists: dict[str, ContactList], ground: DiskScene) -> list[tuple[int, ...]]:
-    """Of each pair (i, j, periods) of its twin in the column, as `plain_near` has them."""
-    places, twin = ground.positions, ground.seam.twin
-    first, second = twin[both(lists, "first")], twin[both(lists, "second")]
-    vectors = np.concatenate(
-        [contacts.arrays.constants[contacts.arrays.contact_type, :2] for contacts in lists.values()]
-    )
-    images = np.rint((vectors - (places[second] - places[first]))[:, 0] / ground.seam.width)
-    return [
-        tuple(int(number) for number in min((i, j, image), (j, i, -image)))
-        for i, j, image in zip(first, second, images, strict=True)
-    ]
+def twins_keys(lists: dict[str, ContactList], ground: DiskScene) -> list[tuple]:
+    """Of each pair that of its twins in the column."""
+    twin, rows = ground.seam.twin, [each.arrays.constants[each.arrays.contact_type, :2] for each in lists.values()]
+    ends = (twin[both(lists, name)] for name in ("first", "second"))
+    return keyed(ground, ground.seam.width, *ends, np.concatenate(rows))
 
 
 def copy_column(lists: dict[str, ContactList], column: ContactList, ground: DiskScene, moved: np.ndarray) -> None:
@@ -214,7 +188,7 @@ HALF = {"right": {"type": "viscous", "half_mass": True}}
 def half_cells(bar, **strength: float) -> tuple[ContactList, np.ndarray, np.ndarray]:
     """Four disks by two, those on the right half cells; which pairs are upright, and which of these on the right."""
     material = {"material.law": "linearpbond", "material.geometry": "reference", **strength}
-    tables = {"packing": LATTICE, "boundary": HALF, "wave": {}, "monitor": [], "motion.held": []}
+    tables = {**BODY, "packing": LATTICE, "boundary": HALF}
     contacts = contact_lists(build(bar({**tables, **material})))["body"]
     first, second = (contacts.assembly.positions[end, 0] for end in contacts.pairs)
     return contacts, first == second, (first == second) & (first == 1.75)

@@ -20,41 +20,13 @@ HANGING = {
 NICHE = {"name": "niche", "type": "rectangle", "corners": [1.0, 0.5, 2.0, 1.1], "stage": "after"}
 """Two disks of the upper row."""
 
-STEP = 1e-4
-
-
-def begun(case):
-    """The scene of a case, where its run begins, and the looks at its static stage."""
-    looks: list[tuple[int, float]] = []
-    scene = Disks().build(case)
-    return scene, Disks().begin(scene, STEP, lambda *look: looks.append(look)), looks
-
-
-def test_a_run_begins_where_its_static_stage_has_come_to_rest(bar) -> None:
-    _, beginning, looks = begun(bar(HANGING))
-    settled = settle(Disks().build(bar(HANGING)))
-
-    (stage,) = beginning.stages
-    assert stage.name == "static"
-    assert looks[-1] == (stage.facts["steps"], stage.facts["ratio"]) == (settled.steps, settled.ratio)
-    assert (stage.facts["mean_reaction"], stage.facts["mean_residual"]) == (
-        settled.mean_reaction,
-        settled.mean_residual,
-    )
-    assert stage.facts["cracks"] == len(stage.cracks) == 0
-    assert np.array_equal(stage.facts["stress"], settled.stress)
-    assert np.array_equal(stage.displacement, settled.start.displacement)
-    assert np.array_equal(beginning.datum, stage.displacement)
-    assert beginning.datum[0].max() > 0.0
-    assert beginning.summary["steps"] == settled.steps
-    assert beginning.summary["before"] is beginning.summary["asked"] is None
-
 
 def test_the_stage_before_an_excavation_is_told_of_the_disks_that_are_left(bar) -> None:
     weak = {"material.law": "linearpbond", "material.pb_ten": 0.3 * 19 * 625.0 * 9.81 / 0.5}
     held = {"boundary.right": {"type": "fixed"}, "static.boundary.right": {"type": "fixed"}}
     case = bar({**HANGING, **held, **weak, "hole": [NICHE]})
-    scene, beginning, _ = begun(case)
+    scene = Disks().build(case)
+    beginning = Disks().begin(scene, 1e-4, lambda *look: None)
     settled = settle(Disks().build(case))
 
     before, last = beginning.stages

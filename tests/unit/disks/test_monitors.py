@@ -4,43 +4,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_cases import small
 
 from dembound.disks.monitors import monitors_of
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
-from dembound.kinds import loads, with_changes
 from dembound.packings.column import with_column
 
-CASE = """
-[packing]
-pattern = "A"
-size = [8.0, 4.0]
-radius = 0.25
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[boundary]
-left = { type = "outside" }
-right = { type = "outside" }
-bottom = { type = "outside" }
-[outside]
-element = 2.0
-margin = 2
-[wave.pulse]
-type = "cosine"
-amplitude = 1.0
-period = 0.05
-[run]
-duration = 0.1
-"""
-
+CASE = {
+    "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "outside": {"element": 2.0, "margin": 2},
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}},
+    "run": {"duration": 0.1},
+}
 GRAINS = {"packing": {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}}
 
 
 def scene_of(places: dict[str, tuple[float, float]], changes: dict | None = None) -> DiskScene:
     """Elements of 2 m; absorbing ones begin at x = −4 m, 12 m and y = −4 m."""
     monitor = [{"name": name, "position": list(place)} for name, place in places.items()]
-    return build(with_changes(loads(CASE), {"monitor": monitor} | (changes or {})))
+    return build(small(CASE, changes={"monitor": monitor} | (changes or {})))
 
 
 def moved(scene: DiskScene, motion: np.ndarray) -> dict[str, np.ndarray]:

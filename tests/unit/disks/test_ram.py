@@ -1,6 +1,7 @@
 """Memory is counted from the shapes of arrays, and numbers of disks and contacts are known before a scene is built."""
 
 import pytest
+from disk_systems import LAMB
 from small_cases import SURROUNDED, small
 
 from dembound.disks.contacts import layout
@@ -101,18 +102,8 @@ def test_a_scene_too_large_is_refused_before_its_brick_is_packed(bar, monkeypatc
         build(case)
 
 
-OUTSIDE = {
-    "packing": {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5},
-    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
-    "load": [{"name": "f", "position": [20.5, 19.5], "force": [0.0, -1e6], "wave": "pulse"}],
-    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.2}},
-    "monitor": [],
-    "motion.held": [],
-}
-
-
 def test_the_continuum_is_known_before_the_scene_is_built(bar) -> None:
-    case = bar(OUTSIDE | {"outside": {"element": 5.0, "margin": 20}})
+    case = bar(LAMB | {"outside": {"element": 5.0, "margin": 20}})
     scene = build(case)
     expected, sizes = SceneSizes.expected(case), scene.sizes
 

@@ -3,60 +3,13 @@
 import numpy as np
 import pytest
 
-from dembound.casefile import Case
-from dembound.disks.scene import DiskScene, boundary_medium, build, with_boundaries
+from dembound.disks.scene import boundary_medium, build, with_boundaries
 from dembound.errors import CaseError, PackingError
 
 RANDOM = {
     "packing": {"pattern": "B", "size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
     "motion.held": [],
 }
-
-
-LATTICE = {"motion.held": []}
-KINDS = {"lattice": LATTICE, "half cells": {**LATTICE, "boundary.right.half_mass": True}, "random": RANDOM}
-
-
-@pytest.fixture(params=KINDS)
-def case(bar, request) -> Case:
-    return bar(KINDS[request.param])
-
-
-def forces(scene: DiskScene, u: np.ndarray) -> np.ndarray:
-    return scene.system(1.0).forces.elastic(u)
-
-
-def test_rows_and_constants_make_the_forces_of_the_assemblys_contacts(case: Case) -> None:
-    scene = build(case)
-    body, law = scene.assembly, scene.ground.stiffness
-    halves = scene.edges["right"].nodes if case.boundary["right"].half_mass else []
-    u = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
-    expected = np.zeros_like(u)
-    for (i, j), k in zip(body.pairs, body.contact_type % len(law.normal), strict=True):
-        share = 0.5 if i in halves and j in halves else 1.0
-        along = body.positions[j] - body.positions[i]
-        n = along / np.hypot(*along)
-        t = np.array([-n[1], n[0]])
-        apart = u[:2, j] - u[:2, i]
-        slip = t @ apart - law.arm_i[k] * u[2, i] - law.arm_j[k] * u[2, j]
-        force = share * (law.normal[k] * (n @ apart) * n + law.shear[k] * slip * t)
-        bending = share * law.bending[k] * (u[2, j] - u[2, i])
-        expected[:2, i] += force
-        expected[:2, j] -= force
-        expected[2, i] += law.arm_i[k] * (force @ t) + bending
-        expected[2, j] += law.arm_j[k] * (force @ t) - bending
-
-    # places in far bricks carry rounding of 1e-15 of 12 m into directions: 1e-14 of forces of size k
-    np.testing.assert_allclose(forces(scene, u), expected, atol=1e-13 * law.normal.max())
-
-
-def test_edges_are_the_outer_rows_with_their_lengths(bar) -> None:
-    edges = build(bar()).edges
-
-    assert list(edges) == ["left", "right", "bottom", "top"]
-    assert [len(edge.nodes) for edge in edges.values()] == [2, 2, 20, 20]
-    assert [edge.length for edge in edges.values()] == [1.0, 1.0, 10.0, 10.0]
-    assert all(edge.diameter_sum_ratio == 1.0 for edge in edges.values())
 
 
 def test_supports_come_from_all_sides_but_not_for_held_motions(bar) -> None:

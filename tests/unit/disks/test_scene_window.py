@@ -11,7 +11,6 @@ from dembound.disks.beyond.mesh import ElementSizes, box_of
 from dembound.disks.beyond.settings import least_element
 from dembound.disks.rest.settled import settling_keys
 from dembound.disks.scene import DiskScene, build, ground_of
-from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 
@@ -123,15 +122,3 @@ def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
     endless = {"ground": {}, "packing": {"pattern": "A", "radius": 0.5, "size": [12.0, 12.0]}}
     endless["boundary"] = {side: {"type": "periodic"} for side in ("left", "right")} | {"bottom": {"type": "outside"}}
     assert keys(endless) == keys(endless, {"outside.layers": 5})
-
-
-def test_at_rest_its_ties_have_no_forces_where_all_moves_as_the_column(shaken: DiskScene) -> None:
-    """Of the disks; the column moves relative to its foot."""
-    rng = np.random.default_rng(0)
-    moved = np.zeros((3, shaken.count))
-    moved[:, : shaken.seam.count] = rng.normal(size=(3, shaken.seam.count))
-    moved[:, : shaken.disk_count] = moved[:, shaken.seam.twin]
-    force = DiskSystem(shaken, 1e-5).forces.of_ties(moved)
-    assert np.abs(force[:, : shaken.seam.count]).max() > 0.0
-    assert not force[:, shaken.seam.count : shaken.disk_count].any()
-    assert not force[:, shaken.outside.nodes].any()

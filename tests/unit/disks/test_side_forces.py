@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import BODY, TWO_BRICKS
 
 from dembound.disks.rest.tractions import Tractions
 from dembound.disks.scene import build
@@ -9,15 +10,13 @@ from dembound.disks.side_forces import side_forces
 from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.motion.sides import _bearers
 
-BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
-RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 HALF = {"boundary": {side: {"type": "viscous", "half_mass": True} for side in ("bottom", "right")}}
 PATTERNS = {
     "A": {"packing.size": [6.0, 4.0]},
     "half cells": {"packing.size": [6.0, 4.0], **HALF},
-    "B": {"packing": RANDOM},
-    "C": {"packing": RANDOM | {"pattern": "C", "edge_radius": 0.25}},
-    "held rotation": {"packing": RANDOM, "motion.held": ["rotation"]},
+    "B": {"packing": TWO_BRICKS},
+    "C": {"packing": TWO_BRICKS | {"pattern": "C", "edge_radius": 0.25}},
+    "held rotation": {"packing": TWO_BRICKS, "motion.held": ["rotation"]},
 }
 STRESSES = [(-3e6, 0.0, 0.0), (0.0, 2e6, 0.0), (0.0, 0.0, 1e6)]
 
@@ -62,7 +61,7 @@ def test_a_side_is_recorded_with_the_stress_times_its_length(bar, pattern: str, 
 def test_a_locked_in_stress_is_a_part_of_the_one_given(bar) -> None:
     """Under the stress as built the forces are those that contacts have without any displacement."""
     law = {"material.law": "linearpbond", "material.locked_in": 3e6, "material.fric": 0.5, "static": {}}
-    scene = build(bar({**BODY, "packing": RANDOM, **law}))
+    scene = build(bar({**BODY, "packing": TWO_BRICKS, **law}))
     contacts = contact_lists(scene)["body"]
     contacts.push(np.zeros((3, scene.count)))
     force = np.zeros((3, scene.count))

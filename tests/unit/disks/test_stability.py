@@ -40,10 +40,6 @@ def test_the_same_scene_has_the_same_limit(bar) -> None:
     assert step_limit(build(bar())) == step_limit(build(bar()))
 
 
-def test_disks_without_contacts_do_not_vibrate(bar) -> None:
-    assert step_limit(build(bar({"packing.size": [0.5, 0.5], "monitor": []}))) == np.inf
-
-
 def test_a_limit_that_is_not_found_in_time_is_an_error(bar, monkeypatch) -> None:
     scene = build(bar({**ONLY_X, "packing.size": [50.0, 5.0]}))
     monkeypatch.setattr(eigenvalue, "MOST", LEAST)  # enough for scenes of few disks only

@@ -2,37 +2,13 @@
 
 import numpy as np
 import pytest
-from small_cases import SURROUNDED, small
+from small_cases import PULLED, SURROUNDED, small
 
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import step_limit
 from dembound.disks.trials import PARTICLES, UNLOADED
-from dembound.kinds import kind_of, loads, with_changes
-
-ROCK = """
-[bar]
-length = 1.0
-spacing = 0.01
-density = 2620.0
-wave_speed = 2740.0
-[method]
-type = "patch"
-horizon = 3
-[boundary.right]
-type = "viscous"
-[wave.pulse]
-type = "triangle"
-amplitude = 1.0
-rise = 4e-5
-fall = 8e-5
-[[load]]
-name = "blow"
-pressure = 1e6
-wave = "pulse"
-[run]
-duration = 1e-3
-"""
+from dembound.kinds import kind_of, with_changes
 
 
 def trials(case, **options):
@@ -78,7 +54,7 @@ def test_a_law_with_a_history_is_measured_beside_its_linear_one(bar) -> None:
 
 
 def test_a_bar_is_measured_at_every_stage_of_its_method() -> None:
-    case = loads(ROCK)
+    case = small(PULLED, changes={"boundary.right": {"type": "viscous"}})
     found, words = trials(case)
     scene = build_bar(case)
 

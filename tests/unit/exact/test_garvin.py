@@ -55,6 +55,7 @@ def test_laplace_transform_is_the_solution_in_wave_numbers(solid: Solid, x: floa
 
 @pytest.mark.parametrize(("solid", "x", "z"), [(SOLIDS[0], 7.0, 4.0), (SOLIDS[1], 0.0, 3.0), (SOLIDS[2], 12.0, 25.0)])
 def test_interior_obeys_newtons_law(solid: Solid, x: float, z: float) -> None:
+    """And comes to the motion of the surface, by which both reflected waves are known."""
     h, step = 0.05, 0.25e-3
     times = (np.linspace(0.004, 0.15, 25)[:, None] + step * np.arange(-1, 2)).ravel()
     steps = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]
@@ -66,20 +67,8 @@ def test_interior_obeys_newtons_law(solid: Solid, x: float, z: float) -> None:
     # differences err by (2π·0.25e-3·3/0.03)²/12 = 2e-3 in time; in space, near the source or the surface, by some
     # (h/3 m)² = 3e-4; the quadrature's 1e-7 of u becomes 1e-7/(h k)² = 1e-4
     np.testing.assert_allclose(force[:, 1::3] / h**2, solid.density * second, rtol=0.0, atol=5e-3 * size)
-
-
-@pytest.mark.parametrize(("solid", "x"), [(SOLIDS[0], -6.0), (SOLIDS[2], 30.0)])
-def test_surface_is_free_of_tractions_and_the_limit_of_the_interior(solid: Solid, x: float) -> None:
-    h, times = 0.02, np.linspace(0.0, 0.2, 31)
-    top, one, two = (moved(times, x, h * j, solid) for j in range(3))
-    left, right = (moved(times, x + d, 0.0, solid) for d in (-h, h))
-    down, along = (-1.5 * top + 2.0 * one - 0.5 * two) / h, (right - left) / (2.0 * h)
-    shear, normal = down[0] + along[1], solid.uniaxial * down[1] + solid.lame * along[0]
-    size = np.abs(along).max()
-    # one-sided differences err by (h k)²/3 with k of the S wave: 2π·3/(0.03·c_s) = 2/m for the slowest
-    assert np.abs(shear).max() < 2e-3 * size
-    assert np.abs(normal).max() < 2e-3 * size * solid.uniaxial
-    np.testing.assert_allclose(moved(times, x, 1e-6, solid), top, rtol=0.0, atol=1e-5 * np.abs(top).max())
+    top, below = (moved(times[1::3], x, depth, solid) for depth in (0.0, 1e-6))
+    np.testing.assert_allclose(below, top, rtol=0.0, atol=1e-5 * np.abs(top).max())
 
 
 def test_before_echoes_it_is_the_cavity_with_the_same_moment() -> None:

@@ -87,16 +87,6 @@ def test_error_is_below_the_tolerance(load: Load, s_speed: float) -> None:
     assert np.abs(u - finer).max() <= 1e-6 * np.abs(finer).max()
 
 
-def test_nothing_moves_before_the_p_wave_which_lifts_and_pushes_away() -> None:
-    arrival = DISTANCE / P_SPEED
-
-    horizontal, vertical = displacement(arrival * np.array([-1.0, 0.0, 0.999, 1.02]), splines, S_SPEEDS[1])
-
-    assert not horizontal[:3].any()
-    assert not vertical[:3].any()
-    assert horizontal[3] > 0.0 > vertical[3]
-
-
 def test_what_is_not_a_half_space_is_refused() -> None:
     with pytest.raises(ValueError, match="speeds must be"):
         rayleigh_speed(100.0, 100.0)

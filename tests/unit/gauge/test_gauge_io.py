@@ -40,14 +40,6 @@ def record(felt, tmp_path):
     return path
 
 
-def test_a_text_file_is_told_where_it_was_felt(text, felt):
-    gauge = read_gauge(text, position=0.6, length=0.99, density=2620.0, reading=Reading(scale=-1e6))
-    time, stress = felt()
-    np.testing.assert_array_equal(gauge.time, time)
-    np.testing.assert_allclose(gauge.stress, 1e6 * stress, rtol=1e-15)
-    assert (gauge.position, gauge.length, gauge.density) == (0.6, 0.99, 2620.0)
-
-
 def test_a_record_knows_its_bar_unless_told_otherwise(record, felt):
     gauge = read_gauge(record, "near")
     np.testing.assert_array_equal(gauge.stress, 1e6 * felt()[1])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
+from dembound.gauge.gauge_io import read_free_end
 from dembound.gauge.reading.signal import Reading, read_signal
 from dembound.gauge.reading.units import Bridge
 
@@ -56,6 +57,42 @@ def test_other_encodings_are_read(tmp_path):
     for encoding in ("latin-1", "utf-16", "utf-8-sig"):
         path.write_bytes(text.encode(encoding))
         np.testing.assert_allclose(read_signal(path).values, VALUES, rtol=1e-12)
+
+
+def with_header(path, header):
+    """Equal times and values of 0 to 4 µs under a header."""
+    samples = 1e-6 * np.arange(5.0)
+    np.savetxt(path, np.column_stack([samples, samples]), header=header, comments="")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("header", "step", "size"),
+    [
+        ("time (s) velocity (mm/s)", 1.0, 1e-3),
+        ("time (ms) free end (cm/s)", 1e-3, 1e-2),
+        ("t v [km/s]", 1.0, 1e3),
+        ("t[us] v[m/s]", 1e-6, 1.0),
+        ("time velocity", 1.0, 1.0),
+        ("(ms) (mm/s)", 1e-3, 1e-3),
+        ("time (s) velocity (in/s)", 1.0, "the header has values in in/s, must be m/s, cm/s, mm/s or km/s"),
+        ("time (min) velocity (m/s)", 1.0, "the header has times in min, must be s, ms, µs or ns; or --time-unit"),
+    ],
+)
+def test_units_behind_names_that_blanks_separate_are_read_or_refused(header, step, size, tmp_path):
+    path, gauge = str(with_header(tmp_path / "end.txt", header)), tmp_path / "gauge.txt"
+    if isinstance(size, str):
+        with pytest.raises(CaseError, match=size):
+            read_free_end(gauge, path)
+        return
+    time, velocity = read_free_end(gauge, path)
+    np.testing.assert_allclose(time, 1e-6 * step * np.arange(5.0), rtol=1e-12)
+    np.testing.assert_allclose(velocity, 1e-6 * size * np.arange(5.0), rtol=1e-12)
+
+
+def test_a_stress_in_an_unknown_unit_is_not_taken_for_pascals(tmp_path):
+    path = with_header(tmp_path / "gauge.txt", "time (s) stress (psi)")
+    assert (read_signal(path).unit, read_signal(path, Reading(unit="MPa")).unit) == ("", "Pa")
 
 
 def test_columns_go_by_name_or_number(tmp_path):

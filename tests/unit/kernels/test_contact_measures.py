@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from moving_pairs import GEOMETRIES, PAIRS, PARTICLES, STEP, UNBREAKABLE, motion, pushed, two
+from moving_pairs import PAIRS, PARTICLES, STEP, UNBREAKABLE, two
 from plain_kernels import PlainPairs, one_pair, random_pairs
 
-from dembound.kernels.contact_measures import slack, strain_energy
+from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
 from dembound.kernels.tables import Contacts, Limits
 
@@ -83,24 +83,3 @@ def test_a_pair_that_turns_leaves_small_displacements() -> None:
     assert slack(two(0.0, 0.004 * distance), pair, limits, False) == pytest.approx(0.006 * distance, rel=1e-9)
     assert slack(two(0.0, -0.011 * distance), pair, limits, False) < 0.0
     assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED), False) > 0.0
-
-
-@GEOMETRIES
-def test_stored_energy_is_that_of_all_springs(geometry: int) -> None:
-    limits = UNBREAKABLE._replace(geometry=geometry)
-    pairs = random_pairs(PARTICLES, PAIRS)
-    for u, v in motion(5):
-        pushed(pairs, limits, u, v)
-    law, contact, bond = PlainPairs(pairs, limits), 0.0, 0.0
-    for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
-        _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], v[:, i], v[:, j], 0.0)
-        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, _, _ = pairs.constants[c]
-        overlap = touch - rest - stretch
-        rub = k_s * (shear - (0.0 if geometry == REFERENCE else pairs.slip[c]))
-        if overlap > 0.0 or (geometry == REFERENCE and touch >= rest):
-            contact += 0.5 * (k_n * overlap**2 + rub**2 / k_s)
-        if pairs.state[c] == INTACT:
-            bond += 0.5 * (b_n * stretch**2 + b_s * shear**2 + b_m * (u[2, j] - u[2, i]) ** 2)
-
-    # 60 terms of size 0.1
-    assert strain_energy(u, pairs, geometry) == pytest.approx((contact, bond), rel=1e-13)

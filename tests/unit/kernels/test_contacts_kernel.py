@@ -5,12 +5,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from moving_pairs import GEOMETRIES, PAIRS, PARTICLES, STEP, UNBREAKABLE, motion, pushed, two
-from plain_kernels import PlainPairs, behind, one_pair, random_pairs
+from plain_kernels import PlainPairs, one_pair, random_pairs
 
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import (
     BONDED,
-    CLOSING,
     INTACT,
     NONE,
     REFERENCE,
@@ -18,7 +17,6 @@ from dembound.kernels.contacts import (
     TENSION,
     UPDATED,
     start_from_displacements,
-    sum_forces,
 )
 from dembound.kernels.tables import Limits
 
@@ -57,39 +55,6 @@ def test_pairs_push_as_the_law_says_step_by_step(geometry: int) -> None:
     assert set(found.state) == {NONE, INTACT, TENSION, SHEAR}
     assert slid > 0
     assert opened > 0
-
-
-def test_particles_get_the_sum_of_their_pairs_and_those_before_are_left_alone() -> None:
-    pairs, others = random_pairs(PARTICLES, PAIRS), 4
-    later = behind(random_pairs(PARTICLES, PAIRS), others)
-    for number, (u, v) in enumerate(motion(5)):
-        lost = pushed(pairs, WEAK, u, v, number)
-        there, speed = (np.hstack([np.full((3, others), np.nan), values]) for values in (u, v))
-        assert np.array_equal(pushed(later, WEAK, there, speed, number), lost)
-        assert np.array_equal(later.force, pairs.force)
-    total, expected = np.full((3, others + PARTICLES), 7.0), np.zeros((3, PARTICLES))
-    sum_forces(later, total)
-    for sign, ends, moment in ((1.0, pairs.first, 2), (-1.0, pairs.second, 3)):
-        np.add.at(expected[0], ends, sign * pairs.force[0])
-        np.add.at(expected[1], ends, sign * pairs.force[1])
-        np.add.at(expected[2], ends, pairs.force[moment])
-
-    assert np.all(total[:, :others] == 7.0)
-    close(total[:, others:], expected)
-
-
-def test_the_first_push_after_being_open_is_larger() -> None:
-    pair, was = one_pair(), 0.0
-    factors = []
-    # from just touching; then deeper, shallower, open, closed by as much, and over a further touch closed again
-    for x in (-0.1, -0.2, -0.1, 0.05, -0.1, -0.15, 0.0, -0.1):
-        pushed(pair, UNBREAKABLE, two(x), two((x - was) / STEP))
-        factors.append(-pair.force[0, 0] / (4.0 * max(-x, 1e-3)))
-        was = x
-
-    # displacements of 0.1 m are rounded against a distance of 2 m
-    np.testing.assert_allclose(factors, [CLOSING, 1.0, 1.0, 0.0, CLOSING, 1.0, 0.0, CLOSING], rtol=1e-14)
-    assert CLOSING > 1.0
 
 
 @pytest.mark.parametrize("size", [1e-12, 1e-9, 1e-3])

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from disk_systems import fitted, turn
 
 from dembound.kernels.follower import extra_work, side_rotation, side_rotations, turn_forces
 from dembound.kernels.tables import Followers
@@ -16,11 +17,6 @@ NODE = np.array([7, 9, 11, 12, 15, 16, 20])
 SIDE = np.array([[0, 0, 0, 1, 1, 2, 2], [-1, -1, 2, 2, -1, -1, -1]])
 """Of the particles with forces; the last one belongs to a side without being its member."""
 STEP = 0.1
-
-
-def turn(angle: float) -> np.ndarray:
-    """Rotation matrix (2, 2)."""
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 DATUM = np.random.default_rng(2).integers(-1024, 1024, (3, PARTICLES)) / 1024.0
@@ -69,14 +65,6 @@ def turned(places: np.ndarray, angle: float) -> np.ndarray:
     return np.vstack([(turn(angle) - np.eye(2)) @ (places - centre), np.zeros(PARTICLES)])
 
 
-def fitted(places: np.ndarray, moved: np.ndarray) -> float:
-    """The rotation that is nearest to the motion of some places (2, m), by the polar decomposition of Σ r ⊗ a."""
-    a, r = (x - x.mean(axis=1, keepdims=True) for x in (places, places + moved))
-    left, _, right = np.linalg.svd(r @ a.T)
-    rotation = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
-    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
-
-
 @pytest.mark.parametrize(("angle", "twinned"), [(1e-7, False), (2.0, False), (-0.3, True), (-2.5, True)])
 def test_a_side_that_turns_as_one_has_turned_by_just_that(followers, angle: float, twinned: bool) -> None:
     table, places = followers(twinned=twinned)
@@ -88,19 +76,6 @@ def test_a_side_that_turns_as_one_has_turned_by_just_that(followers, angle: floa
     for side in SIDES:
         # some ten sums of numbers up to 10, over arms of size 1
         assert side_rotation(side, u, table) == pytest.approx(angle, rel=0.0, abs=1e-14)
-
-
-@pytest.mark.parametrize("twinned", [False, True])
-def test_of_a_side_that_bends_the_rotation_is_the_nearest_one(followers, twinned: bool) -> None:
-    table, places = followers(twinned=twinned)
-    moved = 3.0 * shaken()
-    for side, nodes in SIDES.items():
-        members = slice(table.start[side], table.start[side + 1])
-        relative = moved[:2, nodes] - (moved[:2, table.twin[members]] if twinned else 0.0)
-        # as above
-        assert side_rotation(side, DATUM + moved, table) == pytest.approx(
-            fitted(places[:, nodes], relative), rel=0.0, abs=1e-14
-        )
 
 
 def test_the_load_is_what_was_steady_with_its_forces_turned(followers) -> None:

@@ -249,31 +249,3 @@ def test_breaks_are_told_in_the_order_of_their_steps() -> None:
 def ranges(bonds: Bonds, supported: list[int]) -> tuple[np.ndarray, np.ndarray]:
     arrays = bonds.arrays(np.array(supported, dtype=np.int64), 1.0)
     return arrays.plain, arrays.mixed
-
-
-@pytest.mark.parametrize("seed", range(10))
-def test_every_node_is_moved_once_and_holds_on_to_what_its_range_says(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    horizon = int(rng.integers(0, 6))
-    bonds = Bonds(ROD, horizon)
-    for first in rng.integers(0, 38, rng.integers(0, 4) if horizon else 0):
-        bonds.add_zone(int(first), int(first + rng.integers(2, 15)))
-    for plane in rng.integers(0, 40, rng.integers(0, 4)):
-        bonds.spring[plane] = 0.0
-    supported = np.unique(rng.integers(0, COUNT, rng.integers(0, 4)))
-    plain, mixed = ranges(bonds, supported.tolist())
-
-    moved = np.concatenate([np.arange(a, b) for a, b, *_ in [*plain, *mixed]])
-    assert np.sort(moved).tolist() == list(range(COUNT))
-    bonded = np.zeros(COUNT, dtype=bool)
-    for row, i in zip(*np.nonzero(bonds.bond), strict=True):
-        bonded[[i, i + row + 1]] = True
-    for a, b in plain:
-        assert not bonded[a:b].any()
-        assert np.all(bonds.spring[a - 1 : b] == WHOLE)
-        assert bonds.triggers[a - 1 : b].all()
-        assert not np.isin(supported, np.arange(a, b)).any()
-    for a, b, held in mixed:
-        assert held == bonds.spring[max(a - 1, 0) : b].any()
-    zoned_nodes = [i for a, b in bonds.zones for i in range(a, b)]
-    assert np.all(np.isin(np.flatnonzero(bonded), zoned_nodes))

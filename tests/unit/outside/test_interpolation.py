@@ -8,15 +8,18 @@ from dembound.outside.interpolation import interpolation, located, slopes
 from dembound.outside.mesh import Mesh
 
 
-def test_a_polynomial_is_interpolated_and_extrapolated() -> None:
+def test_a_polynomial_and_its_slopes_are_interpolated_and_extrapolated() -> None:
+    """Also within the box, from the nearest element."""
     mesh = buried()
     points = np.array([[2.2, 17.3], [23.9, 25.9], [10.1, 20.05], [15.9, 21.8], [13.0, 20.4], [0.9, 16.0]])
-    field = mesh.positions[:, 0] ** 2 - 3.0 * mesh.positions[:, 1] * mesh.positions[:, 0]
+    (x, y), (px, py) = mesh.positions.T, points.T
+    field = x**2 - 3.0 * y * x + y**4
     node, weight = interpolation(mesh, points)
+    along, up = (slopes(mesh, points) * field[node]).sum(axis=2)
 
-    # also within the box, from the nearest element
-    expected = points[:, 0] ** 2 - 3.0 * points[:, 1] * points[:, 0]
-    np.testing.assert_allclose((weight * field[node]).sum(axis=1), expected, rtol=1e-12)
+    np.testing.assert_allclose((weight * field[node]).sum(axis=1), px**2 - 3.0 * py * px + py**4, rtol=1e-12)
+    np.testing.assert_allclose(along, 2.0 * px - 3.0 * py, rtol=1e-9)
+    np.testing.assert_allclose(up, 4.0 * py**3 - 3.0 * px, rtol=1e-9)
     np.testing.assert_allclose(weight.sum(axis=1), 1.0, rtol=1e-13)
     nearest = mesh.positions[node].mean(axis=1) - points
     assert (np.abs(nearest) <= np.array([3.0, 2.0])).all()
@@ -45,18 +48,6 @@ def test_points_in_the_box_and_beyond_the_mesh_belong_to_the_nearest_element() -
     np.testing.assert_array_equal(located(mesh, points)[0], nearest)
     on_edges = located(mesh, np.array([[1.5, 1.0], [3.0, 5.0], [7.0, 6.0], [5.0, 7.0]]))[0]
     np.testing.assert_array_equal(mesh.elements[on_edges], [[0, 0], [1, 1], [4, 2], [2, 3]])
-
-
-def test_slopes_are_those_of_the_field() -> None:
-    points = np.array([[2.2, 17.3], [23.9, 25.9], [10.1, 20.05], [13.0, 20.4], [0.9, 16.0]])
-    mesh = buried()
-    x, y = mesh.positions.T
-    field = (x**2 - 3.0 * y * x + y**4)[interpolation(mesh, points).node]
-    x, y = points.T
-
-    along, up = (slopes(mesh, points) * field).sum(axis=2)
-    np.testing.assert_allclose(along, 2.0 * x - 3.0 * y, rtol=1e-9)
-    np.testing.assert_allclose(up, 4.0 * y**3 - 3.0 * x, rtol=1e-9)
 
 
 def test_slopes_in_the_element_that_closes_a_period() -> None:

@@ -10,24 +10,6 @@ from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.part import GridPart, stress
 
 
-def test_a_run_continued_from_memory_has_the_same_bits(grid, noise) -> None:
-    body = grid()
-    step = 0.9 * step_limit(body)
-    whole, first, second = (Simulation(GridScene(body), step) for _ in range(3))
-    for run in (whole, first):
-        run.state.velocity = noise(body)
-    whole.run(300)
-    first.run(120)
-    second.state.take(first.state.arrays())
-    first.run(150)  # does not change what was saved
-    second.run(300)
-
-    for name, values in whole.state.arrays().items():
-        np.testing.assert_array_equal(second.state.arrays()[name], values, err_msg=name)
-    assert np.abs(whole.system.parts[0].memory()["strain_memory"]).max() > 0.0
-    assert np.abs(whole.system.parts[0].memory()["force_memory"]).max() > 0.0
-
-
 def test_the_ledger_closes_with_supports_at_the_edge_of_a_layer(grid, noise) -> None:
     """Nodes at the free surface of a layer and of its first edge, on springs and driven."""
     body = grid()

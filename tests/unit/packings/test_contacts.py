@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.packings.contacts import near_pairs, strip_order, wrap
+from dembound.packings.contacts import strip_order, wrap
 
 BOX = np.array([10.0, 6.0])
 
@@ -10,13 +10,6 @@ BOX = np.array([10.0, 6.0])
 def test_wrap_never_returns_the_far_face():
     positions = np.array([[-1e-17, 6.0], [10.0, -0.5], [25.0, 3.0]])
     assert wrap(positions, BOX).tolist() == [[0.0, 0.0], [0.0, 5.5], [5.0, 3.0]]
-
-
-def test_pairs_through_faces_and_corners():
-    positions = np.array([[0.3, 0.3], [9.7, 5.7], [0.3, 5.6], [5.0, 3.0]])
-    pairs, images = near_pairs(positions, np.full(4, 0.5), BOX, 0.0)
-    assert pairs.tolist() == [[0, 1], [0, 2], [1, 2]]
-    assert images.tolist() == [[-1, -1], [0, -1], [1, 0]]
 
 
 def test_strips_run_upwards_one_after_the_other():

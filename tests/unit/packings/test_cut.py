@@ -1,4 +1,4 @@
-"""Contacts that end at the sides of a body, against those of a wider one."""
+"""Contacts that end at the sides of a body."""
 
 from collections import Counter
 
@@ -11,8 +11,6 @@ from dembound.packings.cut import CutContacts, cut_contacts
 from dembound.packings.tiling import Assembly, tile
 
 OPEN = (False, False)
-MARGIN = 2
-"""Bricks on each side of the body in the wider one, which the cut at its own sides does not reach."""
 
 
 @pytest.fixture(params=["square", "random", "edged"])
@@ -22,12 +20,9 @@ def brick(request) -> Brick:
     return request.getfixturevalue(f"{request.param}_brick")
 
 
-def places(assembly: Assembly, shift: int = 0) -> list[tuple[int, int, int]]:
+def places(assembly: Assembly) -> list[tuple[int, int, int]]:
     """Tile x, tile y and disk of the brick of every disk."""
-    return [
-        (int(x) - shift, int(y) - shift, int(disk))
-        for (x, y), disk in zip(assembly.tile, assembly.brick_particle, strict=True)
-    ]
+    return list(zip(*assembly.tile.T.tolist(), assembly.brick_particle.tolist(), strict=True))
 
 
 def beyond(place: tuple[int, int, int], brick: Brick, copies: tuple[int, int]) -> set[str]:
@@ -41,22 +36,8 @@ def beyond(place: tuple[int, int, int], brick: Brick, copies: tuple[int, int]) -
     return sides
 
 
-def by_hand(brick: Brick, copies: tuple[int, int], sides: tuple[str, ...]) -> Counter:
-    """Place of the disk, place of the one beyond, contact, and which of its disks is in the body."""
-    body = set(places(tile(brick, copies, OPEN)))
-    wide = tile(brick, (copies[0] + 2 * MARGIN, copies[1] + 2 * MARGIN), OPEN)
-    where = places(wide, MARGIN)
-    found: Counter = Counter()
-    for pair, contact_type in zip(wide.pairs, wide.contact_type, strict=True):
-        for second, (here, there) in enumerate((pair, pair[::-1])):
-            out = beyond(where[there], brick, copies)
-            if where[here] in body and out and out <= set(sides):
-                found[where[here], where[there], int(contact_type), second] += 1
-    return found
-
-
 def listed(cut: CutContacts, body: Assembly) -> Counter:
-    """The same from the list."""
+    """Place of the disk, place of the one beyond, contact, and which of its disks is in the body."""
     where = places(body)
     return Counter(
         (where[node], (int(x), int(y), int(other)), int(contact), int(second))
@@ -66,28 +47,16 @@ def listed(cut: CutContacts, body: Assembly) -> Counter:
     )
 
 
-@pytest.mark.parametrize(
-    ("copies", "sides"),
-    [((1, 1), ("left", "right", "bottom", "top")), ((3, 2), ("left", "right", "bottom")), ((1, 4), ("bottom",))],
-)
-def test_every_contact_that_a_side_cuts_is_listed_once(brick, copies, sides) -> None:
+def test_of_some_sides_those_contacts_are_cut_that_cross_no_other(brick) -> None:
+    """Of all sides they are those under whose forces a body rests: `test_side_forces` and `test_wall`."""
+    copies, sides = (3, 2), ("left", "right", "bottom")
     body = tile(brick, copies, OPEN)
-    cut = cut_contacts(brick, body, sides)
-    expected = by_hand(brick, copies, sides)
+    every = cut_contacts(brick, body, (*sides, "top"))
+    ends = zip(*every.tile.T.tolist(), every.other.tolist(), strict=True)
+    chosen = np.array([beyond(end, brick, copies) <= set(sides) for end in ends])
 
-    assert expected
-    assert listed(cut, body) == expected
-
-
-def test_vectors_point_outwards(random_brick) -> None:
-    body = tile(random_brick, (2, 2), OPEN)
-    cut = cut_contacts(random_brick, body, ("left", "bottom"))
-    ends = body.positions[cut.node] + cut.vectors(random_brick)
-    there = random_brick.positions[cut.other] + cut.tile * random_brick.size
-
-    np.testing.assert_allclose(ends, there, rtol=0.0, atol=1e-12 * body.size.max())
-    assert ((there < 0.0).any(axis=1)).all()
-    assert np.array_equal(cut.tile - cut.image, body.tile[cut.node])
+    assert 0 < np.count_nonzero(chosen) < len(chosen)
+    assert listed(cut_contacts(brick, body, sides), body) == listed(every.only(chosen), body)
 
 
 def test_periodic_sides_cut_nothing(brick) -> None:

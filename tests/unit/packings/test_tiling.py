@@ -102,12 +102,3 @@ def test_of_a_body_cut_in_two_the_larger_part_is_left(square):
     assert kept.tolist() == list(range(14))
     with pytest.raises(PackingError, match="no disk is left"):
         body.without(np.ones(14, dtype=bool))
-
-
-def test_a_body_stands_where_its_origin_is(edged_brick):
-    there, here = (tile(edged_brick, (3, 2), (False, False), origin) for origin in ((7.0, -2.5), (0.0, 0.0)))
-    np.testing.assert_allclose(there.positions, here.positions + np.array([7.0, -2.5]), rtol=0.0, atol=1e-12)
-    assert there.origin.tolist() == [7.0, -2.5]
-    assert np.array_equal(there.tile, here.tile)
-    assert np.array_equal(there.pairs, here.pairs)
-    assert there.part(slice(0, 5)).origin.tolist() == [7.0, -2.5]

@@ -6,7 +6,6 @@ import pytest
 from dembound.boundaries.support import Edge
 from dembound.disks.beyond.edges import edge_without
 from dembound.disks.scene import build
-from dembound.errors import CaseError
 
 DIAMETERS = np.array([0.4, 0.6, 0.5, 0.8, 0.7])
 EDGE = Edge("right", np.array([2, 3, 5, 7, 11]), np.column_stack([np.full(5, 9.0), np.arange(5.0)]), DIAMETERS, 3.6)
@@ -36,8 +35,3 @@ def test_a_side_with_a_frame_is_as_long_as_its_disks_together(bar, bottom: str) 
     lengths = {"left": 8.0 + more, "right": 8.0 + more} | ({} if more == 0.0 else {"bottom": 4.5, "top": 4.5})
     assert {side: edge.length for side, edge in edges.items()} == pytest.approx(lengths, rel=1e-12)
     assert [edge.diameter_sum_ratio for edge in edges.values()] == pytest.approx([1.0] * len(edges), rel=1e-12)
-
-
-def test_a_side_of_which_nothing_is_left_is_refused() -> None:
-    with pytest.raises(CaseError, match=r"remove all . particles that make up the right side, so boundary.right"):
-        edge_without(EDGE, np.array([0, 1, 4]))

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from disk_systems import LAMB
 
 from dembound.disks.beyond.settings import (
     Buried,
@@ -29,20 +30,12 @@ STAYS = {"type": "constant", "amplitude": 1.0, "rise": 0.5, "start": 2.0}
 
 @pytest.fixture
 def case(bar):
-    """Lamb's problem on 40 m × 20 m, changed."""
+    """Lamb's problem, changed."""
 
     def changed(**changes):
-        load = {"name": "f", "position": [20.5, 19.5], "force": [0.0, -1e6], "wave": "pulse"} | changes.pop("load", {})
-        tables = {
-            "packing": {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5},
-            "boundary": {side: {"type": "outside"} for side in SIDES},
-            "motion.held": [],
-            "monitor": [],
-            "wave": {"pulse": PULSE},
-            "load": [{key: value for key, value in load.items() if value is not None}],
-            "run.duration": 12.0,
-        }
-        return bar(tables | changes)
+        load = LAMB["load"][0] | changes.pop("load", {})
+        loads = [{key: value for key, value in load.items() if value is not None}]
+        return bar(LAMB | {"wave": {"pulse": PULSE}, "load": loads, "run.duration": 12.0} | changes)
 
     return changed
 

@@ -2,32 +2,23 @@
 
 import numpy as np
 import pytest
+from small_cases import small
 
 from dembound.disks.reports.facts import disk_facts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import step_limit
-from dembound.kinds import loads
 
-CASE = """
-[packing]
-pattern = "B"
-bricks = [2, 1]
-brick = [6.0, 6.0]
-radius = 0.25
-radius_ratio = 1.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[outside]
-element = 4.0
-[run]
-duration = 1.0
-"""
+CASE = {
+    "packing": {"pattern": "B", "bricks": [2, 1], "brick": [6.0, 6.0], "radius": 0.25, "radius_ratio": 1.5},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
+    "outside": {"element": 4.0},
+    "run": {"duration": 1.0},
+}
 
 
-def scene(*sides: str) -> DiskScene:
+def scene(*sides: str, **changes: object) -> DiskScene:
     """A body of 12 m × 6 m with a continuum on some sides."""
-    return build(loads(CASE + "".join(f'[boundary.{side}]\ntype = "outside"\n' for side in sides)))
+    return build(small(CASE, changes={"boundary": {side: {"type": "outside"} for side in sides}} | changes))
 
 
 def test_free_edges_lie_a_skin_below_the_body() -> None:
@@ -78,6 +69,4 @@ def test_ties_read_the_continuum_within_its_elements() -> None:
 
 def test_small_elements_keep_a_usable_step() -> None:
     """Elements of five disks have light nodes. With slopes taken at their edges the step would be 22 times smaller."""
-    fine = CASE.replace("element = 4.0", "element = 2.5")
-    free, tied = (build(loads(fine + extra)) for extra in ("", '[boundary.bottom]\ntype = "outside"\n'))
-    assert step_limit(tied) > 0.25 * step_limit(free)
+    assert step_limit(scene("bottom", **{"outside.element": 2.5})) > 0.25 * step_limit(scene())

@@ -1,5 +1,7 @@
 """Ties of cut bonds to a continuum: exact under every uniform gradient, and in balance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from dembound.disks.beyond.wall import Wall, lag_of
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
 from dembound.kernels.tables import WallTies
-from dembound.kernels.wall import tie_forces
+from dembound.kernels.wall import tie_forces, wall_forces
 from dembound.outside.mesh import Mesh
 from dembound.packings.cut import cut_contacts
 from dembound.packings.dense import Recipe, pack_dense
@@ -47,9 +49,9 @@ class Tied:
         self.wall = Wall.of(self.mesh, CutBonds.of(ground, self.cut, self.body.positions), 0.0)
         self.particles, self.count = len(self.body.radii), len(self.body.radii) + self.mesh.count
 
-    def ties(self, twin: np.ndarray | None = None) -> WallTies:
+    def ties(self, twin: np.ndarray | None = None, line: np.ndarray | None = None) -> WallTies:
         every = np.arange(self.count)
-        return self.wall.ties(every[: self.particles], every[self.particles :], every, twin)
+        return self.wall.ties(every[: self.particles], every[self.particles :], every if line is None else line, twin)
 
     def strained(self, gradient: np.ndarray) -> np.ndarray:
         """Displacements (3, n) of particles and nodes under a mean gradient (4,) xx, yy, xy, yx."""
@@ -65,21 +67,21 @@ class Tied:
         return force
 
 
-@pytest.mark.parametrize("number", range(4))
-def test_a_uniform_gradient_leaves_every_particle_in_equilibrium(ground, number) -> None:
+def test_a_uniform_gradient_leaves_every_particle_in_equilibrium(ground) -> None:
     """As in the infinite tiling, whose bonds the ties replace."""
     tied = Tied(ground)
-    u = tied.strained(np.eye(4)[number])
     network = Network.of_assembly(ground.brick, ground.stiffness, tied.body)
     motions = network.motion_matrix()
-    inside = -(motions.T @ (network.springs * (motions @ u[:, : tied.particles].ravel()))).reshape(3, -1).T
-    of_ties = tied.forces(u)[: tied.particles]
-
-    size = np.abs(of_ties).max()
     assert len(tied.cut.node) > 60
-    assert size > 0.05 * ground.stiffness.normal.mean() * ground.brick.mean_diameter
-    # the error of the sparse solve for the correctors: rounding times a condition number below 1e6
-    np.testing.assert_allclose(inside + of_ties, 0.0, atol=1e-10 * size)
+    for gradient in np.eye(4):
+        u = tied.strained(gradient)
+        inside = -(motions.T @ (network.springs * (motions @ u[:, : tied.particles].ravel()))).reshape(3, -1).T
+        of_ties = tied.forces(u)[: tied.particles]
+
+        size = np.abs(of_ties).max()
+        assert size > 0.05 * ground.stiffness.normal.mean() * ground.brick.mean_diameter
+        # the error of the sparse solve for the correctors: rounding times a condition number below 1e6
+        np.testing.assert_allclose(inside + of_ties, 0.0, atol=1e-10 * size)
 
 
 def test_ties_neither_push_nor_turn_the_whole(ground) -> None:
@@ -116,16 +118,19 @@ def test_ties_half_way_to_other_sides_turn_nothing_and_move_by_half_of_it(ground
     assert np.abs(tied.forces(turned)).max() <= 1e-9 * np.abs(tied.forces(12.0 * u)).max()
 
 
-def test_a_twin_leaves_what_the_particle_has_beyond_it(ground) -> None:
-    tied = Tied(ground)
-    u = np.random.default_rng(5).normal(size=(3, tied.count))
-    twin = np.roll(np.arange(tied.particles), 7)
-    with_twins = np.zeros((tied.count, 3))
-    tie_forces(tied.ties(twin), u, np.zeros_like(u), with_twins, 0.0)
-    relative = u.copy()
-    relative[:, : tied.particles] -= u[:, twin]
+def test_a_twin_leaves_what_the_particle_has_beyond_it_and_velocities_count_times_the_lag(ground) -> None:
+    """In forces that are added to what is there, at the lines of the support table; none act on the twins."""
+    tied, rng = Tied(ground), np.random.default_rng(5)
+    u, v, before = rng.normal(size=(3, 3, tied.count))
+    twin, line = np.roll(np.arange(tied.particles), 7), rng.permutation(tied.count)
+    tied.wall = replace(tied.wall, lag=0.3)
+    force = before.T.copy()
+    wall_forces(tied.ties(twin, line), u, v, force)
+    relative = u + 0.3 * v
+    relative[:, : tied.particles] -= relative[:, twin]
+    expected = tied.forces(relative)
 
-    np.testing.assert_allclose(with_twins, tied.forces(relative), atol=1e-12 * np.abs(with_twins).max())
+    np.testing.assert_allclose((force - before.T)[line], expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
 
 
 def test_the_dashpot_of_a_lattice_is_a_share_of_its_impedance() -> None:
@@ -146,4 +151,7 @@ def test_elongations_times_stiffness_are_the_forces_of_the_kernels(ground) -> No
     expected = np.zeros((tied.count, 3))
     np.add.at(expected, disks, -np.einsum("etc,et->tc", of_disks, pull))
     np.add.at(expected[:, :2], nodes, -np.einsum("etcq,et->tqc", of_nodes, pull))
-    np.testing.assert_allclose(tied.forces(u), expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
+    force = np.zeros_like(expected)
+    energy = tie_forces(tied.ties(), u, np.zeros_like(u), force, 0.0)
+    np.testing.assert_allclose(force, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
+    assert energy == pytest.approx(-0.5 * np.sum(u.T * expected), rel=1e-12)

@@ -4,21 +4,19 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from disk_systems import BODY, TWO_BRICKS, WRAP
 
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION, UPDATED, note_places
+from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION, note_places
 
-WRAP = {"type": "periodic"}
 SIDES = {
     "open": {},
-    "periodic sideways": {"left": WRAP, "right": WRAP},
-    "periodic": {"left": WRAP, "right": WRAP, "bottom": WRAP, "top": WRAP},
+    "periodic sideways": {side: WRAP[side] for side in ("left", "right")},
+    "periodic": WRAP,
 }
-RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-LOCKED_IN = {"material.locked_in": 2e6, "static": {}}
 Key = tuple[int, int, int, int]
 
 
@@ -27,7 +25,7 @@ def scene(bar, in_order):
     """Makes scenes of the history-dependent law: a random packing, or changed."""
 
     def make(sides: str = "open", **changes: object) -> DiskScene:
-        tables = {"packing": RANDOM, "boundary": SIDES[sides], "wave": {}, "monitor": [], "motion.held": []}
+        tables = {**BODY, "packing": TWO_BRICKS, "boundary": SIDES[sides]}
         return in_order(build(bar({**tables, "material.law": "linearpbond", **changes})))
 
     return make
@@ -37,14 +35,6 @@ def list_of(body: DiskScene) -> ContactList:
     """The pairs of a scene without a column."""
     (pairs,) = contact_lists(body).values()
     return pairs
-
-
-def forces_of(contacts: ContactList, displacement: np.ndarray, *, reference: bool = False) -> np.ndarray:
-    """Forces and moments (3, n) at displacements (3, n) reached at rest."""
-    contacts.push(displacement, reference=reference)
-    total = np.zeros_like(displacement)
-    contacts.add_forces(total)
-    return total
 
 
 @pytest.fixture(params=SIDES)
@@ -149,21 +139,6 @@ def test_the_constants_do_not_grow_from_search_to_search(contacts: ContactList) 
         assert len(contacts.arrays.constants) == own + len(np.unique(contacts.arrays.contact_type[others]))
 
 
-def test_pairs_are_listed_in_one_order_whatever_went_before(scene) -> None:
-    straight, roundabout = list_of(scene("periodic")), list_of(scene("periodic"))
-    roundabout.search(shaken(roundabout, 0.3))
-    for contacts in (straight, roundabout):
-        contacts.search(still(contacts))
-        order = np.lexsort((contacts.arrays.second, contacts.arrays.first))
-        assert np.array_equal(order, np.arange(len(order)))
-    assert sorted(keys(straight)) == sorted(keys(roundabout))
-
-    again = list_of(scene("periodic"))
-    again.search(still(again))
-    for one, other in zip(straight.arrays, again.arrays, strict=True):
-        assert np.array_equal(one, other)
-
-
 def test_cracks_are_told_once_and_in_the_order_they_happened(scene) -> None:
     contacts = list_of(scene())
     pairs, moved = contacts.arrays, {step: shaken(contacts, 0.01, step) for step in (7, 9, 12)}
@@ -202,21 +177,6 @@ def test_a_crack_across_the_seam_lies_at_the_seam(scene) -> None:
 
     x = contacts.take_cracks().position[0, 0]
     assert min(abs(x), abs(x - 8.0)) < 0.3  # the largest radius
-
-
-def test_bonds_and_contacts_that_push_count_as_neighbours(scene) -> None:
-    contacts = list_of(scene(**LOCKED_IN))
-    forces_of(contacts, still(contacts))
-    pairs = contacts.arrays
-    radii = contacts.assembly.radii
-    overlaps = radii[pairs.first] + radii[pairs.second] > pairs.constants[pairs.contact_type, 2]
-    pairs.state[pairs.state == INTACT] = SHEAR
-    ends = np.concatenate([pairs.first[overlaps], pairs.second[overlaps]])
-
-    assert np.array_equal(contacts.coordination(UPDATED), np.bincount(ends, minlength=len(radii)))
-    pairs.state[~overlaps] = INTACT
-    everybody = np.concatenate([pairs.first, pairs.second])
-    assert np.array_equal(contacts.coordination(UPDATED), np.bincount(everybody, minlength=len(radii)))
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0, 1.5])
@@ -263,18 +223,6 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene) -> None:
         assert np.array_equal(getattr(old, name)[among], getattr(new, name))
     assert np.array_equal(left.origin, moved[:2, kept])
     # the same pairs, so the same forces, across periodic sides as well
-    forces_of(contacts, moved)
-    forces_of(left, moved[:, kept])
+    contacts.push(moved)
+    left.push(moved[:, kept])
     assert np.array_equal(contacts.force[among], left.force)
-
-
-def test_a_list_is_old_once_two_disks_may_have_closed_its_skin(contacts: ContactList) -> None:
-    count = len(contacts.assembly.radii)
-    for share, old in ((0.999, False), (1.001, True)):
-        moved = still(contacts) + 0.3  # all are carried along
-        moved[0, count // 2] -= share * contacts.skin  # towards any other one nearby
-        assert contacts.is_old(moved) == old
-
-    # counted from where it was made
-    contacts.search(moved)
-    assert not contacts.is_old(moved)

@@ -1,54 +1,32 @@
-"""Rows of copies: every contact is in one entry or among the strays, and what they do is what the contacts do."""
+"""Rows of copies do what their contacts do one by one."""
 
 import numpy as np
 import pytest
 
-from dembound.disks.contacts.row_plan import plan_rows
 from dembound.disks.scene import DiskScene, build
-from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import LaneRows
 
 LATTICE = {"pattern": "A", "size": [9.0, 2.0], "radius": 0.25}
 DENSE = {"pattern": "B", "size": [36.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 5.0]}
-FRAMED = {**DENSE, "pattern": "C", "edge_radius": 0.25, "size": [12.0, 15.0]}
 WRAP = {"type": "periodic"}
-FREE_FIELD = {"type": "free_field"}
 HOLE = {"name": "tunnel", "type": "circle", "centre": [6.0, 5.0], "radius": 2.5}
 BARE = {"wave": {}, "monitor": [], "motion.held": [], "boundary": {}}
 CASES = {
-    "lattice": {"packing": LATTICE},
-    "half cells": {"packing": LATTICE, "boundary": {"right": {"type": "viscous", "half_mass": True}}},
     "lattice around": {"packing": LATTICE, "boundary": {"left": WRAP, "right": WRAP}},
     "dense": {"packing": DENSE},
     "dense around": {"packing": DENSE, "boundary": dict.fromkeys(("left", "right", "bottom", "top"), WRAP)},
-    "framed": {"packing": FRAMED},
     "with a hole": {"packing": DENSE, "hole": [HOLE]},
-    "free field": {"packing": DENSE, "boundary": {"left": FREE_FIELD, "right": FREE_FIELD}},
 }
-
-
-@pytest.fixture(params=CASES)
-def scene(bar, request) -> DiskScene:
-    return build(bar({**BARE, **CASES[request.param]}))
+"""Runs of others are compared in `test_rows_of_copies`."""
 
 
 def lanes_of(scene: DiskScene) -> list[LaneRows]:
     return [rows for rows in scene.rows if isinstance(rows, LaneRows)]
 
 
-def test_disks_have_slots_of_their_own_in_rows_of_their_copies(scene: DiskScene) -> None:
-    slot, assembly = scene.layout.slot, scene.assembly
-    assert len(np.unique(slot)) == scene.count
-    assert slot.min() >= LANES
-    assert slot.max() < scene.layout.count - LANES
-    for name, nodes in scene.parts.items():
-        part = assembly.part(nodes)
-        plan = plan_rows(part)
-        key = plan.row * 1000 + part.brick_particle
-        assert len(np.unique(key)) == len(np.unique(plan.row)), name
-
-
-def test_forces_are_those_of_the_contacts_one_by_one(scene: DiskScene, in_order) -> None:
+@pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
+def test_forces_are_those_of_the_contacts_one_by_one(bar, in_order, changes: dict) -> None:
+    scene = build(bar({**BARE, **changes}))
     plain = in_order(scene)
     u = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
     found, expected = (each.system(1.0).forces.elastic(u) for each in (scene, plain))

@@ -6,19 +6,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from dembound.casefile.disks.material import Material
 from dembound.disks.material.bragg import Coupling, coupling
 from dembound.disks.material.homogenise import Network
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
-from dembound.packings.dense import Recipe, pack_dense
-
-MATERIAL = Material(density=2500.0, p_wave_speed=1000.0, fric=0.5)
-RECIPE = Recipe(size=(6.0, 5.0), radius=0.25, radius_ratio=1.5, pressure=0.008, bond_gap=0.0, seed=2)
-
-
-@pytest.fixture(scope="module")
-def dense() -> PackedMaterial:
-    return make_packed_material(pack_dense(RECIPE), MATERIAL, ())
+from dembound.disks.material.packed_material import PackedMaterial
 
 
 def frequencies(ground: PackedMaterial, k: np.ndarray) -> np.ndarray:

@@ -1,23 +1,8 @@
-"""The constants of contacts, and where contacts give way."""
+"""The constants of contacts."""
 
 import numpy as np
-import pytest
 
-from dembound.disks.material.constants import limits_of, shared_constants
-from dembound.kernels.contacts import BONDED, UPDATED
-
-LAW = {"material.law": "linearpbond"}
-
-
-def test_limits_are_those_of_the_material(bar) -> None:
-    strength = {"material.pb_ten": 1e6, "material.pb_coh": 2e6, "material.pb_fa": 45.0, "material.fric": 0.5}
-    limits = limits_of(bar(LAW | strength).material)
-    assert (limits.friction, limits.tension, limits.cohesion, limits.geometry) == (0.5, 1e6, 2e6, UPDATED)
-    assert limits.tan_fa == pytest.approx(1.0, rel=1e-15)
-    assert limits_of(bar(LAW | {"material.geometry": "reference"}).material).geometry == BONDED
-
-    unbreakable = limits_of(bar(LAW).material)
-    assert (unbreakable.tension, unbreakable.cohesion, unbreakable.tan_fa) == (np.inf, np.inf, 0.0)
+from dembound.disks.material.constants import shared_constants
 
 
 def test_rows_that_differ_by_rounding_alone_are_shared() -> None:

@@ -12,7 +12,6 @@ from dembound.disks.material.homogenise import Network, homogenise
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
 from dembound.outside.mesh import Around, Mesh
 from dembound.packings.brick import Brick
-from dembound.packings.dense import Recipe, pack_dense
 from dembound.packings.square import Square
 from dembound.packings.tiling import tile
 
@@ -21,9 +20,8 @@ MATERIAL = Material(density=2500.0, p_wave_speed=1000.0)
 
 
 @pytest.fixture(scope="module")
-def dense() -> PackedMaterial:
-    brick = pack_dense(Recipe(size=(6.0, 5.0), radius=0.25, radius_ratio=1.5, pressure=0.008, bond_gap=0.0, seed=2))
-    return make_packed_material(brick, MATERIAL, ())
+def dense(random_brick) -> PackedMaterial:
+    return make_packed_material(random_brick, MATERIAL, ())
 
 
 def square(fric: float = 0.0) -> PackedMaterial:

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from disk_systems import LAMB
 
 from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.bragg import sent_back
@@ -19,19 +20,8 @@ RANDOM = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1
 
 @pytest.fixture
 def case(bar):
-    """Lamb's problem on 40 m × 20 m of a lattice with c_p = 1000 m/s, c_s = 707 m/s."""
-    return bar(
-        {
-            "packing": {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5},
-            "material.fric": 0.5,
-            "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
-            "motion.held": [],
-            "monitor": [],
-            "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.2}},
-            "load": [{"name": "f", "position": [20.5, 19.5], "force": [0.0, -1e6], "wave": "pulse"}],
-            "run.duration": 10.0,
-        }
-    )
+    """With c_p = 1000 m/s, c_s = 707 m/s."""
+    return bar(LAMB | {"material.fric": 0.5, "run.duration": 10.0})
 
 
 def facts_of(case, **changes) -> dict[str, str]:
@@ -95,23 +85,23 @@ def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
     assert "copies of the brick" not in facts_of(case, wave={"pulse": short})  # a lattice
 
 
-LAYERS = "outside.layers: 2 elements of order 4 return about 0.7 % of the displacement"
 STRONG = "outside.reflection: is 0.01, above outside.accuracy = 0.1 %; give at most 0.0001"
 SMALL = "outside.element: elements of 4 m shorten the time step, and below 5 m nothing is gained"
 MISSING = "outside.margin: under a load that stays for 10 s about 0.31 % of the displacement will be missing, more "
+LASTING = {"wave": {"pulse": STAYS}, "outside.margin": 1}
 
 
 @pytest.mark.parametrize(
     ("changes", "start"),
     [
         ({"outside.element": 20.0}, "outside.element: elements of 20 m return short waves, about 0.8"),
-        ({"outside.layers": 2}, LAYERS),
-        ({"outside.reflection": 0.01}, STRONG),
-        ({"outside.element": 4.0}, SMALL),
+        ({"outside.layers": 2}, "outside.layers: 2 elements of order 4 return about 0.7 % of the displacement"),
         (
-            {"wave": {"pulse": STAYS}, "outside.margin": 1},
-            f"{MISSING}than outside.accuracy = 0.1 %; 300 m within the layers are enough, now 120 m",
+            {"outside.reflection": 0.01},
+            STRONG,
         ),
+        ({"outside.element": 4.0}, SMALL),
+        (LASTING, f"{MISSING}than outside.accuracy = 0.1 %; 300 m within the layers are enough, now 120 m"),
     ],
 )
 def test_poor_settings_have_one_line_each(case, changes: dict, start: str) -> None:

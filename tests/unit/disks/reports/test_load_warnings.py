@@ -2,16 +2,10 @@
 
 import pytest
 from small_cases import small
+from warned_cases import GROUND
 
 from dembound.disks.reports.load_warnings import load_warnings
 from dembound.disks.scene import build
-
-GROUND = {
-    "packing": {"pattern": "A", "size": [20.0, 10.0], "radius": 0.5},
-    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
-    "wave": {"blow": {"type": "cosine", "amplitude": 1.0, "period": 0.05}},
-    "run": {"duration": 0.01},
-}
 
 
 def scene(side: dict, **place: list):

@@ -36,6 +36,10 @@ def of_wave(**keys: float) -> dict:
     return {f"wave.pulse.{key}": value for key, value in keys.items()}
 
 
+def strong(amplitude: float) -> dict:
+    return of_wave(amplitude=amplitude)
+
+
 def shortest(count: float) -> dict:
     """So many disks in the shortest wavelength."""
     return of_wave(period=count * 0.5 * HANN_FADE / 500.0)
@@ -53,62 +57,43 @@ def weight(acceleration: float) -> dict:
     return {"load": [{"name": "weight", "acceleration": [0.0, acceleration]}]}
 
 
-TEN, WAY = "of material.pb_ten, 5 MPa: Pa and MPa?", "its way through the scene, 0.01 s; "
+TEN = "of material.pb_ten, 5 MPa: Pa and MPa?"
+SUDDEN = STEP | {"boundary.left": GRIP} | lasting(1.01)
+TAPPED = {"load": [TAP | {"position": [5.0, 0.5], "force": [1.0, 0.0]}]}
+PRESSED = SLOW | TWO_WAYS | static(-1e6, -3e6, 0.5e6)
+FREE = {"type": "free"}
+ENDS = {"bottom": GRIP, "top": {"type": "fixed"}, "left": FREE, "right": FREE}
+UPRIGHT = GRIPPED | TWO_WAYS | {"boundary": ENDS}
 LIMITS = [
     # the mean frequency of a Hann lobe's energy, sin²πx/[πx(1 − x²)]² over x = fT, is 0.505/T
-    (
-        lasting(0.1),
-        shortest(20.1),
-        shortest(19.9),
-        "has 19.9 particles in its shortest wavelength, fewer than 20, ",
-    ),
-    (lasting(0.01), {}, of_wave(period=1e-4), "has a shortest wavelength below the diameter of a particle; "),
+    (lasting(0.1), shortest(20.1), shortest(19.9), "has 19.9 particles in its shortest wavelength, fewer than 20"),
+    (lasting(0.01), {}, of_wave(period=1e-4), "has a shortest wavelength below the diameter of a particle"),
     # 20 disks of 0.5 m at 500 m/s, times 3.27
     (STEP, of_wave(rise=0.066), of_wave(rise=0.06), "rises within 0.06 s, which is shorter than the particles can "),
-    (STEP, of_wave(rise=0.066), {}, "is a step (rise = 0), which is shorter than the particles can follow, 0.065 s; "),
+    (STEP, of_wave(rise=0.066), {}, "is a step (rise = 0), which is shorter than the particles can follow, 0.065 s"),
     # a slow grip may start suddenly: at 1000 m/s, 100 ways of 10 m are 1 s; a load or a wave that enters may not
-    (STEP | {"boundary.left": GRIP}, lasting(1.01), lasting(0.99), "is a step"),
-    (STEP | {"boundary.left": GRIP} | lasting(1.01), {}, {"boundary.left.type": "viscous_input"}, "is a step"),
-    (
-        STEP | {"boundary.left": GRIP} | lasting(1.01),
-        {},
-        {"load": [TAP | {"position": [5.0, 0.5], "force": [1.0, 0.0]}]},
-        "is a step",
-    ),
+    (SUDDEN, {}, lasting(0.99), "is a step"),
+    (SUDDEN, {}, {"boundary.left.type": "viscous_input"}, "is a step"),
+    (SUDDEN, {}, TAPPED, "is a step"),
     # the default locks in 10 MPa; ρcv = 2500·1000·v reaches that at 4 m/s; packings meet it within 0.05 %
-    (DENSE, of_wave(amplitude=3.99), of_wave(amplitude=4.01), "has a stress ρcv of 10"),
+    (DENSE, strong(3.99), strong(4.01), "has a stress ρcv of 10"),
     # the mean of 1 and 3 MPa at 0.8 m/s; 0.81 m/s make 2.025; a lattice has none by itself
-    (
-        SLOW | TWO_WAYS | static(-1e6, -3e6, 0.5e6),
-        of_wave(amplitude=0.79),
-        of_wave(amplitude=0.81),
-        "has a stress ρcv of 2.03 MPa, above the confining stress of 2 MPa; ",
-    ),
+    (PRESSED, strong(0.79), strong(0.81), "has a stress ρcv of 2.03 MPa, above the confining stress of 2 MPa"),
     # 10 m at 1000 m/s
-    (lasting(1.0), of_wave(period=0.99), of_wave(period=1.01), f"has a period of 1.01 s, 101 times {WAY}"),
+    (lasting(1.0), of_wave(period=0.99), of_wave(period=1.01), "has a period of 1.01 s, 101 times its way through"),
     # ρc = 2.5e6 Pa·s/m
-    (BREAKABLE, of_wave(amplitude=2.02e-4), of_wave(amplitude=1.98e-4), f"its stress ρcv is 495 Pa, 0.0099 % {TEN}"),
+    (BREAKABLE, strong(2.02e-4), strong(1.98e-4), f"its stress ρcv is 495 Pa, 0.0099 % {TEN}"),
     (BREAKABLE, {"material.pb_ten": 1251.0}, {"material.pb_ten": 1249.0}, "its stress ρcv is 1.25 MPa, 1,001 times "),
     # what has come to rest under 1 MPa is near its strength whatever the wave
-    (BREAKABLE | of_wave(amplitude=1e-9), static(0.0, 1e6, 0.0), {}, "its stress ρcv is 0.0025 Pa"),
+    (BREAKABLE | strong(1e-9), static(0.0, 1e6, 0.0), {}, "its stress ρcv is 0.0025 Pa"),
     # 2.5e6·1e-4 Pa as a P wave, half of that as an S wave; a wave that is both counts with the larger one
-    (S_WAVE, of_wave(amplitude=4.1e-4), of_wave(amplitude=3.9e-4), "its stress ρcv is 487"),
-    (S_WAVE, of_wave(amplitude=3e-4) | {"boundary.left.wave_p": "pulse"}, of_wave(amplitude=3e-4), "its stress ρcv is"),
+    (S_WAVE, strong(4.1e-4), strong(3.9e-4), "its stress ρcv is 487"),
+    (S_WAVE, strong(3e-4) | {"boundary.left.wave_p": "pulse"}, strong(3e-4), "its stress ρcv is"),
     # 2.5 Pa by ρcv, but 2 s of 1 µm/s strain 10 m by 2e-7, which is 500 Pa; along y 1 m
     (GRIPPED | {"boundary.left": GRIP}, lasting(2.1), lasting(1.9), f"its stress ρc²u/L is 475 Pa, 0.0095 % {TEN}"),
-    (
-        GRIPPED | TWO_WAYS | {"boundary": {"bottom": GRIP, "top": {"type": "fixed"}}},
-        lasting(0.21),
-        lasting(0.19),
-        f"its stress ρc²u/L is 475 Pa, 0.0095 % {TEN}",
-    ),
+    (UPRIGHT, lasting(0.21), lasting(0.19), f"its stress ρc²u/L is 475 Pa, 0.0095 % {TEN}"),
     # strains above 3 % of the elastic law, of velocities 1000 m/s
-    (
-        TWO_WAYS,
-        of_wave(amplitude=29.0),
-        of_wave(amplitude=50.0),
-        "particles move at up to 50 m/s, P waves along x ",
-    ),
+    (TWO_WAYS, strong(29.0), strong(50.0), "particles move at up to 50 m/s, P waves along x "),
 ]
 """Keys of the case, some without and some with a warning of wave.pulse, and how that begins."""
 
@@ -122,7 +107,7 @@ def test_a_wave_beyond_a_limit_has_one_warning(bar, tables: dict, within: dict, 
 
 
 def test_without_a_stress_or_a_strength_there_is_nothing_to_compare_with(bar) -> None:
-    for changes in (of_wave(amplitude=4.0), of_wave(amplitude=1e-9), {"material.law": "linearpbond"}):
+    for changes in (strong(4.0), strong(1e-9), {"material.law": "linearpbond"}):
         assert warned(bar(SLOW | changes)) == []
 
 
@@ -130,10 +115,10 @@ def test_steady_stresses_beside_strength_and_stiffness(bar) -> None:
     # 2.5 GPa, of which a body of 1 m under 1e5 g has 98 %; the law with a history is for large strains
     (line,) = (line for line in warned(bar(TWO_WAYS | weight(-9.81e5))) if "law is for small ones" in line)
     assert line.startswith("load.weight: its stress ρaL, 2452 MPa, is 98 % of the stiffness, 2500 MPa, and so are ")
-    large = TWO_WAYS | of_wave(amplitude=50.0) | weight(-9.81e5) | {"material.law": "linearpbond"}
+    large = TWO_WAYS | strong(50.0) | weight(-9.81e5) | {"material.law": "linearpbond"}
     assert not any("for small ones" in line for line in warned(bar(large)))
     assert not any("for small ones" in line for line in warned(bar(TWO_WAYS | weight(-9.81))))
-    found = warned(bar(BREAKABLE | of_wave(amplitude=1e-9) | static(0.0, -400.0, 0.0)))
+    found = warned(bar(BREAKABLE | strong(1e-9) | static(0.0, -400.0, 0.0)))
     assert found == [f"static.stress: its largest component is 400 Pa, 0.008 % {TEN}"]
 
 
@@ -156,7 +141,7 @@ def test_loads_beside_the_strength(bar, load: dict, what: str, stress: float) ->
     peak = {400.0: 4.0, 50.0: -1.0}.get(stress, 1.0)
     free = TWO_WAYS | {"boundary.left": {"type": "viscous"}}
     for strength, weak in ((0.99e4 * stress, False), (1.01e4 * stress, True)):
-        wave = of_wave(amplitude=peak) | {"material.pb_ten": strength}
+        wave = strong(peak) | {"material.pb_ten": strength}
         against = f"material.pb_ten, {stress_in_words(strength)}: Pa and MPa?"
         said = f"load.tap: {what} is {stress:g} Pa, 0.0099 % of {against}"
         assert warned(bar(BREAKABLE | free | wave | {"load": [TAP | load]})) == weak * [said]
@@ -180,12 +165,12 @@ def test_a_wave_is_as_strong_as_its_speed_across_its_side(bar, side: str, axis: 
 @pytest.mark.parametrize(
     ("changes", "is_doubted"),
     [
-        (of_wave(amplitude=4.9), False),  # the strongest motions recorded are slower
-        (of_wave(amplitude=5.1), True),
-        (of_wave(amplitude=-5.1) | {"boundary.left": {"type": "velocity", "wave_p": "pulse"}}, True),
-        (of_wave(amplitude=5.1, period=0.005), False),  # a pulse of a laboratory
-        (of_wave(amplitude=5.1) | {"boundary.left": {"type": "free"}, "load": [PUSHING]}, False),  # of a load
-        (of_wave(amplitude=40.0), False),  # v/c says so
+        (strong(4.9), False),  # the strongest motions recorded are slower
+        (strong(5.1), True),
+        (strong(-5.1) | {"boundary.left": {"type": "velocity", "wave_p": "pulse"}}, True),
+        (of_wave(amplitude=5.1, period=5e-3), False),  # a pulse of a laboratory
+        (strong(5.1) | {"boundary.left": {"type": "free"}, "load": [PUSHING]}, False),  # of a load
+        (strong(40.0), False),  # v/c says so
     ],
     ids=str,
 )

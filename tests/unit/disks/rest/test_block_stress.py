@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from disk_systems import BODY, WRAP
 
 from dembound.disks.rest.block_stress import Blocks, Uniformity, block_stress
 from dembound.disks.scene import DiskScene, build
@@ -11,9 +12,6 @@ from dembound.packings.cut import BEYOND
 
 K = 2500.0 * 1000.0**2
 """Normal stiffness of a lattice contact and its bond, N/m."""
-
-BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
-WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
 RANDOM = {"pattern": "B", "size": [8.0, 8.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 
 

@@ -2,17 +2,15 @@
 
 import numpy as np
 import pytest
-from disk_systems import fitted, turn
+from disk_systems import BODY, TWO_BRICKS, fitted, shaken, turn
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.rest.tractions import Tractions
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.side_forces import side_forces
 
-BODY = {"wave": {}, "monitor": [], "motion.held": [], "boundary": {}}
 FOLLOWING = {"material.law": "linearpbond"}
 STILL = {"elastic": {}, "reference": {"material.law": "linearpbond", "material.geometry": "reference"}}
-RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 STRESS = (-3e6, 2e6, 1e6)
 
 
@@ -21,14 +19,13 @@ def random_body(bar):
     """Makes two random bricks side by side, whose sides are uneven."""
 
     def make(**changes: object) -> DiskScene:
-        return build(bar({**BODY, "packing": RANDOM, **changes}))
+        return build(bar({**BODY, "packing": TWO_BRICKS, **changes}))
 
     return make
 
 
-def moved(scene: DiskScene, seed: int = 1, size: float = 0.1) -> np.ndarray:
-    """Random displacements (3, n)."""
-    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, scene.count))
+def moved(scene: DiskScene, seed: int = 1) -> np.ndarray:
+    return shaken(scene, 0.1, seed)
 
 
 def turned(scene: DiskScene, angle: float) -> np.ndarray:

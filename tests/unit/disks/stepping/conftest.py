@@ -1,7 +1,7 @@
 """What the tests of disks in motion share."""
 
 import pytest
-from disk_systems import DENSE
+from disk_systems import BODY, DENSE
 
 from dembound.disks.scene import DiskScene, build
 
@@ -11,7 +11,6 @@ def loose(bar):
     """Makes random packings that nothing holds or drives."""
 
     def make(**changes: object) -> DiskScene:
-        bare = {"packing": DENSE, "boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
-        return build(bar({**bare, **changes}))
+        return build(bar({**BODY, "packing": DENSE, **changes}))
 
     return make

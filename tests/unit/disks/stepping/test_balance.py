@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disk_systems import fitted
+from disk_systems import BODY, FREE_FIELD, TWO_BRICKS, fitted, turn
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
@@ -14,10 +14,7 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import TENSION
 from dembound.kernels.follower import extra_work, side_rotations, turn_forces
 
-BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": [], "material.law": "linearpbond"}
 LATTICE = {"pattern": "A", "size": [2.5, 2.0], "radius": 0.25}
-RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-FREE_FIELD = {"type": "free_field"}
 STEP = 0.1
 
 
@@ -26,7 +23,8 @@ def scene(bar, in_order):
     """Makes five disks by four that nothing holds, or other packings under other boundaries."""
 
     def make(packing: dict = LATTICE, ground: dict | None = None, **boundary: dict) -> DiskScene:
-        return in_order(build(bar({**BODY, "packing": packing, "boundary": boundary, **(ground or {})})))
+        law = {"material.law": "linearpbond"}
+        return in_order(build(bar({**BODY, **law, "packing": packing, "boundary": boundary, **(ground or {})})))
 
     return make
 
@@ -88,7 +86,7 @@ def test_sides_turn_by_their_mean_with_the_opposite_one(scene) -> None:
 
 @pytest.mark.parametrize("sides", [("left", "right"), ("right",)])
 def test_beside_a_free_field_forces_turn_with_the_body_relative_to_its_column(scene, sides: tuple[str, ...]) -> None:
-    body = scene(RANDOM, **{side: FREE_FIELD for side in sides})
+    body = scene(TWO_BRICKS, **{side: FREE_FIELD[side] for side in sides})
     count = body.seam.count
     # a disk of the right side, which has contacts beyond it, counts as no disk of that side
     right = body.edges["right"]
@@ -158,14 +156,13 @@ def test_on_a_box_in_the_ground_forces_turn_at_all_four_sides(scene) -> None:
         low, high = positions[axis, box].min(), positions[axis, box].max()
         across[axis, box] = np.isclose(positions[axis, box], low) * 1.0 - np.isclose(positions[axis, box], high)
     angle = 1e-3
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     moved = still.copy()
-    moved[:2, box] = (turn - np.eye(2)) @ arm[:, box]
+    moved[:2, box] = (turn(angle) - np.eye(2)) @ arm[:, box]
 
     assert mean_rotations(body, moved) == pytest.approx(dict.fromkeys(OPPOSITE, angle), rel=1e-9)
     balance, load = Balance(body, still, still, still, across), still.copy()
     turn_forces(balance.followers, moved, still, load, STEP)
-    np.testing.assert_allclose((across + load)[:2], turn @ across[:2], rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose((across + load)[:2], turn(angle) @ across[:2], rtol=0.0, atol=1e-15)
     places = arm + moved[:2]
     torque = np.sum(places[0] * (across + load)[1] - places[1] * (across + load)[0])
     assert abs(torque) < 1e-12
@@ -212,10 +209,8 @@ def test_what_is_left_of_the_sides_turns_by_its_own_rotation(scene) -> None:
     isolate(parts, debris)
     balance.end_on_debris(parts, datum.copy(), np.zeros((3, body.count)), STEP, steady + balance.force)
 
-    places, angle = body.positions.T + datum[:2], 0.3
-    turn = np.array([[np.cos(angle) - 1.0, -np.sin(angle)], [np.sin(angle), np.cos(angle) - 1.0]])
-    moved = datum.copy()
-    moved[:2] += turn @ places
+    places, angle, moved = body.positions.T + datum[:2], 0.3, datum.copy()
+    moved[:2] += (turn(angle) - np.eye(2)) @ places
     moved[:2, debris] += 7.0
     # some ten operations on numbers of size 1
     assert side_rotations(moved, balance.followers) == pytest.approx(np.full(4, angle), rel=1e-14)
@@ -269,7 +264,7 @@ def test_the_work_goes_on_from_where_forces_end(scene) -> None:
 
 
 def test_what_keeps_coming_through_a_seam_is_taken_off(scene) -> None:
-    body = scene(RANDOM, left=FREE_FIELD, right=FREE_FIELD)
+    body = scene(TWO_BRICKS, **FREE_FIELD)
     across = np.zeros((3, body.count))
     across[:, body.seam.node] = np.random.default_rng(7).uniform(-1.0, 1.0, (3, len(body.seam.node)))
     parts, (balance, steady) = parts_of(body), balance_of(body, across)

@@ -1,4 +1,4 @@
-"""The law that disks begin with, and what balances a settled body under it."""
+"""The law that disks begin with, and the forces that are steady under it."""
 
 import numpy as np
 import pytest
@@ -10,17 +10,13 @@ from disk_systems import (
     FREE_FIELD,
     SIDES,
     STEP,
-    WEIGHT,
     WITH_HISTORY,
     begun,
-    forces_of,
     locked_in_forces,
     settled,
     shaken,
 )
 
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.start import Start
 from dembound.disks.stepping.system import DiskSystem
 
 
@@ -42,45 +38,6 @@ def test_what_is_locked_in_pushes_a_body_as_built_under_either_law(loose, bounda
     assert {part.law_name for part in system.parts} == {state.laws[0][0]}
     assert system.balance is None
     assert not any(part.stops_at_breaks for part in system.parts)
-
-
-def test_what_springs_of_supports_bear_is_balanced_too(loose) -> None:
-    body = loose(boundary={"right": {"type": "viscoelastic", "distance": 40.0}})
-    start = settled(body, has_history=False)
-    system = DiskSystem(body, STEP, start)
-    begun(system, start.displacement)
-    springs = body.supports.springs_at(start.displacement)
-
-    assert springs.any()
-    assert np.array_equal(system.steady, springs - system.forces.elastic(start.displacement))
-
-
-HISTORIES = {"elastic at first": ({}, False), "at once": (AT_ONCE, False), "gone on from": ({}, True)}
-
-
-@pytest.mark.parametrize(("changes", "has_history"), HISTORIES.values(), ids=HISTORIES)
-def test_a_settled_body_with_a_history_is_balanced_under_the_law_it_begins_with(
-    loose, changes: dict, has_history: bool
-) -> None:
-    body = loose(**{**WITH_HISTORY, **changes, **WEIGHT})
-    start = settled(body, has_history=has_history)
-    lists = contact_lists(body)
-    if not has_history:
-        for contacts in lists.values():
-            contacts.start_from_displacements(start.displacement)
-    system = DiskSystem(body, STEP, start)
-    resting = forces_of(system, lists, start.displacement)
-    state = begun(system, start.displacement)
-    law = BONDED if changes or has_history else ELASTIC
-    pushes = resting if law == BONDED else system.forces.elastic(start.displacement)
-
-    assert state.laws == [(law, 0)]
-    assert system.contacts == start.contacts
-    assert system.balance is not None
-    assert np.array_equal(system.balance.force, -resting - body.steady_load)
-    # nothing moves: load and balance hold what the law pushes with; sums of some five forces
-    np.testing.assert_allclose(system.steady, -pushes, rtol=0.0, atol=10.0 * EPS * np.abs(resting).max())
-    assert [part.stops_at_breaks for part in system.parts] == [law == BONDED]
 
 
 @pytest.mark.parametrize("has_history", [False, True])
@@ -125,11 +82,3 @@ def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(loose,
     assert np.abs(found).max() > 1e6 * 20.0 * EPS * scale
     assert [part.name for part in system.parts] == (["column", "body"] if boundary else ["body"])
     assert len(system.ties) == bool(boundary)
-
-
-def test_displacements_of_a_start_lie_row_after_row_in_memory() -> None:
-    """As those that are read from a record do: sums of them then have one order of terms."""
-    moved = np.arange(12.0).reshape(4, 3).T
-    assert not moved.flags.c_contiguous
-    assert Start(moved).displacement.flags.c_contiguous
-    assert np.array_equal(Start(moved).displacement, moved)

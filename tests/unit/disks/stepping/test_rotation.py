@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from disk_systems import turn
+from disk_systems import BODY, turn
 
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.rotation import turned_as_a_whole, turns_freely
 
-BODY = {"wave": {}, "monitor": [], "motion.held": [], "boundary": {}}
 RANDOM = {
     "pattern": "C",
     "size": [4.0, 4.0],

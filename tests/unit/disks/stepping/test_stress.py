@@ -1,6 +1,7 @@
 """Stress, particle by particle, where it is known by hand, and that looking at it changes nothing."""
 
 import numpy as np
+from disk_systems import BODY, WRAP
 
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.scene import DiskScene, build
@@ -11,10 +12,7 @@ from dembound.motion.simulation import Simulation
 
 K = 2500.0 * 1000.0**2
 """Normal stiffness of a lattice contact and its bond, N/m; without friction the bond's half carries the shear."""
-
-BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
 RANDOM = {"pattern": "B", "size": [5.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
-WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
 
 
 def elastic_stress(scene: DiskScene, displacement: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Bonded disks in motion: other loads, the change of law, debris, and what a checkpoint keeps."""
+"""Bonded disks in motion: the change of law."""
 
 import numpy as np
 import pytest
@@ -20,24 +20,7 @@ from disk_systems import (
 
 from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.system import DiskSystem
-from dembound.kernels.common import BROKE, DONE, LAW_ENDS, LIST_ENDS
-from dembound.kernels.contacts import TENSION
-
-
-def test_other_loads_take_the_place_of_the_old_ones(loose) -> None:
-    for changes in ({}, WITH_HISTORY):
-        body = loose(**changes)
-        system = DiskSystem(body, STEP, settling=True)
-        begun(system)
-        before = system.steady.copy() if changes else np.zeros((3, body.count))
-        for seed in (5, 6):
-            load = shaken(body, 1.0, seed)
-            system.apply(load)
-            # a difference of differences
-            np.testing.assert_allclose(
-                system.steady, before + load, rtol=0.0, atol=4.0 * EPS * np.abs(before).max() + 4.0 * EPS
-            )
-            assert system.load is load
+from dembound.kernels.common import DONE, LAW_ENDS, LIST_ENDS
 
 
 @pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
@@ -114,52 +97,6 @@ def test_what_balances_turns_under_a_law_that_follows_the_motion(
     assert (system.turning is not None) == turns
     if turns:
         assert system.turning is system.balance.followers
-
-
-@pytest.mark.parametrize(("why", "ends"), [(BROKE, True), (LIST_ENDS, True), (DONE, False)])
-def test_what_balances_ends_on_what_has_broken_away(loose, why: int, ends: bool) -> None:
-    body = loose(**TOUGH)
-    for has_history in (True, False):
-        start, load = settled(body, has_history=has_history), shaken(body, 1.0, 5)
-        system = DiskSystem(body, STEP, start, load=load)
-        state = begun(system, start.displacement)
-        pairs, loose = system.parts[0].pairs, 0
-        broken = (pairs.first == loose) | (pairs.second == loose)
-        pairs.state[broken], pairs.cracked[broken], pairs.force[:, broken] = TENSION, 1, 0.0
-        force, steady = system.balance.force.copy(), system.steady.copy()
-        assert force[:, loose].all()
-        system.react(why, 1, state)
-
-        if ends and has_history:  # only the law with a history breaks bonds
-            assert not system.balance.force[:, loose].any()
-            # what is taken off has been added
-            scale = np.abs(force).max()
-            np.testing.assert_allclose(system.steady[:, loose], load[:, loose], rtol=0.0, atol=4.0 * EPS * scale)
-        else:
-            assert np.array_equal(system.balance.force, force)
-            assert np.array_equal(system.steady, steady)
-
-
-def test_a_system_goes_on_from_what_another_remembers(loose) -> None:
-    body = loose(**WITH_HISTORY)
-    start = settled(body, has_history=False)
-    system, other = DiskSystem(body, STEP, start), DiskSystem(body, STEP)
-    state = begun(system, start.displacement)
-    system.react(LAW_ENDS, 1, state)
-    memory = {name: np.array(values) for name, values in system.memory().items()}
-    begun(other)
-    other.recall(memory)
-    again = other.memory()
-
-    assert other.law_name == BONDED
-    assert other.turning is other.balance.followers
-    assert all(part.stops_at_breaks for part in other.parts)
-    assert again.keys() == memory.keys()
-    for name, values in memory.items():
-        assert np.array_equal(again[name], values)
-    # and it shares nothing with the memory
-    other.balance.force += 1.0
-    assert np.array_equal(memory["balance/force"], system.balance.force)
 
 
 def test_a_law_that_changes_in_good_time_changes_no_force(loose) -> None:
