@@ -10,7 +10,6 @@ import pytest
 
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
 PERIOD = 0.25
@@ -99,9 +98,8 @@ def test_from_the_other_side_the_motion_is_the_mirror_image(lab, kind, signs) ->
 def test_the_ledger_closes_and_what_comes_in_leaves(lab) -> None:
     """Energy comes in through the left side and from below, and from above what the surface sends back."""
     scene = build(window(lab, hole=[HOLE]))
-    simulation = Simulation(scene, choose_step(scene)[0], side_stride=1)
-    ledger = Ledger(simulation, 50)
-    simulation.track(ledger)
+    simulation = lab.simulation(scene, side_stride=1)
+    ledger = lab.ledger(simulation, 50)
     simulation.run(int(0.8 / simulation.time_step))
     of = dict(zip(ledger.side_names, ledger.side_columns[-1].tolist(), strict=True))
     came_in, left, _ = np.sum([of[side] for side in ("left", "right", "bottom", "top")], axis=0)

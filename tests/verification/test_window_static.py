@@ -47,7 +47,7 @@ def ground(lab, pattern: str, box, *, hole: bool, **words) -> Ground:
 
 
 def largest_speed(lab, at: Ground, steps: int = 500) -> float:
-    simulation = lab.settled(at.scene, at.settled.start)
+    simulation = lab.simulation(at.scene, at.settled.start)
     simulation.run(steps)
     return float(np.abs(simulation.state.velocity[:2]).max())
 
