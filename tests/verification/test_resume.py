@@ -27,6 +27,7 @@ from dembound.running.recorded import recorded_beginning, recorded_case
 
 PACKING, MATERIAL, INPUT = GRAINS["packing"], GRAINS["material"], GRAINS["boundary"]["bottom"]
 BRITTLE = MATERIAL | {"law": "linearpbond", "pb_ten": 3e5, "pb_coh": 6e5, "fric": 0.3}
+LATTICE = {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25}
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 SQUEEZED = {"stress": [-1e6, -1e6, 0.0], "ratio": 1e-3}
 DISKS = GRAINS | {"output": GRAINS["output"] | {"peaks": True, "contacts": True}}
@@ -54,7 +55,8 @@ CASES = {
         "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}},
     },
     "settled, updated": DISKS | {"material": BRITTLE, "static": SQUEEZED},
-    "free field that breaks": DISKS | {"material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}},
+    "free field that breaks": DISKS
+    | {"packing": LATTICE, "material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}},
     "ends in silence": DISKS | {"run": {"duration": 0.5, "until": "silent", "silent_level": 0.2}},
     "monitors and loads in a continuum": DISKS
     | {
@@ -277,6 +279,8 @@ def test_a_static_stage_is_resumed_to_the_same_bits(settled, tmp_path) -> None:
 
 def test_the_static_stage_of_a_column_is_resumed_to_the_same_bits(tmp_path) -> None:
     changes = {
+        "packing": LATTICE,
+        "material": BRITTLE | {"geometry": "reference"},
         "boundary": FREE_FIELD | {"bottom": INPUT},
         "static": {"ratio": 1e-3, "boundary": {"bottom": {"type": "fixed"}}},
         "load": [{"name": "gravity", "acceleration": [0.0, -9.81]}],
