@@ -67,8 +67,8 @@ def test_the_record_is_the_same(lab, tmp_path, name):
     words = {"pattern": "A", "size": (20.0, 4.0)} | words
     case = lab.case(wave=lab.pulse(0.02), duration=0.05, **words)
     monitors = [{"name": f"m{k}", "position": [0.3 * k * side for side in words["size"]]} for k in range(4)]
-    output = {"pictures": False, "snapshots": 2, "peaks": True, "stress": True, "contacts": True}
-    case = with_changes(case, {"monitor": monitors, "output": output})
+    fields = {"snapshots": 2, "peaks": True, "stress": True, "contacts": True}
+    case = with_changes(case, {"monitor": monitors, "output": {"pictures": False, "energy_interval": 4e-3} | fields})
     data, summary = record_of(case, tmp_path / "with")
     expected, of_all = record_of(with_changes(case, {"reduce.rows": False}), tmp_path / "without")
     particles = summary["particles"]

@@ -16,7 +16,7 @@ TABLES = PUSHED | {
     "static": {"stress": [-1e6, -0.8e6, 0.0], "ratio": SETTLED},
     "reduce": {"settled": True},
     "run": {"duration": 0.03, "time_step": 2e-4},
-    "output": {"snapshots": 0, "pictures": False},
+    "output": {"snapshots": 0, "energy_interval": 5e-3, "pictures": False},
 }
 
 MATERIALS = {
