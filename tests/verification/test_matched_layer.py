@@ -32,8 +32,8 @@ def bar(rock, horizon: int, *, cells: int = CELLS, load: bool = True, own: dict 
     return rock.scene(own or method(horizon), spacing=SPACING, load=push, length=cells * SPACING, **words)
 
 
-def motion(scene, step: float, steps: int, nodes=(0, CELLS // 2, CELLS)) -> np.ndarray:
-    return Simulation(scene, step, nodes).advance(steps)[:, :, 3]
+def motion(scene, step: float, steps: int) -> np.ndarray:
+    return Simulation(scene, step, (0, CELLS // 2, CELLS)).advance(steps)[:, :, 3]
 
 
 def difference(rock, horizon: int, end: dict, share: float, **words) -> float:

@@ -110,7 +110,7 @@ class Stop(Checkpoints):
 
 @pytest.fixture(autouse=True)
 def stopping(monkeypatch) -> None:
-    """Runs return from the loop after every step, and stop where `Stop` says."""
+    """Runs stop where `Stop` says, as soon as anything is due."""
     Stop.is_on = False
     monkeypatch.setattr(job, "Checkpoints", Stop)
 
