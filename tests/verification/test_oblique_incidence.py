@@ -41,13 +41,7 @@ def deviations(scene) -> tuple[float, float]:
     return beyond / peak, grid / peak
 
 
-@pytest.mark.parametrize(
-    ("box", "words"),
-    [
-        (SMALL, {"angle": -40.0, "material.fric": 0.0}),
-        (HIGH, {"kind": "p"}),
-    ],
-)
+@pytest.mark.parametrize(("box", "words"), [(SMALL, {"angle": -40.0, "material.fric": 0.0}), (HIGH, {"kind": "p"})])
 def test_without_a_hole_nothing_is_scattered(lab, box, words) -> None:
     assert max(deviations(build(window(lab, box, **words)))) < SCATTERED
 

@@ -49,11 +49,7 @@ CASES = {
         "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}, "right": {"type": "viscous"}},
     },
     "law changes, bonds break": DISKS
-    | {
-        "material": BRITTLE,
-        "motion": {"held": ["y"]},
-        "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}},
-    },
+    | {"material": BRITTLE, "motion": {"held": ["y"]}, "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}}},
     "settled, updated": DISKS | {"material": BRITTLE, "static": SQUEEZED},
     "free field that breaks": DISKS
     | {"packing": LATTICE, "material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}},
