@@ -31,6 +31,8 @@ RADIUS = 0.25
 BRICK = (10.0, 10.0)
 GROUND = (60.0, 60.0)
 """Width and height (m) of the ground round a box of disks."""
+HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
+"""A hole in the middle of that ground."""
 
 
 @dataclass(frozen=True)
@@ -100,12 +102,14 @@ class Lab:
         box: tuple[float, float, float, float],
         *,
         wave: str = "wave_s",
+        hole: bool = False,
         changes: dict[str, Any] | None = None,
         **words: Any,
     ) -> Case:
         """A case of disks of 1 m in a box (left, bottom, right, top, m) of the ground, `GROUND`, in elements of 10 m.
 
-        wave : key of the motion in which a pulse of 0.06 s, 35 m of S wave, comes from below; "": none comes.
+        wave : key of the motion in which a pulse of 0.06 s, 35 m of S wave, comes from below; "": none comes. hole :
+        whether there is `HOLE`.
         """
         left, bottom, right, top = box
         sides: dict[str, Any] = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
@@ -120,7 +124,7 @@ class Lab:
             words |= {"edge_radius": 0.5}
         case = self.case(pattern, (right - left, top - bottom), **words)
         placed = {"ground.size": GROUND, "packing.origin": (left, bottom), "outside.element": 10.0}
-        return with_changes(case, placed | (changes or {}))
+        return with_changes(case, placed | ({"hole": [HOLE]} if hole else {}) | (changes or {}))
 
     def scene(self, pattern: str, size: tuple[float, float], **words: Any) -> DiskScene:
         """The scene of `case`."""

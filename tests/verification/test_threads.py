@@ -60,8 +60,7 @@ def scene_of(lab, name: str) -> tuple[DiskScene | GridScene, float]:
         return GridScene(body), 0.9 * step_limit(body)
     words = {"held": (), **SCENES[name]}
     if "box" in words:
-        hole = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
-        scene = build(lab.window("B", words.pop("box"), changes={"hole": [hole]}, **words))
+        scene = build(lab.window("B", words.pop("box"), hole=True, **words))
     else:
         wave = {"type": "cosine", "amplitude": 1.0, "period": 0.02}
         scene = build(lab.case("B", words.pop("size"), wave=wave, **words))

@@ -6,7 +6,6 @@ import pytest
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 
-HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
 SMALL, WHOLE = (20.0, 20.0, 40.0, 40.0), (0.0, 0.0, 60.0, 60.0)
 WEIGHT = [{"acceleration": (0.0, -9.81)}]
 STATIC = {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-3}
@@ -16,7 +15,7 @@ STEPS = 1500
 @pytest.mark.parametrize(("box", "words"), [(WHOLE, {}), (SMALL, {"load": WEIGHT, "static": STATIC})])
 def test_it_closes(lab, box, words) -> None:
     """Each step rounds by ε of the energies, or of what the balancing forces have stored."""
-    scene = build(lab.window("B", box, changes={"hole": [HOLE]}, **words))
+    scene = build(lab.window("B", box, hole=True, **words))
     simulation = lab.simulation(scene, settle(scene).start if words else None)
     ledger = lab.ledger(simulation, 50)
     simulation.run(STEPS)
