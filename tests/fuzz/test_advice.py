@@ -36,10 +36,9 @@ def some_case(seed: int) -> DiskCase:
     from_below = draw.random() < 0.4
     wave = draw.choice([{"type": "ricker", "frequency": 15.0}, {"type": "cosine", "period": 0.06}])
     x, y = round(draw.uniform(0.3, 0.7) * wide, 2), round(draw.uniform(0.5, 0.95) * high, 2)
-    lattice = {"pattern": "A", "size": [wide, high], "radius": 0.5}
-    packing = lattice if draw.random() < 0.8 else lattice | {"pattern": "B", "radius_ratio": 1.5, "brick": [10.0, 8.0]}
-    if packing["pattern"] == "B":
-        packing["size"] = [30.0, 24.0]
+    packing = {"pattern": "A", "size": [wide, high], "radius": 0.5}
+    if draw.random() >= 0.8:
+        packing |= {"pattern": "B", "size": [30.0, 24.0], "radius_ratio": 1.5, "brick": [10.0, 8.0]}
     tables: dict[str, Any] = {
         "packing": packing,
         "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5, "kratio": 0.5, "pb_kratio": 0.5},
@@ -55,11 +54,9 @@ def some_case(seed: int) -> DiskCase:
     }
     if from_below:
         tables["load"] = []
-        columns = {"type": "free_field"} if side["type"] != "outside" else side
-        bottom = (
-            {"type": "viscous_input", "wave_s": "pulse"} if side["type"] != "outside" else side | {"wave_s": "pulse"}
-        )
-        tables["boundary"] = {"left": columns, "right": columns, "bottom": bottom}
+        is_outside = side["type"] == "outside"
+        beside, below = (side if is_outside else {"type": name} for name in ("free_field", "viscous_input"))
+        tables["boundary"] = {"left": beside, "right": beside, "bottom": below | {"wave_s": "pulse"}}
     if draw.random() < 0.5 and packing["pattern"] == "A" and not (2.0 < abs(x - 0.5 * wide) < 6.0):
         tables["hole"] = [{"name": "drift", "type": "circle", "centre": [4.0, 5.0], "radius": 2.0}]
     made = small(tables)

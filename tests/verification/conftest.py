@@ -20,6 +20,7 @@ from dembound.disks.stepping.start import Start
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.elastic import contact_forces
 from dembound.kinds import loads, with_changes
+from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly, tile
@@ -30,6 +31,8 @@ RADIUS = 0.25
 BRICK = (10.0, 10.0)
 GROUND = (60.0, 60.0)
 """Width and height (m) of the ground round a box of disks."""
+HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
+"""A hole in the middle of that ground."""
 
 
 @dataclass(frozen=True)
@@ -99,12 +102,14 @@ class Lab:
         box: tuple[float, float, float, float],
         *,
         wave: str = "wave_s",
+        hole: bool = False,
         changes: dict[str, Any] | None = None,
         **words: Any,
     ) -> Case:
         """A case of disks of 1 m in a box (left, bottom, right, top, m) of the ground, `GROUND`, in elements of 10 m.
 
-        wave : key of the motion in which a pulse of 0.06 s, 35 m of S wave, comes from below; "": none comes.
+        wave : key of the motion in which a pulse of 0.06 s, 35 m of S wave, comes from below; "": none comes. hole :
+        whether there is `HOLE`.
         """
         left, bottom, right, top = box
         sides: dict[str, Any] = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
@@ -119,7 +124,7 @@ class Lab:
             words |= {"edge_radius": 0.5}
         case = self.case(pattern, (right - left, top - bottom), **words)
         placed = {"ground.size": GROUND, "packing.origin": (left, bottom), "outside.element": 10.0}
-        return with_changes(case, placed | (changes or {}))
+        return with_changes(case, placed | ({"hole": [HOLE]} if hole else {}) | (changes or {}))
 
     def scene(self, pattern: str, size: tuple[float, float], **words: Any) -> DiskScene:
         """The scene of `case`."""
@@ -175,17 +180,31 @@ class Lab:
     def run(self, scene: DiskScene, probes: np.ndarray, duration: float, step: float | None = None) -> History:
         """Motion of some particles from rest, at every step."""
         step = step or choose_step(scene)[0]
-        simulation = Simulation(scene, step, probes)
-        record = simulation.advance(int(np.ceil(duration / step)))
+        record = Simulation(scene, step, probes).advance(int(np.ceil(duration / step)))
         return History(step * np.arange(len(record)), record[..., :3], record[..., 3:])
 
-    def settled(
-        self, scene: DiskScene, start: Start, step: float | None = None, probes: Sequence[int] | np.ndarray = ()
+    def simulation(
+        self,
+        scene: DiskScene,
+        start: Start | None = None,
+        step: float | None = None,
+        probes: Sequence[int] | np.ndarray = (),
+        side_stride: int = 0,
     ) -> Simulation:
-        """A simulation that goes on from a body at rest, by default at the step that its run would take."""
+        """A simulation of a body as built, or from a settled start, by default at the step that its run would take."""
         step = step or choose_step(scene)[0]
-        system = DiskSystem(scene, step, start)
-        return Simulation(scene, step, probes, system=system, datum=start.displacement)
+        rest = {} if start is None else {"system": DiskSystem(scene, step, start), "datum": start.displacement}
+        return Simulation(scene, step, probes, side_stride=side_stride, **rest)
+
+    def ledger(self, simulation: Simulation, stride: int) -> Ledger:
+        """The energy ledger of a simulation, with an entry every so many steps."""
+        ledger = Ledger(simulation, stride)
+        simulation.track(ledger)
+        return ledger
+
+    def inertia(self, scene: DiskScene) -> np.ndarray:
+        """Masses and moments of inertia (3, n) of all nodes."""
+        return np.stack([scene.mass, scene.mass, scene.inertia])
 
     def sections(self, scene: DiskScene, places: Sequence[float], duration: float) -> History:
         """Mean motion of the particles within 1 m of each place x (m): one column per place.

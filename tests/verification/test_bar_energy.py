@@ -8,7 +8,6 @@ the difference of ½u⁻ᵀKu. Both are what the balance of half steps has in th
 import numpy as np
 import pytest
 
-from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
 ROUNDING = 5e-13
@@ -37,13 +36,12 @@ BARS = {
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", BARS)
-def test_books_close(rock, name, method):
+def test_books_close(lab, rock, name, method):
     """An entry every eleven steps, while a pulse comes in, has been at both ends, and is back."""
     words = {"load": {"pressure": 15e6}, "wave": rock.triangle(0.12e-3)} | BARS[name]
     scene = rock.scene(METHODS[method], spacing=4e-3, **words)
     simulation = Simulation(scene, rock.step(scene, 0.9))
-    ledger = Ledger(simulation, 11)
-    simulation.track(ledger)
+    ledger = lab.ledger(simulation, 11)
     simulation.run(11 * int(0.9e-3 / simulation.time_step / 11) + 1)
     came_in, last = max(entry.outside for entry in ledger.entries), ledger.entries[-1]
     assert came_in > 0.0

@@ -24,11 +24,7 @@ def case(motion: str, side: dict) -> DiskCase:
         {
             "packing": {"pattern": "A", "size": [40.0, 24.0], "radius": 0.5},
             "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
-            "boundary": {
-                "left": side,
-                "right": side,
-                "bottom": {"type": "viscous_input", f"wave_{motion}": "pulse"},
-            },
+            "boundary": {"left": side, "right": side, "bottom": {"type": "viscous_input", f"wave_{motion}": "pulse"}},
             "wave": {"pulse": {"type": "cosine", "amplitude": 0.01, "period": 0.0425}},
             "monitor": [
                 {"name": "middle", "position": [20.0, 12.0]},

@@ -8,7 +8,6 @@ import pytest
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem
 from dembound.exact.cavity import cavity_motion
 from dembound.exact.solid import Solid
 from dembound.kinds import load, with_changes
@@ -66,7 +65,7 @@ def test_the_rock_moves_as_round_the_exact_cavity(on: str, diameters_off: float)
     assert fine < 0.7 * coarse
 
 
-def test_a_steady_pressure_holds_a_body_open_that_nothing_else_holds() -> None:
+def test_a_steady_pressure_holds_a_body_open_that_nothing_else_holds(lab) -> None:
     """It is in balance, so the body comes to rest without supports, and stays where it is in the run."""
     tables = {
         "packing": {"pattern": "A", "size": [10.0, 10.0], "radius": 0.25},
@@ -84,7 +83,6 @@ def test_a_steady_pressure_holds_a_body_open_that_nothing_else_holds() -> None:
     # outwards all round the wall, by about pa/2μ
     assert (np.sum(moved * away, axis=1)[wall] > 0.0).all()
     assert np.hypot(*moved[wall].T).mean() == pytest.approx(1e6 * 2.0 / (2.0 * SOLID.shear), rel=0.5)
-    step = choose_step(scene)[0]
-    simulation = Simulation(scene, step, range(scene.count), system=DiskSystem(scene, step, settled.start))
+    simulation = lab.simulation(scene, settled.start, probes=range(scene.count))
     # the forces that are left are balanced: a wave under this pressure would have p/ρc_p, 0.4 m/s
     assert np.abs(simulation.advance(200)[:, :, 3:]).max() < 1e-9

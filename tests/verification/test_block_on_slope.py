@@ -56,7 +56,7 @@ def test_below_the_friction_angle_it_rests(lab):
     along, across = tilted(26.0)  # tan⁻¹ 0.5 = 26.57°
     scene = block_on_slope(lab, [{"acceleration": (along, across)}])
     settled = settle(scene)
-    simulation = lab.settled(scene, settled.start, STEP, np.arange(DISKS, 2 * DISKS))
+    simulation = lab.simulation(scene, settled.start, STEP, np.arange(DISKS, 2 * DISKS))
 
     # the mean force left is RATIO of that in a contact, MASS·g; all of it may be left on one disk
     left = 2 * DISKS * RATIO * MASS * GRAVITY
@@ -70,7 +70,7 @@ def test_above_the_friction_angle_it_slides(lab, angle):
     # across the slope it has come to rest before what pulls it along is switched on
     pull = {"acceleration": (along, 0.0), "wave": "pulse"}
     scene = block_on_slope(lab, [{"acceleration": (0.0, across)}, pull])
-    simulation = lab.settled(scene, settle(scene).start, STEP, np.arange(DISKS, 2 * DISKS))
+    simulation = lab.simulation(scene, settle(scene).start, STEP, np.arange(DISKS, 2 * DISKS))
     record = simulation.advance(400)
     assert simulation.system.contacts["body"].arrays.slip.any()
 

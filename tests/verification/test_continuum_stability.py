@@ -47,10 +47,7 @@ def growth(share: float, delay: float, ratio: float, mesh: Mesh) -> float:
     return rise
 
 
-@pytest.mark.parametrize(
-    ("mesh", "delay", "ratio"),
-    [(equal, 0.5, 0.0), (equal, 0.1, 0.4), (unequal, 0.1, 0.25)],
-)
+@pytest.mark.parametrize(("mesh", "delay", "ratio"), [(equal, 0.5, 0.0), (equal, 0.1, 0.4), (unequal, 0.1, 0.25)])
 def test_layers(mesh: Callable[[int], Mesh], delay: float, ratio: float) -> None:
     assert growth(0.999, delay, ratio, mesh(3)) < 1.0
     assert growth(1.06, delay, ratio, mesh(3)) == np.inf

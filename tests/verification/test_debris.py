@@ -42,7 +42,7 @@ def torn(lab):
     def tear(stress: float, geometry: str) -> Torn:
         material = {"law": "linearpbond", "fric": 0.5, "pb_ten": 2e6, "pb_coh": 3e6, "geometry": geometry}
         scene = lab.scene("B", (10.0, 10.0), held=(), material=material, static={"stress": (stress, stress, 0.0)})
-        simulation = lab.settled(scene, settle(scene).start)
+        simulation = lab.simulation(scene, settle(scene).start)
         corner = np.hypot(*(scene.positions - [10.0, 10.0]).T) < 1.5
         simulation.state.v[:2, simulation.state.layout.slot[corner]] = SPEED / np.sqrt(2.0)
         momenta, balancing, steady = [scene.mass * simulation.state.velocity[:2]], [], []

@@ -14,12 +14,8 @@ from dembound.disks.contacts.elastic_again import elastic_again, never_elastic_a
 from dembound.disks.reduced.reduction import reduced
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
-from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import SHEAR
 from dembound.kinds import with_changes
-from dembound.motion.energy import Ledger
-from dembound.motion.simulation import Simulation
 
 EPS = np.finfo(float).eps
 STRESS = 1e6
@@ -56,14 +52,11 @@ def settled(case):
     return start
 
 
-def run(case, *, elastic):
+def run(lab, case, *, elastic):
     """The simulation of a case after its static stage, and the motion (k, n, 6) of all particles."""
     scene = build(with_changes(case, {"reduce.settled": elastic}))
-    start, step = settled(case), choose_step(scene)[0]
-    system = DiskSystem(scene, step, start)
-    simulation = Simulation(scene, step, np.arange(scene.count), system=system, datum=start.displacement)
-    ledger = Ledger(simulation, 10)
-    simulation.track(ledger)
+    simulation = lab.simulation(scene, settled(case), probes=np.arange(scene.count))
+    ledger = lab.ledger(simulation, 10)
     return simulation, simulation.advance(STEPS), ledger
 
 
@@ -74,8 +67,8 @@ def largest(motion, columns):
 @pytest.mark.parametrize("amplitude", [WEAK, STRONG])
 def test_small_displacements_agree_to_rounding(lab, amplitude):
     case = sheared(lab, "reference", amplitude)
-    full, expected, _ = run(case, elastic=False)
-    again, motion, ledger = run(case, elastic=True)
+    full, expected, _ = run(lab, case, elastic=False)
+    again, motion, ledger = run(lab, case, elastic=True)
 
     assert full.state.laws == [("linearpbond", 0)]
     names = [name for name, _ in again.state.laws]
@@ -97,11 +90,11 @@ def test_fields_of_stress_are_those_of_contacts_that_slid(lab):
     stresses, forces = [], []
     for elastic in (False, True):
         scene = build(with_changes(sheared(lab, "reference"), {"reduce.settled": elastic, "output.contacts": True}))
-        start, step = settle(scene).start, choose_step(scene)[0]
-        system = DiskSystem(scene, step, start)
-        Simulation(scene, step, system=system, datum=start.displacement).advance(1)
-        stresses.append(system.stress(start.displacement))
-        columns = system.contact_forces(start.displacement)
+        start = settle(scene).start
+        simulation = lab.simulation(scene, start)
+        simulation.advance(1)
+        stresses.append(simulation.system.stress(start.displacement))
+        columns = simulation.system.contact_forces(start.displacement)
         forces.append(np.stack([columns[f"{name}_force"][0] for name in ("normal", "shear")]))
     # forces of stretches of 1e-4 m, which are differences of displacements of 1e-2 m, times some ten operations
     rounding = 1e3 * EPS
@@ -111,12 +104,6 @@ def test_fields_of_stress_are_those_of_contacts_that_slid(lab):
 
 CHANGED = "after the static stage a contact has opened or closed or slides, or a bond is at its strength"
 REFUSED = "reduce.settled: not applied: "
-
-NOT_AGAIN = {
-    "off by default": ({}, {}, None),
-    "contacts are open": ({"stress": (0.2 * STRESS, -STRESS, 0.3 * STRESS)}, {"reduce.settled": True}, CHANGED),
-    "no elastic start": ({"elastic_start": False}, {"reduce.settled": True}, "material.elastic_start is false"),
-}
 
 
 def test_cases_that_are_never_elastic_again(lab):
@@ -130,19 +117,23 @@ def test_cases_that_are_never_elastic_again(lab):
     assert reduced(build(replace(case, static=None))).refused == (f"{REFUSED}there is no static stage",)
 
 
-@pytest.mark.parametrize("why", NOT_AGAIN)
-def test_other_bodies_keep_the_law_with_history(lab, why):
-    words, changes, reason = NOT_AGAIN[why]
+@pytest.mark.parametrize(
+    ("words", "asked_for", "refused"),
+    [
+        ({}, False, ()),
+        ({"stress": (0.2 * STRESS, -STRESS, 0.3 * STRESS)}, True, (f"{REFUSED}{CHANGED}",)),
+        ({"elastic_start": False}, True, (f"{REFUSED}material.elastic_start is false",)),
+    ],
+    ids=["off by default", "contacts are open", "no elastic start"],
+)
+def test_other_bodies_keep_the_law_with_history(lab, words, asked_for, refused):
     case = sheared(lab, "reference", **words)
-    scene, start = build(with_changes(case, changes)), settled(case)
+    scene, start = build(with_changes(case, {"reduce.settled": True} if asked_for else {})), settled(case)
     assert start.has_history
-    step = choose_step(scene)[0]
-    system = DiskSystem(scene, step, start)
-    simulation = Simulation(scene, step, system=system, datum=start.displacement)
+    simulation = lab.simulation(scene, start)
     assert simulation.state.laws == [("linearpbond", 0)]
-    assert system.saved(simulation.state) == ()
-    lines = (*reduced(scene).refused, *system.refused)
-    assert lines == (() if reason is None else (f"{REFUSED}{reason}",))
+    assert simulation.system.saved(simulation.state) == ()
+    assert (*reduced(scene).refused, *simulation.system.refused) == refused
 
 
 SPOILT = {

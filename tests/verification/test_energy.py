@@ -14,48 +14,26 @@ STEPS = 1000
 EPS = np.finfo(float).eps
 
 
-def inertia(scene):
-    return np.stack([scene.mass, scene.mass, scene.inertia])
-
-
-def thrown(scene, share: float) -> Simulation:
-    """The scene in random motion, without strain."""
-    simulation = Simulation(scene, share * step_limit(scene))
-    simulation.state.velocity = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
-    return simulation
-
-
-def energies(lab, simulation: Simulation, steps: int) -> np.ndarray:
-    """Energy (J) after each step."""
-    scene, energy = simulation.scene, np.empty(steps)
-    for k in range(steps):
-        force = lab.forces(scene, simulation.state.displacement)
-        simulation.advance(1)
-        kinetic = 0.5 * np.sum(inertia(scene) * simulation.state.velocity**2)
-        energy[k] = kinetic - 0.5 * np.sum(force * simulation.state.displacement)
-    return energy
-
-
 @pytest.mark.parametrize("pattern", ["A", "B"])
 def test_free_body_keeps_energy_and_momentum(lab, pattern):
+    """From random motion without strain."""
     scene = lab.scene(pattern, (10.0, 10.0), held=())
-    simulation = thrown(scene, share=0.9)
+    simulation, inertia = Simulation(scene, 0.9 * step_limit(scene)), lab.inertia(scene)
+    simulation.state.velocity = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
     x, y = scene.assembly.positions.T
 
     def momentum() -> np.ndarray:
         """Terms (3, k) of the momenta along x, y and about the origin."""
-        p = inertia(scene) * simulation.state.velocity
-        zero = np.zeros_like(p)
-        return np.stack(
-            [
-                np.stack([p[0], zero[0], zero[0]]),
-                np.stack([p[1], zero[0], zero[0]]),
-                np.stack([x * p[1], -y * p[0], p[2]]),
-            ]
-        ).reshape(3, -1)
+        p = inertia * simulation.state.velocity
+        zero = np.zeros_like(x)
+        return np.stack([[p[0], zero, zero], [p[1], zero, zero], [x * p[1], -y * p[0], p[2]]]).reshape(3, -1)
 
-    start = momentum()
-    energy = energies(lab, simulation, STEPS)
+    start, energy = momentum(), np.empty(STEPS)
+    for k in range(STEPS):
+        force = lab.forces(scene, simulation.state.displacement)
+        simulation.advance(1)
+        kinetic = 0.5 * np.sum(inertia * simulation.state.velocity**2)
+        energy[k] = kinetic - 0.5 * np.sum(force * simulation.state.displacement)
     # each step rounds by a few ε, in the worst case all to one side: 4ε·STEPS = 9e-13
     tolerance = 4.0 * EPS * STEPS
     np.testing.assert_allclose(energy, energy[0], rtol=tolerance)

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.rest.stage import settle
-from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.energy import Ledger
-from dembound.motion.simulation import Simulation
 
 PULSE = {"type": "cosine", "amplitude": 0.5, "period": 0.02}
 IN = {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}
@@ -17,13 +14,10 @@ EPS = np.finfo(float).eps
 STEPS = 400
 
 
-def ledger_of(scene, start=None, steps: int = STEPS, time_step: float | None = None) -> Ledger:
+def ledger_of(lab, scene, start=None, steps: int = STEPS, time_step: float | None = None) -> Ledger:
     """The ledger of some steps, an entry every twenty."""
-    step = time_step or choose_step(scene)[0]
-    rest = {} if start is None else {"system": DiskSystem(scene, step, start), "datum": start.displacement}
-    simulation = Simulation(scene, step, side_stride=1, **rest)
-    ledger = Ledger(simulation, 20)
-    simulation.track(ledger)
+    simulation = lab.simulation(scene, start, time_step, side_stride=1)
+    ledger = lab.ledger(simulation, 20)
     simulation.run(steps + 1)
     return ledger
 
@@ -48,7 +42,7 @@ def closes(ledger: Ledger) -> None:
 )
 def test_sides_are_all_of_the_outside(lab, boundary, damp):
     scene = lab.scene("B", (20.0, 10.0), held=(), boundary=boundary, wave=PULSE, material={"damp": damp})
-    ledger = ledger_of(scene)
+    ledger = ledger_of(lab, scene)
     closes(ledger)
     assert not any(entry.loads for entry in ledger.entries)
     assert (ledger.side_columns[:, :, 1] >= -1e-3 * np.abs(ledger.side_columns).max()).all()
@@ -68,7 +62,7 @@ def test_sides_are_all_of_the_outside_of_settled_ground(lab):
         load=[{"acceleration": [0.0, -9.81]}],
         static={"boundary": {"left": {"type": "roller"}, "bottom": {"type": "fixed"}}},
     )
-    ledger = ledger_of(scene, settle(scene).start)
+    ledger = ledger_of(lab, scene, settle(scene).start)
     closes(ledger)
     stored = ledger.side_columns[:, :, 2]
     assert (stored >= 0.0).all()
@@ -80,11 +74,8 @@ def test_loads_are_the_rest(lab):
     """A pulse of a load with Σ F·v Δt done by hand, at the velocities at whole steps."""
     load = [{"position": [5.0, 5.0], "force": [1e6, 0.0], "wave": "pulse"}]
     scene = lab.scene("B", (10.0, 10.0), held=(), boundary={"left": "viscous"}, wave=PULSE, load=load)
-    step = choose_step(scene)[0]
-    (node,) = np.unique(scene.supports.node[scene.supports.drive_row])
-    simulation = Simulation(scene, step, [node], side_stride=1)
-    ledger = Ledger(simulation, 100)
-    simulation.track(ledger)
+    simulation = lab.simulation(scene, probes=np.unique(scene.supports.node[scene.supports.drive_row]), side_stride=1)
+    ledger, step = lab.ledger(simulation, 100), simulation.time_step
     record = simulation.advance(101)
     force = 1e6 * scene.case.wave["pulse"].velocity(step * np.arange(101))
     power = force * record[:, 0, 3]
@@ -96,7 +87,7 @@ def test_loads_are_the_rest(lab):
 
 
 @pytest.mark.parametrize("beta", [0.5, 3.0])
-def test_a_mismatched_end_absorbs_all_but_the_reflected_part(rock, beta):
+def test_a_mismatched_end_absorbs_all_but_the_reflected_part(lab, rock, beta):
     """R = (1 − β)/(1 + β) of the velocity returns, so R² of the energy, which the matched left end then absorbs."""
     scene = rock.scene(
         {"type": "finite_difference"},
@@ -104,7 +95,7 @@ def test_a_mismatched_end_absorbs_all_but_the_reflected_part(rock, beta):
         wave=rock.triangle(1e-4),
     )
     step = rock.step(scene, 1.0)
-    ledger = ledger_of(scene, steps=int(3.0 / rock.speed / step), time_step=step)
+    ledger = ledger_of(lab, scene, steps=int(3.0 / rock.speed / step), time_step=step)
     left, right = ledger.side_columns[-1]
     back = ((1.0 - beta) / (1.0 + beta)) ** 2
     assert right[1] / left[0] == pytest.approx(1.0 - back, rel=1e-9)

@@ -38,10 +38,7 @@ def energy_after(simulation: Simulation, time: float) -> float:
 
 @pytest.mark.parametrize(
     ("motion", "side"),
-    [
-        ("s", {"type": "viscous", "beta_s": 0.3}),
-        ("p", {"type": "viscoelastic", "distance": 5.0, "alpha_n": 2.5}),
-    ],
+    [("s", {"type": "viscous", "beta_s": 0.3}), ("p", {"type": "viscoelastic", "distance": 5.0, "alpha_n": 2.5})],
 )
 def test_energy_of_a_reflected_pulse(motion, side) -> None:
     """Within 3 %.

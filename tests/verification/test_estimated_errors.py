@@ -1,4 +1,4 @@
-"""Budgetd errors of artificial sides are those beside the same disks without an end.
+"""Estimated errors of artificial sides are those beside the same disks without an end.
 
 Lamb's problem, half of it, 20 m × 20 m of a lattice beside viscous and viscoelastic sides. The truth is the difference
 of the run to the same disks with sides so far away that nothing returns within it; the estimate comes from two or three
@@ -45,12 +45,8 @@ def test_estimated_errors_are_the_true_ones(side: Tables) -> None:
     run = measure(case, Progress())[0]
     far = measure(extended(case).case, Progress())[0].motions
     recorded = {
-        name: History(
-            gauge.place,
-            gauge.time,
-            {"velocity": gauge.velocity[:, :2], "displacement": gauge.displacement[:, :2]},
-        )
-        for name, gauge in run.motions.items()
+        name: History(at.place, at.time, {"velocity": at.velocity[:, :2], "displacement": at.displacement[:, :2]})
+        for name, at in run.motions.items()
     }
     causes = causes_of(case, recorded, run.time_step, run.work)
     found = Budget(causes.motions or recorded, causes)

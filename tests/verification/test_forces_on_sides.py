@@ -8,23 +8,11 @@ import numpy as np
 import pytest
 
 from dembound.disks.rest.stage import settle
-from dembound.disks.scene import build
-from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.simulation import Simulation
 
 GRAVITY = 9.81
 SIDES = ("left", "right", "bottom", "top")
 PULSE = {"type": "cosine", "amplitude": 0.5, "period": 0.01}
-
-
-def watched(scene, start=None) -> Simulation:
-    """A simulation that measures the sides, from rest as built or from a settled state."""
-    step = choose_step(scene)[0]
-    if start is None:
-        return Simulation(scene, step, side_stride=1)
-    system = DiskSystem(scene, step, start)
-    return Simulation(scene, step, system=system, datum=start.displacement, side_stride=1)
 
 
 def forces(simulation: Simulation) -> dict[str, np.ndarray]:
@@ -49,7 +37,7 @@ GRIP = {"type": "velocity", "wave_p": "pulse"}
 def test_forces_on_sides_are_all_that_changes_the_momentum(lab, boundary):
     """To rounding: some hundred forces per side, each rounded by 1e-16 of the largest, a hundred of their sum."""
     scene = lab.scene("B", (10.0, 10.0), held=(), boundary=boundary, wave=PULSE)
-    simulation = watched(scene)
+    simulation = lab.simulation(scene, side_stride=1)
     for _ in range(5):
         simulation.run(simulation.state.step + 40)
         before = scene.mass @ simulation.state.velocity[:2].T
@@ -63,7 +51,7 @@ def test_forces_on_sides_are_all_that_changes_the_momentum(lab, boundary):
 def test_a_sample_that_settled_under_a_stress_shows_it_from_the_start(lab):
     """Each side has the stress times its length, contacts across corners included."""
     stress = np.array([[-1e6, 2e5], [2e5, -2e6]])
-    case = lab.case(
+    scene = lab.scene(
         "B",
         (20.0, 10.0),
         held=(),
@@ -71,9 +59,7 @@ def test_a_sample_that_settled_under_a_stress_shows_it_from_the_start(lab):
         boundary=dict.fromkeys(SIDES, "viscous"),
         static={"stress": [-1e6, -2e6, 2e5], "ratio": 1e-4},
     )
-    scene = build(case)
-    settled = settle(scene)
-    simulation = watched(scene, settled.start)
+    simulation = lab.simulation(scene, settle(scene).start, side_stride=1)
     simulation.run(30)
     assert simulation.system.turning is not None  # balancing forces rotate with the sides
     for side, force in forces(simulation).items():
@@ -94,7 +80,7 @@ def test_a_free_field_side_carries_what_the_ground_beyond_it_does(lab):
         load=[{"acceleration": [0.0, -GRAVITY]}],
         static={"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-6},
     )
-    simulation = watched(scene, settle(scene).start)
+    simulation = lab.simulation(scene, settle(scene).start, side_stride=1)
     simulation.run(1)
     found, column = forces(simulation), scene.seam.count
     body, beside = GRAVITY * scene.mass[column:].sum(), GRAVITY * scene.mass[:column].sum()

@@ -63,7 +63,7 @@ def kicked(lab, pattern: str, material: dict, boundary: dict, static: dict | Non
     """A body of 10 m × 5 m, settled if it has a static stage, and kicked."""
     words = {} if pattern == "A" else {"brick": (5.0, 5.0)}
     scene = lab.scene(pattern, (10.0, 5.0), held=(), material=material, boundary=boundary, static=static, **words)
-    simulation = Simulation(scene, choose_step(scene)[0]) if static is None else lab.settled(scene, settle(scene).start)
+    simulation = lab.simulation(scene, settle(scene).start if static else None)
     kick(simulation)
     return simulation
 
@@ -111,7 +111,7 @@ def test_forces_that_follow_the_sides_do_not_tip_a_body(lab, stress, follow):
     """Known failure: with forces of fixed direction θ grows at the rate √(12|σ_xx + σ_yy|/(ρ(W² + H²)))."""
     width, height = 20.0, 10.0
     scene = lab.scene("B", (width, height), held=(), material=LAWS["updated"], static={"stress": stress})
-    simulation = lab.settled(scene, settle(scene).start)
+    simulation = lab.simulation(scene, settle(scene).start)
     if not follow:
         assert simulation.system.turning is not None
         simulation.system.turning = None

@@ -10,13 +10,7 @@ from dembound.errors import CaseError
 from dembound.gauge import noise as noise_of_records
 from dembound.gauge.spalling import evaluate
 
-FEW = (
-    "clean",
-    "noise of 3 %",
-    "drift of 3 %, 8 bits",
-    "ringing of 5 % at 150 kHz",
-    "PicoScope, decimal commas, ms and mV",
-)
+FEW = ("noise of 3 %", "drift of 3 %, 8 bits", "ringing of 5 % at 150 kHz")
 GIVEN = [
     pytest.param(record, marks=() if record.name in FEW else pytest.mark.slow, id=record.name)
     for record in RECORDS
@@ -128,14 +122,8 @@ def test_what_rests_on_a_doubtful_speed_is_named(tmp_path):
     ("end", "reason"),
     [
         (270e-6, "0 found in the record: it ends within the first wave;"),
-        (
-            400e-6,
-            r"0 found in the record: it ends .* s after the first wave, in which only waves faster than 6\d{3} m/s",
-        ),
-        (
-            1100e-6,
-            r"1 found in the record: it ends at 0.001099 s, the second return of the pulse is due at 0.00128\d s",
-        ),
+        (400e-6, r"0 found .* it ends .* s after the first wave, in which only waves faster than 6\d{3} m/s"),
+        (1100e-6, r"1 found .* it ends at 0.001099 s, the second return of the pulse is due at 0.00128\d s"),
     ],
 )
 def test_a_record_that_is_too_short_is_told_so(end, reason, tmp_path):

@@ -55,8 +55,5 @@ def test_along_the_diagonal(lab, material, p_square, s_square):
     expected = lab.speed * np.sqrt([p_square, s_square])
     np.testing.assert_allclose(measured, expected, rtol=2.0 * LONG_WAVE)  # (qa)² is twice as large
     tensor = scene.ground.tensor / (lab.density * lab.speed**2)
-    from_tensor = [
-        0.5 * (tensor[0, 0] + tensor[0, 1] + 2.0 * tensor[3, 3]),
-        0.5 * (tensor[0, 0] - tensor[0, 1]),
-    ]
+    from_tensor = [0.5 * (tensor[0, 0] + tensor[0, 1] + 2.0 * tensor[3, 3]), 0.5 * (tensor[0, 0] - tensor[0, 1])]
     np.testing.assert_allclose(from_tensor, [p_square, s_square], rtol=1e-12)

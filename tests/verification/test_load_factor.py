@@ -16,7 +16,7 @@ TABLES = PUSHED | {
     "static": {"stress": [-1e6, -0.8e6, 0.0], "ratio": SETTLED},
     "reduce": {"settled": True},
     "run": {"duration": 0.03, "time_step": 2e-4},
-    "output": {"snapshots": 0, "pictures": False},
+    "output": {"snapshots": 0, "energy_interval": 5e-3, "pictures": False},
 }
 
 MATERIALS = {
@@ -24,7 +24,6 @@ MATERIALS = {
     "opens": {"fric": 0.0, "pb_ten": 1e8, "pb_coh": 1e8},
     "breaks in tension": {"fric": 9.0, "pb_ten": 1e5, "pb_coh": 1e8},
     "breaks in shear": {"fric": 9.0, "pb_ten": 1e8, "pb_coh": 2e4, "pb_fa": 20.0},
-    "slides, another record": {"fric": 0.5, "pb_ten": 1e8, "pb_coh": 1e8},
 }
 
 
@@ -51,7 +50,7 @@ def test_the_full_law_begins_at_the_load_factor(tmp_path, number, limit):
     changes = {"wave": waves(tmp_path, 1.0), "output.load_factor": True, "material": material}
     summary = json.loads((run_case(small(TABLES, "elastic", changes), tmp_path) / "summary.json").read_text())
     factor = summary["load_factor"]["factor"]
-    assert summary["load_factor"]["limit"] == limit.partition(",")[0]
+    assert summary["load_factor"]["limit"] == limit
 
     def holds(scale: float) -> bool:
         full = {"wave": waves(tmp_path, scale), "material": material | {"law": "linearpbond", "geometry": "reference"}}

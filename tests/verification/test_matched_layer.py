@@ -11,7 +11,6 @@ import pytest
 
 from dembound.errors import RunError
 from dembound.exact import courant_limit
-from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
 CELLS, SPACING = 120, 5e-3
@@ -33,8 +32,8 @@ def bar(rock, horizon: int, *, cells: int = CELLS, load: bool = True, own: dict 
     return rock.scene(own or method(horizon), spacing=SPACING, load=push, length=cells * SPACING, **words)
 
 
-def motion(scene, step: float, steps: int, nodes=(0, CELLS // 2, CELLS)) -> np.ndarray:
-    return Simulation(scene, step, nodes).advance(steps)[:, :, 3]
+def motion(scene, step: float, steps: int) -> np.ndarray:
+    return Simulation(scene, step, (0, CELLS // 2, CELLS)).advance(steps)[:, :, 3]
 
 
 def difference(rock, horizon: int, end: dict, share: float, **words) -> float:
@@ -69,12 +68,11 @@ def test_rates_too_large_for_the_proof_bound_the_step(rock):
 
 
 @pytest.mark.parametrize("own", [{"type": "peridynamics", "horizon": 3}, {"type": "patch", "horizon": 3}], ids=str)
-def test_the_ledger_closes_and_all_that_came_is_absorbed(rock, own):
+def test_the_ledger_closes_and_all_that_came_is_absorbed(lab, rock, own):
     """To rounding, and to the echo of the horizon's own dispersion; by the right end, as the left one is free."""
     scene = bar(rock, 1, own=own, load=False, boundary={"left": layer(wave_p="pulse"), "right": layer()}, strength=1e9)
     simulation = Simulation(scene, 0.9 * scene.step_limit(), side_stride=1)
-    ledger = Ledger(simulation, 50)
-    simulation.track(ledger)
+    ledger = lab.ledger(simulation, 50)
     simulation.run(50 * int(20 * CELLS / 50) + 1)
     last, peak = ledger.entries[-1], max(entry.outside for entry in ledger.entries)
     assert max(abs(entry.error) for entry in ledger.entries) < 1e-11 * peak

@@ -10,7 +10,6 @@ import pytest
 
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
 PERIOD = 0.25
@@ -20,10 +19,10 @@ SMALL, HIGH = (20.0, 20.0, 40.0, 40.0), (20.0, 40.0, 40.0, 60.0)
 SCATTERED = 3e-4
 
 
-def window(lab, box=SMALL, pattern: str = "A", *, kind: str = "sv", angle: float = 30.0, **changes):
+def window(lab, box=SMALL, pattern: str = "A", *, kind: str = "sv", angle: float = 30.0, hole: bool = False, **changes):
     pulse = {"type": "cosine", "amplitude": 0.5, "period": PERIOD}
     incident = {"type": kind, "angle": angle, "wave": "pulse"}
-    return lab.window(pattern, box, wave="", changes={"wave.pulse": pulse, "incident": incident} | changes)
+    return lab.window(pattern, box, wave="", hole=hole, changes={"wave.pulse": pulse, "incident": incident} | changes)
 
 
 def deviations(scene) -> tuple[float, float]:
@@ -42,13 +41,7 @@ def deviations(scene) -> tuple[float, float]:
     return beyond / peak, grid / peak
 
 
-@pytest.mark.parametrize(
-    ("box", "words"),
-    [
-        (SMALL, {"angle": -40.0, "material.fric": 0.0}),
-        (HIGH, {"kind": "p"}),
-    ],
-)
+@pytest.mark.parametrize(("box", "words"), [(SMALL, {"angle": -40.0, "material.fric": 0.0}), (HIGH, {"kind": "p"})])
 def test_without_a_hole_nothing_is_scattered(lab, box, words) -> None:
     assert max(deviations(build(window(lab, box, **words)))) < SCATTERED
 
@@ -78,9 +71,6 @@ def test_straight_up_it_is_the_wave_that_enters_through_a_column(lab) -> None:
     assert np.abs(found[0] - found[1])[int(0.3 / step) :].max() < 5e-3 * np.abs(found[1]).max()
 
 
-HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
-
-
 @pytest.mark.parametrize(("kind", "signs"), [("sv", (1.0, -1.0)), ("p", (-1.0, 1.0))])
 def test_from_the_other_side_the_motion_is_the_mirror_image(lab, kind, signs) -> None:
     """To rounding; the lattice and the hole are symmetric about x = 30 m. SV waves that are mirrored begin with −ẋ."""
@@ -88,7 +78,7 @@ def test_from_the_other_side_the_motion_is_the_mirror_image(lab, kind, signs) ->
     found = []
     for sign in (1.0, -1.0):
         monitor = [{"name": name, "position": [30.0 + sign * (x - 30.0), y]} for name, (x, y) in places.items()]
-        scene = build(window(lab, kind=kind, angle=sign * 30.0, hole=[HOLE], monitor=monitor))
+        scene = build(window(lab, kind=kind, angle=sign * 30.0, hole=True, monitor=monitor))
         step = choose_step(scene)[0]
         record = Simulation(scene, step, scene.probes).advance(700)
         found.append(scene.observed(record, step * np.arange(len(record)))[:, :, 3:5])
@@ -98,10 +88,9 @@ def test_from_the_other_side_the_motion_is_the_mirror_image(lab, kind, signs) ->
 
 def test_the_ledger_closes_and_what_comes_in_leaves(lab) -> None:
     """Energy comes in through the left side and from below, and from above what the surface sends back."""
-    scene = build(window(lab, hole=[HOLE]))
-    simulation = Simulation(scene, choose_step(scene)[0], side_stride=1)
-    ledger = Ledger(simulation, 50)
-    simulation.track(ledger)
+    scene = build(window(lab, hole=True))
+    simulation = lab.simulation(scene, side_stride=1)
+    ledger = lab.ledger(simulation, 50)
     simulation.run(int(0.8 / simulation.time_step))
     of = dict(zip(ledger.side_names, ledger.side_columns[-1].tolist(), strict=True))
     came_in, left, _ = np.sum([of[side] for side in ("left", "right", "bottom", "top")], axis=0)

@@ -1,6 +1,5 @@
 """What dashpots send back of oblique plane waves: the lattice's exact reflection is that of the continuum's formula."""
 
-import numpy as np
 import pytest
 from oblique import dashpot_formula, lattice, reflection
 
@@ -9,7 +8,7 @@ PER_WAVELENGTH = 400.0
 
 
 @pytest.mark.parametrize("motion", ["p", "s"])
-@pytest.mark.parametrize("angle", [0.0, 15.0, 30.0, 43.0, 47.0, 60.0, 75.0, 85.0])
+@pytest.mark.parametrize("angle", [0.0, 30.0, 43.0, 47.0, 85.0])
 def test_lattice_and_formula_agree(motion, angle):
     """Up to the lattice's dispersion, (qa)²/24 = 1e-5 of wave numbers: seen near grazing and critical angles.
 
@@ -36,12 +35,6 @@ def test_half_of_the_energy_comes_back_at_grazing_incidence(motion):
 def test_energies_of_the_page_on_limits(motion, angle, energy):
     """Those of ν = ¼, c_s/c_p = 1/√3, rounded to two or three digits."""
     assert dashpot_formula(motion, float(angle), 3.0**-0.5)["energy"] == pytest.approx(energy, rel=0.04)
-
-
-def test_whole_end_masses_return_a_quarter_of_the_phase():
-    """tan(qa/4) at normal incidence, as along a chain (test_chain_end)."""
-    found = reflection({"type": "viscous"}, "p", 0.0, 20.0)["p"]
-    assert found == pytest.approx(np.tan(0.25 * 2.0 * np.pi / 20.0), rel=(2.0 * np.pi / 20.0) ** 2 / 12.0)
 
 
 @pytest.mark.parametrize("motion", ["p", "s"])

@@ -32,7 +32,7 @@ def test_nothing_moves_after_gravity(lab, pattern, material):
     settled = settle(scene)
     assert settled.ratio <= 1e-5
     assert settled.mean_residual < 1e-3 * settled.mean_reaction
-    simulation = lab.settled(scene, settled.start)
+    simulation = lab.simulation(scene, settled.start)
     simulation.run(2000)
     # F_0 is minus the force the same kernel gave; the springs' part of it, which is not, is rounded
     assert np.abs(simulation.state.velocity).max() < 1e-9 * 0.5
@@ -42,7 +42,7 @@ def test_nothing_moves_with_locked_in_stress_alone(lab):
     scene = waiting(lab, "B", {"law": "linearpbond", "fric": 0.5, "locked_in": 5e6}, {"static": {}})
     settled = settle(scene)
     assert np.abs(settled.start.displacement).max() > 0.0
-    simulation = lab.settled(scene, settled.start)
+    simulation = lab.simulation(scene, settled.start)
     simulation.run(500)
     assert np.abs(simulation.state.velocity).max() < 1e-9 * 0.5
 

@@ -51,7 +51,7 @@ def test_nothing_moves_afterwards_nor_after_an_excavation(lab, fric):
     assert found.before.uniformity.deviation < UNEVEN
     assert np.isnan(found.before.uniformity.near_holes)
     assert found.uniformity.near_holes > 0.1  # where the wall bears nothing
-    simulation = lab.settled(scene, found.start)
+    simulation = lab.simulation(scene, found.start)
     simulation.run(1000)
     # balanced to rounding; contacts that are just sliding may slide on
     assert np.abs(simulation.state.velocity).max() < 1e-9 * 0.5

@@ -13,10 +13,7 @@ import pytest
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem
 from dembound.motion import threads
-from dembound.motion.energy import Ledger
-from dembound.motion.simulation import Simulation
 from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
@@ -63,8 +60,7 @@ def scene_of(lab, name: str) -> tuple[DiskScene | GridScene, float]:
         return GridScene(body), 0.9 * step_limit(body)
     words = {"held": (), **SCENES[name]}
     if "box" in words:
-        hole = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
-        scene = build(lab.window("B", words.pop("box"), changes={"hole": [hole]}, **words))
+        scene = build(lab.window("B", words.pop("box"), hole=True, **words))
     else:
         wave = {"type": "cosine", "amplitude": 1.0, "period": 0.02}
         scene = build(lab.case("B", words.pop("size"), wave=wave, **words))
@@ -76,16 +72,11 @@ def run_with(number: int, lab, name: str) -> dict[str, np.ndarray]:
     numba.set_num_threads(number)
     assert threads.thread_count_for(1000) == number
     scene, step = scene_of(lab, name)
-    if name.startswith("settled"):
-        start = settle(scene).start
-        simulation = Simulation(scene, step, system=DiskSystem(scene, step, start), datum=start.displacement)
-    else:
-        simulation = Simulation(scene, step)
+    simulation = lab.simulation(scene, settle(scene).start if name.startswith("settled") else None, step)
     if name == "continuum":
         noise = np.random.default_rng(0).standard_normal((3, scene.count)) * scene.moves
         simulation.state.velocity = noise
-    ledger = Ledger(simulation, 10)
-    simulation.track(ledger)
+    ledger = lab.ledger(simulation, 10)
     simulation.run(STEPS)
     return simulation.state.arrays() | {"energies": ledger.columns, "time_step": np.array(step)}
 

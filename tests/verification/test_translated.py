@@ -45,10 +45,6 @@ WIDE = {"name": "wide", "force": [1e5, 0.0], "region": [1.0, 1.0, 3.0, 2.1], "wa
 BLAST = {"name": "blast", "pressure": 1e6, "hole": "tunnel", "wave": "pulse"}
 
 
-def circle(x, y, radius):
-    return {"name": "tunnel", "type": "circle", "centre": [x, y], "radius": radius}
-
-
 SCENES = {
     "dashpots": {
         "packing": LATTICE | {"size": [12.0, 8.0]},
@@ -56,7 +52,7 @@ SCENES = {
             **{"left": {"type": "viscous"}, "bottom": {"type": "roller"}},
             "right": {"type": "viscoelastic", "source": [4.3, 5.2]},
         },
-        "hole": [circle(8.1, 3.0, 1.2)],
+        "hole": [{"name": "tunnel", "type": "circle", "centre": [8.1, 3.0], "radius": 1.2}],
         "load": [BLOW, WIDE, BLAST],
         "monitor": [[2.2, 4.1], [11.9, 0.3]],
         "run": {"duration": 0.2, "until": "silent"},

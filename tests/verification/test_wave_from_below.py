@@ -11,7 +11,6 @@ import pytest
 
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
 PERIOD = 0.1
@@ -59,9 +58,8 @@ def test_its_energy_comes_in_through_the_bottom_and_leaves_there(lab, pattern) -
     boundary = BELOW | {"bottom": {"type": "outside", "wave_s": "pulse", "wave_p": "pulse"}}
     wave = PULSE | {"period": 0.05}
     scene = build(lab.case(pattern, size, held=(), material={"fric": 0.5}, boundary=boundary, wave=wave, **packing))
-    simulation = Simulation(scene, choose_step(scene)[0], side_stride=1)
-    ledger = Ledger(simulation, 50)
-    simulation.track(ledger)
+    simulation = lab.simulation(scene, side_stride=1)
+    ledger = lab.ledger(simulation, 50)
     simulation.run(int(0.25 / simulation.time_step))
     last, most = ledger.entries[-1], max(entry.kinetic for entry in ledger.entries)
     of = dict(zip(ledger.side_names, ledger.side_columns[-1].tolist(), strict=True))

@@ -19,11 +19,11 @@ def test_a_wide_horizon_smears_a_short_pulse():
     assert bars.smeared(3) < 0.002
 
 
-@pytest.mark.parametrize("cells", [20.0, 60.0])
-def test_a_seam_returns_a_part_of_short_waves(cells):
-    theta = 2.0 * np.pi / cells
-    assert bars.seam_echo(cells) == pytest.approx(8.0 * theta**2 / 96.0, rel=theta**2)
-    assert bars.seam_echo(cells, complement=False) > 15.0 * bars.seam_echo(cells)
+def test_a_seam_returns_a_part_of_short_waves():
+    """As derived in test_patch_seam; without what completes the stress far more."""
+    theta, found = 2.0 * np.pi / 20.0, bars.seam_echo(20.0)
+    assert found == pytest.approx(8.0 * theta**2 / 96.0, rel=theta**2)
+    assert bars.seam_echo(20.0, complement=False) > 15.0 * found
 
 
 def test_methods_agree_on_the_first_spall_only():
@@ -62,11 +62,10 @@ def test_springs_swing_under_a_sudden_load():
     assert bars.odd_even_swing(0.0, 0.9) == pytest.approx(1.287, abs=0.01)
 
 
-@pytest.mark.parametrize("strength", [None, 10e6])
-def test_steps_just_above_the_limit_stop_a_run(strength):
+def test_steps_just_above_the_limit_stop_a_run():
     """At 1.0001 of the limit noise grows by e^0.028 a step: 1e24 in 2000 steps."""
-    assert not bars.stops(1.0, strength)
-    assert bars.stops(1.0001, strength)
+    assert not bars.stops(1.0, 10e6)
+    assert bars.stops(1.0001, 10e6)
 
 
 def test_soft_ends_reflect():

@@ -5,11 +5,7 @@ import pytest
 
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
-from dembound.disks.stability import choose_step
-from dembound.motion.energy import Ledger
-from dembound.motion.simulation import Simulation
 
-HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
 SMALL, WHOLE = (20.0, 20.0, 40.0, 40.0), (0.0, 0.0, 60.0, 60.0)
 WEIGHT = [{"acceleration": (0.0, -9.81)}]
 STATIC = {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-3}
@@ -19,11 +15,9 @@ STEPS = 1500
 @pytest.mark.parametrize(("box", "words"), [(WHOLE, {}), (SMALL, {"load": WEIGHT, "static": STATIC})])
 def test_it_closes(lab, box, words) -> None:
     """Each step rounds by ε of the energies, or of what the balancing forces have stored."""
-    scene = build(lab.window("B", box, changes={"hole": [HOLE]}, **words))
-    step = choose_step(scene)[0]
-    simulation = Simulation(scene, step) if not words else lab.settled(scene, settle(scene).start, step)
-    ledger = Ledger(simulation, 50)
-    simulation.track(ledger)
+    scene = build(lab.window("B", box, hole=True, **words))
+    simulation = lab.simulation(scene, settle(scene).start if words else None)
+    ledger = lab.ledger(simulation, 50)
     simulation.run(STEPS)
     error = np.array([entry.error for entry in ledger.entries])
     most = max(entry.kinetic for entry in ledger.entries)

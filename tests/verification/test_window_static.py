@@ -19,7 +19,7 @@ RATIO = 3e-6
 STATIC = {"ratio": RATIO, "boundary": {"bottom": {"type": "fixed"}}}
 STRONG = {"law": "linearpbond", "pb_ten": 1e12, "pb_coh": 1e12}
 HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0, "stage": "after"}
-SMALL, LARGE, WHOLE = (20.0, 20.0, 40.0, 40.0), (10.0, 10.0, 50.0, 40.0), (0.0, 0.0, 60.0, 60.0)
+SMALL, LARGE = (20.0, 20.0, 40.0, 40.0), (10.0, 10.0, 50.0, 40.0)
 
 
 class Ground(NamedTuple):
@@ -46,20 +46,13 @@ def ground(lab, pattern: str, box, *, hole: bool, **words) -> Ground:
     return Ground(scene, settle(scene))
 
 
-def largest_speed(lab, at: Ground, steps: int = 500) -> float:
-    simulation = lab.settled(at.scene, at.settled.start)
-    simulation.run(steps)
-    return float(np.abs(simulation.state.velocity[:2]).max())
-
-
-LOCKED = {"material": STRONG | {"locked_in": 1e6}}
 HOUSE = {"name": "house", "force": [2e4, -2e5], "region": [25.0, 59.0, 35.0, 60.0]}  # on the continuum's surface
 CASES = {
     "lattice": ("A", {"load": WEIGHT}),
     "house": ("A", {"load": [*WEIGHT, HOUSE]}),
     "random": ("B", {"load": WEIGHT}),
     "history": ("B", {"load": WEIGHT, "material": STRONG}),
-    "locked in": ("B", LOCKED),
+    "locked in": ("B", {"material": STRONG | {"locked_in": 1e6}}),
 }
 
 
@@ -76,8 +69,10 @@ def test_it_rests(lab, name: str, hole: bool) -> None:
     """Pulses are some 0.5 m/s. All forces are balanced to rounding, ε of the weight of 30 m of ground per ρ c."""
     pattern, words = CASES[name]
     at = ground(lab, pattern, SMALL, hole=hole, **words)
+    simulation = lab.simulation(at.scene, at.settled.start)
+    simulation.run(500)
 
-    assert largest_speed(lab, at) < 1e-11
+    assert np.abs(simulation.state.velocity[:2]).max() < 1e-11
     assert np.abs(at.scene.steady_load[:, at.scene.disk_count :]).any() == (name == "house")
     assert at.settled.ratio <= RATIO
 
