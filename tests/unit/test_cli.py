@@ -624,7 +624,15 @@ def test_what_cannot_be_written_is_named_and_nothing_deleted_that_no_run_has_wri
     assert (tmp_path / "bar" / "notes.txt").read_text() == "precious"
 
 
-def test_dispersion_is_told_drawn_and_written(dembound, tmp_path) -> None:
+@pytest.fixture
+def titles(monkeypatch) -> list[str]:
+    """All that figures are given as their titles, in this order; none is drawn."""
+    given: list[str] = []
+    monkeypatch.setattr(Figure, "suptitle", lambda _, title, **rest: given.append(title))
+    return given
+
+
+def test_dispersion_is_told_drawn_and_written(dembound, titles, tmp_path) -> None:
     for arguments, said in (
         (
             ["--horizon", 0, "--spacing", -1],
@@ -635,9 +643,10 @@ def test_dispersion_is_told_drawn_and_written(dembound, tmp_path) -> None:
     ):
         assert dembound("dispersion", *arguments) == (2, "", said)
     assert not files(tmp_path)
-    answer = dembound("dispersion", "--horizon", 1, "--horizon", 3, "--time-step", 2e-6, "--table", "table.csv")
+    asked = ("--horizon", 1, "--horizon", 3, "--time-step", 2e-6, "--table", "table.csv", "--title", "figure 1")
+    answer = dembound("dispersion", *asked)
 
-    assert answer.code == 0
+    assert (answer.code, titles[-1]) == (0, "figure 1")
     first, second = [line for line in answer.out.splitlines() if "2e-06" in line]
     assert "unstable" in first  # cΔt/Δx = 1.1052
     assert "24.9" in second  # spacings per wavelength, below the 28.6 of short steps
@@ -707,7 +716,7 @@ def test_bars_of_cases_are_told_and_simulated(dembound, tmp_path) -> None:
 PLACED = ("gauge.txt", "--position", 0.6, "--length", 0.99)
 
 
-def test_a_gauge_tells_what_its_history_and_options_allow(dembound, felt, tmp_path) -> None:
+def test_a_gauge_tells_what_its_history_and_options_allow(dembound, felt, titles, tmp_path) -> None:
     time, stress = felt()
     np.savetxt("gauge.txt", np.column_stack([time, 1e6 * stress]))
     np.savetxt("end.txt", np.column_stack([time, np.interp(time, [0.0, 1e-4, 2e-4, 3e-4], [0.0, 10.0, 4.0, 8.0])]))
@@ -728,22 +737,15 @@ def test_a_gauge_tells_what_its_history_and_options_allow(dembound, felt, tmp_pa
     assert many.out == alone.out
 
     known = ("--wave-speed", 2740, "--attenuation", 0.52, "--density", 2620)
-    full = dembound("gauge", *PLACED, *known, "--spall", 0.9, "--free-end", "end.txt", "-o", "gauge.png")
+    drawn = ("-o", "gauge.png", "--title", "figure 1")
+    full = dembound("gauge", *PLACED, *known, "--spall", 0.9, "--free-end", "end.txt", *drawn)
     assert full.code == 0
+    assert titles[-1] == "figure 1"
     rows = [line.split() for line in full.out.splitlines() if "strength" in line]
     assert [row[0] for row in rows] == ["nominal", "attenuated", "pull-back"]
     assert "21.54" in full.out  # ½ · 2620 · 2740 · 6 Pa
     assert full.out.splitlines()[-1] == "wrote gauge.png"
     assert (tmp_path / "gauge.png").read_bytes().startswith(PNG)
-
-
-def test_a_picture_may_be_given_a_title(dembound, felt, monkeypatch) -> None:
-    np.savetxt("gauge.txt", np.column_stack(felt()))
-    titles = []
-    monkeypatch.setattr(Figure, "suptitle", lambda _, title, **rest: titles.append(title))
-    for arguments in (["dispersion"], ["gauge", *PLACED, "-o", "gauge.png"]):
-        assert dembound(*arguments, "--title", "figure 1").code == 0
-        assert titles[-1] == "figure 1"
 
 
 def test_gauges_that_tell_nothing_are_bad_input(dembound, felt, tmp_path) -> None:
