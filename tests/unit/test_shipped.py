@@ -26,10 +26,6 @@ def test_a_copy_of_a_case_can_be_read_where_it_is(tmp_path) -> None:
         assert load(copied[0]).name == name.rpartition("/")[2]
 
 
-def test_a_wave_that_is_read_from_a_file_is_copied_with_its_case(tmp_path) -> None:
-    assert [path.name for path in shipped.copy("spall", tmp_path)] == ["spall.toml", "spall_pulse.txt"]
-
-
 def test_a_group_is_copied_with_its_scripts_which_stay_executable(tmp_path) -> None:
     copied = shipped.copy("lu2016", tmp_path)
 

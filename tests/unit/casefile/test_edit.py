@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Any
 
+import pytest
 import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,9 +14,9 @@ from dembound import shipped, starting
 from dembound.casefile.edit import edited, rewritten
 from dembound.casefile.statements import Place, lines_of, statements_of
 
-TEXTS = {name: (shipped.folder() / f"{name}.toml").read_text(encoding="utf-8") for name in shipped.names()} | {
-    f"new {name}": starting.starting_point(name) for name in starting.names()
-}
+SHIPPED = [(shipped.folder() / f"{name}.toml").read_text(encoding="utf-8") for name in shipped.names()]
+TEXTS = sorted([*SHIPPED, *map(starting.starting_point, starting.names())], key=len)
+some_or_all = pytest.mark.parametrize("texts", [TEXTS[::4], pytest.param(TEXTS, marks=pytest.mark.slow)])
 
 ODD = """\
 #:schema ./dembound.schema.json
@@ -83,8 +84,9 @@ def put(data: Any, place: Place, value: Any) -> None:
     data[place[-1]] = value
 
 
-def test_a_changed_value_changes_its_own_lines_alone() -> None:
-    for text in TEXTS.values():
+@some_or_all
+def test_a_changed_value_changes_its_own_lines_alone(texts: list[str]) -> None:
+    for text in texts:
         found, lines = list(leaves(tomllib.loads(text))), lines_of(text)
         for place, value in found[:: max(1, len(found) // 3)]:
             wanted = tomllib.loads(text)
@@ -99,8 +101,9 @@ def test_a_changed_value_changes_its_own_lines_alone() -> None:
             assert new != text
 
 
-def test_added_and_removed_keys_leave_all_other_lines() -> None:
-    for text in TEXTS.values():
+@some_or_all
+def test_added_and_removed_keys_leave_all_other_lines(texts: list[str]) -> None:
+    for text in texts:
         added = edited(text, {"output.added": 1.5, "new_table.key": [1, 2], "boundary.top.added": True})
         data = tomllib.loads(text)
         data.setdefault("output", {})["added"] = 1.5

@@ -32,20 +32,23 @@ HOLES = {
 ALONE = {"boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom")}}
 
 
-@pytest.fixture(params=[(name, name == "canyon") for name in HOLES] + [("floor", True)], ids=str)
-def hollow_run(request, tmp_path):
-    """The record of 24 × 16 disks with a hole, in a continuum or alone, with random motion in a snapshot."""
-    name, in_a_box = request.param
+SHAPES = [(name, name == "canyon") for name in HOLES] + [("floor", True)]
+"""Names of holes, with whether a continuum is around the disks."""
+COARSE = [("canyon", True), ("floor", False)]
+"""Those that are also drawn with means in place of disks; the others so in a slow test."""
+
+
+def hollow_run(path, name, in_a_box):
+    """Write the record of 24 × 16 disks with a hole, in a continuum or alone, with random motion in a snapshot."""
     size = {"pattern": "A", "size": [24.0, 16.0], "radius": RADIUS}
     changes = {"packing": size, "hole": [{"name": name, **HOLES[name]}], **({} if in_a_box else ALONE)}
     if name == "floor" and not in_a_box:
         changes["boundary"] = ALONE["boundary"] | {"right": {"type": "free"}}
     scene = Disks().build(small(SURROUNDED, "hollow", changes))
     simulation, rng = Simulation(scene, 1e-4), np.random.default_rng(3)
-    with Recorder(tmp_path / "run.h5", simulation, 2e-4) as recorder:
+    with Recorder(path, simulation, 2e-4) as recorder:
         simulation.state.velocity = rng.normal(size=(3, scene.count)) * scene.moves
         recorder.snapshot()
-    return tmp_path / "run.h5"
 
 
 def away(points, line):
@@ -56,23 +59,24 @@ def away(points, line):
     return np.hypot(*np.moveaxis(points[:, None] - nearest, 2, 0)).min(axis=1).max()
 
 
-def test_outlines_are_those_of_the_case(hollow_run, monkeypatch):
-    for dots in (150, 12):
-        monkeypatch.setattr(style, "DOTS_PER_INCH", dots)
-        check_outlines(hollow_run, dots)
-
-
-def check_outlines(hollow_run, dots):
+@pytest.mark.parametrize(
+    ("name", "in_a_box", "dots"),
+    [(*shape, 150) for shape in SHAPES]
+    + [pytest.param(*shape, 12, marks=[] if shape in COARSE else pytest.mark.slow) for shape in SHAPES],
+)
+def test_outlines_are_those_of_the_case(name, in_a_box, dots, run, monkeypatch):
     """In a picture and in a movie of so many dots per inch."""
-    with h5py.File(hollow_run) as file:
+    monkeypatch.setattr(style, "DOTS_PER_INCH", dots)
+    hollow_run(run, name, in_a_box)
+    with h5py.File(run) as file:
         (hole,) = read_holes(file)
         positions = file["particles/position"][:]
     low, high = positions.min(axis=0) - RADIUS, positions.max(axis=0) + RADIUS
     true = hole.outline.at(np.linspace(0.0, hole.outline.period, 1501))
     inside = true[((true > low + 1e-6) & (true < high - 1e-6)).all(axis=1)]
-    moving = MovingScene(hollow_run)
+    moving = MovingScene(run)
     moving.frame(0, 8 * dots)
-    for panel in (plot_scene(hollow_run).axes[0], moving.figure.axes[0]):
+    for panel in (plot_scene(run).axes[0], moving.figure.axes[0]):
         patches = [each for each in panel.patches if isinstance(each, PathPatch)]
         lines = [each.get_path().vertices for each in patches if each.get_zorder() == ABOVE_FILLING]
         filled = [each for each in patches if each.get_zorder() == ABOVE_FIELD]

@@ -40,13 +40,19 @@ def test_histories_alone_have_no_movie(pushed_runs, tmp_path):
             draw(path)
 
 
-def test_frames_are_those_of_the_snapshots(pushed_runs, spalled_results, tmp_path):
-    movie, drawn = movie_of(pushed_runs[0], pixels=201), []
-    write_movie(movie, tmp_path / "movie.gif", 8.0, drawn.append)
+@pytest.fixture(scope="module")
+def pushed_movie(pushed_runs):
+    """The movie of three snapshots, above the histories of two monitors."""
+    return movie_of(pushed_runs[0], pixels=201)
+
+
+def test_frames_are_those_of_the_snapshots_in_a_folder_without_loss(pushed_movie, spalled_results, tmp_path):
+    drawn = []
+    write_movie(pushed_movie, tmp_path / "movie.gif", 8.0, drawn.append)
     assert drawn == [1, 2, 3]
     frames, times = frames_in(tmp_path / "movie.gif")
     assert times == [130] * 3
-    wholes = [movie.frame(number) for number in range(3)]
+    wholes = [pushed_movie.frame(number) for number in range(3)]
     for number, (frame, whole) in enumerate(zip(frames, wholes, strict=True)):
         assert whole.shape == frame.shape
         assert whole.shape[0] % 2 == whole.shape[1] % 2 == 0
@@ -55,29 +61,25 @@ def test_frames_are_those_of_the_snapshots(pushed_runs, spalled_results, tmp_pat
         assert np.argmin(errors) == number
         assert errors[number] < 8.0
     assert (frames[0][(wholes[0] == 255).all(axis=2)] == 255).all()
+
+    folder = tmp_path / "frames"
+    write_movie(pushed_movie, folder)
+    assert sorted(path.name for path in folder.iterdir()) == [f"{number:04d}.png" for number in range(3)]
+    for number, whole in enumerate(wholes):
+        np.testing.assert_array_equal(np.asarray(Image.open(folder / f"{number:04d}.png")), whole)
+    with pytest.raises(CaseError, match="frames is there already, frames are written to a new folder"):
+        write_movie(pushed_movie, folder)
     write_movie(movie_of(spalled_results, every=50, monitors=[], pixels=201), tmp_path / "fast.gif", 80.0)
     assert frames_in(tmp_path / "fast.gif")[1] == [20, 20]
 
 
-def test_a_folder_has_the_frames_without_loss(pushed_runs, tmp_path):
-    movie = movie_of(pushed_runs[0], pixels=201)
-    write_movie(movie, tmp_path / "frames")
-    names = [f"{number:04d}.png" for number in range(3)]
-    assert sorted(path.name for path in (tmp_path / "frames").iterdir()) == names
-    for number, name in enumerate(names):
-        np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "frames" / name)), movie.frame(number))
-    with pytest.raises(CaseError, match="frames is there already, frames are written to a new folder"):
-        write_movie(movie, tmp_path / "frames")
-
-
-def test_what_fails_in_between_leaves_nothing(pushed_runs, tmp_path):
+def test_what_fails_in_between_leaves_nothing(pushed_movie, tmp_path):
     def full(drawn: int) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    movie = movie_of(pushed_runs[0], pixels=201, monitors=[])
     for name in ("movie.gif", "frames"):
         with pytest.raises(OSError, match="No space left"):
-            write_movie(movie, tmp_path / name, progress=full)
+            write_movie(pushed_movie, tmp_path / name, progress=full)
         assert not list(tmp_path.iterdir())
 
 
@@ -86,8 +88,8 @@ def test_every_so_many_snapshots_and_the_last(spalled_results):
         assert movie_of(spalled_results, every=every, monitors=[]).chosen == chosen
 
 
-def test_histories_are_below_and_the_line_moves(pushed_runs, spalled_results):
-    alone, both = movie_of(pushed_runs[0], monitors=[], pixels=300), movie_of(pushed_runs[0], pixels=300)
+def test_histories_are_below_and_the_line_moves(pushed_runs, pushed_movie, spalled_results):
+    alone, both = movie_of(pushed_runs[0], monitors=[], pixels=201), pushed_movie
     assert alone.below is None
     rows = alone.frame(0).shape[0]
     top = rows - rows % 2
@@ -127,10 +129,10 @@ def test_a_gif_has_the_shades_of_the_colour_map(monkeypatch):
     assert len(np.unique(made[:256, 360], axis=0)) >= 96
 
 
-def test_what_cannot_be_shown_is_said(blind_run, pushed_runs, tmp_path):
+def test_what_cannot_be_shown_is_said(blind_run, pushed_runs, pushed_movie, tmp_path):
     with pytest.raises(CaseError, match="has no snapshots"):
         movie_of(blind_run)
     with pytest.raises(CaseError, match="field: is damage"):
         movie_of(pushed_runs[0], field="damage")
     with pytest.raises(CaseError, match=r"--output: is .*movie\.avi, must end in \.gif, or have no ending"):
-        write_movie(movie_of(pushed_runs[0]), tmp_path / "movie.avi")
+        write_movie(pushed_movie, tmp_path / "movie.avi")

@@ -112,49 +112,32 @@ def after(total: int) -> list[int]:
 
 
 def test_a_process_that_ends_at_any_write_leaves_a_commit(tmp_path, monkeypatch) -> None:
-    path, found = tmp_path / "a.h5", []
+    path, found, commits = tmp_path / "a.h5", [], []
+    commit = CommittedFile.commit
 
     class Spy(io.FileIO):
         """Copies all files as they are before every write."""
 
         def write(self, data) -> int:
-            keep()
+            shutil.rmtree(tmp_path / "copy", ignore_errors=True)
+            (tmp_path / "copy").mkdir()
+            for name in ("a.h5", "a.h5.log"):
+                if (tmp_path / name).is_file():
+                    shutil.copy(tmp_path / name, tmp_path / "copy" / name)
+            if commits:
+                found.append(total_of(tmp_path / "copy" / "a.h5"))
             return super().write(data)
 
-    def keep() -> None:
-        shutil.rmtree(tmp_path / "copy", ignore_errors=True)
-        (tmp_path / "copy").mkdir()
-        for name in ("a.h5", "a.h5.log"):
-            if (tmp_path / name).is_file():
-                shutil.copy(tmp_path / name, tmp_path / "copy" / name)
-        if done_of(path):
-            found.append(total_of(tmp_path / "copy" / "a.h5"))
+    def noted(store: CommittedFile, **options) -> None:
+        commit(store, **options)
+        commits.append(store)
 
     monkeypatch.setattr(module.io, "FileIO", Spy)
-    monkeypatch.setattr(module.CommittedFile, "commit", noted(module.CommittedFile.commit))
-    COMMITS.clear()
+    monkeypatch.setattr(CommittedFile, "commit", noted)
     grow(path)
 
     assert len(set(found)) == ROUNDS
     assert np.all(np.diff(found) >= 0)
-
-
-COMMITS: dict[str, int] = {}
-
-
-def done_of(path) -> int:
-    """Number of commits of a file so far."""
-    return COMMITS.get(str(path), 0)
-
-
-def noted(commit):
-    """A commit that is counted once it is done."""
-
-    def and_counted(store: CommittedFile, **options) -> None:
-        commit(store, **options)
-        COMMITS[str(store.path)] = COMMITS.get(str(store.path), 0) + 1
-
-    return and_counted
 
 
 def test_an_interrupted_commit_is_completed_by_the_next_writer(tmp_path, disk) -> None:
