@@ -42,9 +42,7 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
         return ""
     if len(ground.brick.radii) > bragg.MOST_DISKS:
         return f"send back short waves, which is not computed for bricks of more than {bragg.MOST_DISKS:,} disks"
-    axes = sorted({normal_axis(side) for side in case.driving})
-    share = bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
-    if share < LEAST_SHOWN:
+    if (share := copies_error(scene, signals)) < LEAST_SHOWN:
         return ""
     accuracy = case.outside.accuracy
     more = f"; more than outside.accuracy = {percent(accuracy)}, shorter bricks send back less"
@@ -52,6 +50,19 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
         f"send back up to {percent(share)} of the velocity over the ground's length, which a continuum does not"
         f"{more if share > accuracy else ''}"
     )
+
+
+def copies_error(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> float:
+    """RMS over the energy of velocities of what copies of a random brick send back over the ground's length.
+
+    0 on lattices and for bricks of which it is not computed. lowest : Hz, from which on the energy is that of
+    displacements, see `choice.energies`.
+    """
+    case, ground = scene.case, scene.ground
+    if case.packing.is_lattice or len(ground.brick.radii) > bragg.MOST_DISKS:
+        return 0.0
+    axes = sorted({normal_axis(side) for side in case.driving})
+    return bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1), lowest)
 
 
 def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> tuple[float, float]:
