@@ -42,7 +42,11 @@ def test_quadratic_motion_is_found_at_any_place() -> None:
 def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], middle: tuple[float, float]) -> None:
     np.testing.assert_allclose(patch_around(lattice(), np.array(place)), 0.5 * NINE + middle, atol=1e-12)
     low = lattice(**{"packing.size": [10.0, 1.0], "monitor": [{"name": "back", "position": [9.6, 0.2]}]})
-    np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), [[3.25, 0.25]], atol=1e-12)
+    row = [[2.75, 0.25], [3.25, 0.25], [3.75, 0.25]]
+    np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), row, atol=1e-12)
+    assert weights_at(np.array(row), np.array([3.4, 0.9])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
+    column = np.array(row)[:, ::-1]
+    assert weights_at(column, np.array([0.9, 3.4])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
 
 
 def test_a_patch_has_no_disks_that_a_hole_has_taken() -> None:
