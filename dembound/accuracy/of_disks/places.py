@@ -43,9 +43,9 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
 def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
     """Weights (k,) of the motion of the disks of a patch (k, 2) m in that at a place (2,) m.
 
-    They are exact for quadratic motion: Lagrange's polynomials through three places along x, times those along y, or one
-    of them where a patch is one disk wide or high. Beyond `FARTHEST` they are those there, as in a continuum beyond the
-    disks.
+    They are exact for quadratic motion: Lagrange's polynomials through three places along x, times those along y, or
+    one of them where a patch is one disk wide or high. Beyond `FARTHEST` they are those there, as in a continuum beyond
+    the disks.
     """
     middle = patch[len(patch) // 2]
     weights = []
