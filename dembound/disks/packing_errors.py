@@ -42,7 +42,9 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
         return ""
     if len(ground.brick.radii) > bragg.MOST_DISKS:
         return f"send back short waves, which is not computed for bricks of more than {bragg.MOST_DISKS:,} disks"
-    if (share := copies_error(scene, signals)) < LEAST_SHOWN:
+    axes = sorted({normal_axis(side) for side in case.driving})
+    share = bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
+    if share < LEAST_SHOWN:
         return ""
     accuracy = case.outside.accuracy
     more = f"; more than outside.accuracy = {percent(accuracy)}, shorter bricks send back less"
@@ -52,17 +54,23 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
     )
 
 
-def copies_error(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> float:
-    """RMS over the energy of velocities of what copies of a random brick send back over the ground's length.
+def unevenness(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> float:
+    """RMS over the energy of velocities of k²LD, to which what an uneven brick scatters is in proportion; 0 on lattices.
 
-    0 on lattices and for bricks of which it is not computed. lowest : Hz, from which on the energy is that of
-    displacements, see `choice.energies`.
+    k : of the slowest waves, none shorter than a brick; L, D : length of a random brick and mean diameter of its disks.
+    Of signals the largest. lowest : Hz, from which on the energy is that of displacements, see `choice.energies`.
     """
-    case, ground = scene.case, scene.ground
-    if case.packing.is_lattice or len(ground.brick.radii) > bragg.MOST_DISKS:
+    if scene.case.packing.is_lattice:
         return 0.0
-    axes = sorted({normal_axis(side) for side in case.driving})
-    return bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1), lowest)
+    assert scene.outside is not None
+    speed, brick = choice.slowest(scene.outside.body.medium), scene.ground.brick
+    length, found = float(max(brick.size)), [0.0]
+    for signal in signals:
+        frequency, energy = choice.energies(signal, lowest)
+        k = 2.0 * math.pi * np.minimum(frequency / speed, 1.0 / length)
+        squares = (k**2 * length * brick.mean_diameter) ** 2
+        found.append(math.sqrt(float(energy @ squares / energy.sum())))
+    return max(found)
 
 
 def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> tuple[float, float]:

@@ -16,7 +16,6 @@ as much as a band ½cκ·tanh(κl) Hz wide has.
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -39,10 +38,6 @@ LEFT_OUT = 1e-4
 
 MOST_DISKS = 5_000
 """In a brick for which this is computed: each coupling takes a solve for three unknowns per disk, here some 0.3 s."""
-
-
-_KNOWN: dict[str, Coupling] = {}
-"""Couplings that were computed, by a digest of their ground, axis and number."""
 
 
 class Coupling(NamedTuple):
@@ -101,42 +96,24 @@ def _coupled(axis: int, number: int, size: np.ndarray) -> np.ndarray:
 
 
 def sent_back(
-    ground: PackedMaterial,
-    signals: Sequence[Signal],
-    lengths: Sequence[float],
-    axes: Sequence[int],
-    lowest: float = math.inf,
+    ground: PackedMaterial, signals: Sequence[Signal], lengths: Sequence[float], axes: Sequence[int]
 ) -> float:
     """RMS over the energy of velocities of what copies send back of signals, of the worst one.
 
-    lengths : of the ground along x and y, m. axes : along which waves run, of which it is the mean. lowest : Hz, from
-    which on the energy is that of displacements, see `choice.energies`.
+    lengths : of the ground along x and y, m. axes : along which waves run, of which it is the mean.
     """
     shares = np.zeros(len(signals))
     cutoff = max(choice.cutoff(signal, LEFT_OUT) for signal in signals)
     for axis in axes:
-        slowest = float(np.nanmin(ground.wave_speeds(axis))) / (2.0 * float(ground.brick.size[axis]))
-        for number in range(1, math.floor(cutoff / slowest) + 1):
-            found = _known_coupling(ground, axis, number)
-            shares += [
-                found.band(lengths[axis]) * _density(signal, found.frequency, lowest) / len(axes) for signal in signals
-            ]
+        lowest = float(np.nanmin(ground.wave_speeds(axis))) / (2.0 * float(ground.brick.size[axis]))
+        for number in range(1, math.floor(cutoff / lowest) + 1):
+            found = coupling(ground, axis, number)
+            shares += [found.band(lengths[axis]) * _density(signal, found.frequency) / len(axes) for signal in signals]
     return math.sqrt(min(float(shares.max()), 1.0))
 
 
-def _known_coupling(ground: PackedMaterial, axis: int, number: int) -> Coupling:
-    """The coupling of `coupling`, found once for all scenes of the same ground."""
-    brick = ground.brick
-    arrays = [each.tobytes() for each in (brick.size, brick.positions, brick.radii, brick.vectors)]
-    text = repr([*arrays, ground.moduli, ground.law.name, ground.density, ground.held, axis, number])
-    key = hashlib.sha256(text.encode()).hexdigest()
-    if key not in _KNOWN:
-        _KNOWN[key] = coupling(ground, axis, number)
-    return _KNOWN[key]
-
-
-def _density(signal: Signal, frequency: float, lowest: float) -> float:
-    """Share of the energy of velocities, or displacements, per frequency (1/Hz) at a frequency."""
-    frequencies, energy = choice.energies(signal, lowest)
+def _density(signal: Signal, frequency: float) -> float:
+    """Share of the energy of velocities per frequency (1/Hz) at a frequency."""
+    frequencies, energy = choice.energies(signal)
     step = frequencies[1] - frequencies[0]
     return float(np.interp(frequency, frequencies, energy) / (energy.sum() * step))

@@ -10,8 +10,7 @@ Five parts, of which the first two depend on where a place is:
 - *layers* return `KEPT` of R0, and have an error of their own for motion that varies in no less than the ground within
   them is long; the displacement that stays after a pulse is such;
 - the *fields* of forces and holes beside elements (`choice.near_error`);
-- *copies* of a random brick beyond the disks would send back waves of two bricks and less (`bragg`), of which `COPIES`
-  reaches a place.
+- *random bricks* beyond the disks would scatter waves, `BRICKS` k²LD with the length L of a brick.
 
 Random packings scatter what a uniform continuum does not. Of waves that enter through a continuum holes scatter a part,
 which alone leaves again; the displacement that they leave behind is their own, and none of layers. All this is measured
@@ -29,7 +28,7 @@ import numpy as np
 from dembound.boundaries.sides import normal_axis
 from dembound.disks.beyond.settings import ROUNDING, clearance, fastest, signals_of
 from dembound.disks.beyond.surroundings import Surroundings
-from dembound.disks.packing_errors import copies_error, lattice_errors
+from dembound.disks.packing_errors import lattice_errors, unevenness
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import place_of
 from dembound.outside import choice
@@ -46,7 +45,7 @@ FLATTEST = 0.15
 """Least cosine of the angle at which waves meet a side that counts."""
 
 SURFACE, SHALLOW = 1.6, 0.125
-"""How much more of what elements, ties and copies return there is on a free surface beside a load on it, where
+"""How much more of what elements, ties and bricks return there is on a free surface beside a load on it, where
 Rayleigh waves run, which are slower and have more of the high frequencies; and down to which part of the mean length of
 waves."""
 
@@ -59,10 +58,11 @@ LAYERS, STEEPEST = 0.4, 1e-4
 SCATTERED = 0.5
 """Part of waves that enter through a continuum that leaves through it again."""
 
-COPIES = 0.5
-"""Part of what copies of a random brick send back over the ground's length that is missing at a place. Where it is the
-largest part, the largest true errors of scenes were 1.1 to 2.0 times as large (forces and blasts, six seeds of patterns
-B and C, boxes of three bricks of 10 to 12 diameters), in docs/outside.md, under waves, 0.8 to 1.6 times."""
+BRICKS = 0.06
+"""What random bricks would scatter to a place if they went on beyond the disks, over k²LD (`unevenness`). The largest
+true errors of velocities and displacements in 25 boxes were 0.3 to 2.4 times what this gives with all other parts, of
+which most had hardly any: forces in the ground and on it, blasts, a tunnel under waves; patterns B and C, 15 seeds,
+bricks of 8 to 16 D. Under a wave at an angle velocities beside a pipe had 5 times as much."""
 
 UNEVEN = 0.002
 """Error of displacements round a load in a random packing, whose stiffness varies from place to place."""
@@ -86,7 +86,7 @@ def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[
     parts = [_parts(scene, outside, signals, lowest) for lowest in lowests]
     if scene.case.load and not scene.case.packing.is_lattice:
         parts[1] = parts[1]._replace(alike=math.hypot(parts[1].alike, UNEVEN))
-    of_copies = [COPIES * copies_error(scene, signals, lowest) for lowest in lowests]
+    bricks = [BRICKS * unevenness(scene, signals, lowest) for lowest in lowests]
     leaving, depth = 1.0 if scene.case.load else SCATTERED, _shallow(outside, signals)
     found = {}
     for name, place in places.items():
@@ -94,8 +94,8 @@ def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[
         spread = 1.0 if source is None else _spread(scene, outside, source, place)
         more = SURFACE if source is not None and _both_shallow(scene, outside, depth, source, place) else 1.0
         velocity, displacement = (
-            math.hypot(leaving * math.hypot(each.alike, more * each.elements, more * spread * each.ties), more * copies)
-            for each, copies in zip(parts, of_copies, strict=True)
+            math.hypot(leaving * math.hypot(each.alike, more * each.elements, more * spread * each.ties), more * uneven)
+            for each, uneven in zip(parts, bricks, strict=True)
         )
         found[name] = velocity, displacement
     return found

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from small_cases import SURROUNDED, Tables, small
 
-from dembound.disks.beyond.settings import signals_of
-from dembound.disks.material.bragg import sent_back
 from dembound.disks.reports import continuum_errors as of
 from dembound.disks.reports.continuum_errors import expected_errors
 from dembound.disks.scene import DiskScene, build
+from dembound.outside.choice import slowest
 
 SPEED, DIAMETER = 1000.0 / math.sqrt(2.0), 1.0
 SIDES = ("left", "right", "bottom", "top")
@@ -113,15 +112,15 @@ def test_nothing_is_known_without_a_continuum_or_of_waves_that_jump() -> None:
     assert expected_errors(scene(20.0), {}) == {}
 
 
-def test_half_of_what_copies_of_a_random_brick_send_back_is_missing_beside_a_continuum(monkeypatch) -> None:
-    """A burst about the frequency of waves that are two bricks long, over 20 m of copies."""
-    bricks = {"pattern": "B", "size": [20.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
-    burst = {"wave": {"w": SMOOTH | {"frequency": 38.0, "cycles": 4}}}
-    made = scene(38.0, packing=bricks, **burst)
-    with_copies = velocity(made)
-    monkeypatch.setattr(of, "COPIES", 0.0)
-    copies = math.sqrt(with_copies**2 - velocity(made) ** 2)
-
-    sent = sent_back(made.ground, signals_of(made.case), (20.0, 20.0), (0, 1))
-    assert sent > 0.01
-    assert copies == pytest.approx(0.5 * sent, rel=1e-6)
+def test_what_random_bricks_would_scatter_is_missing_beside_a_continuum(monkeypatch) -> None:
+    """0.06 k²LD of a burst about one frequency; waves shorter than a brick are as those of its length."""
+    packing = {"pattern": "B", "size": [20.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
+    for frequency in (20.0, 200.0):
+        made = scene(frequency, packing=packing)
+        assert made.outside is not None
+        k = 2.0 * math.pi * min(frequency / slowest(made.outside.body.medium), 1.0 / 10.0)
+        both = velocity(made)
+        monkeypatch.setattr(of, "BRICKS", 0.0)
+        bricks = math.sqrt(both**2 - velocity(made) ** 2)
+        monkeypatch.undo()
+        assert bricks == pytest.approx(0.06 * k**2 * 10.0 * made.ground.brick.mean_diameter, rel=0.02)
