@@ -55,7 +55,7 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
 
 
 def unevenness(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> float:
-    """RMS over the energy of velocities of k²LD, to which what an uneven brick scatters is in proportion; 0 on lattices.
+    """RMS over the energy of velocities of k²LD, to which what uneven bricks scatter is in proportion; 0 on lattices.
 
     k : of the slowest waves, none shorter than a brick; L, D : length of a random brick and mean diameter of its disks.
     Of signals the largest. lowest : Hz, from which on the energy is that of displacements, see `choice.energies`.
