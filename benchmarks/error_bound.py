@@ -118,7 +118,7 @@ def every(names: list[str]) -> None:
     print("| scene | bound | choice, s | cheapest, s | ratio | choice | cheapest | its error |")
     print("|---|---|---|---|---|---|---|---|")
     for name, case in cases(names):
-        truth, found = Truth(case), advise(case, BOUNDS)
+        truth, found = Truth(case), advise(case, BOUNDS, "rock")
         for bound, choice in found.best.items():
             holds = choice.holds(bound)
             tried = every_choice(case, bound, choice.cost if holds else COSTLIEST * found.given.cost)
@@ -152,7 +152,7 @@ def main(names: list[str]) -> None:
     )
     print("|---|---|---|---|---|---|---|---|---|---|")
     for name, case in cases(names):
-        truth, advice = Truth(case), advise(case, BOUNDS)
+        truth, advice = Truth(case), advise(case, BOUNDS, "rock")
         for bound, best in advice.best.items():
             assert isinstance(best.case, DiskCase)
             share, true = best.budget.worst().share, truth.of(best.case)

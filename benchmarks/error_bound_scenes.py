@@ -53,6 +53,16 @@ def embedded(wide: float, wave: str, force: tuple[float, float]) -> Tables:
     }
 
 
+def below_a_surface(wave: str) -> Tables:
+    """A force on one disk below a surface, at a place where most larger and smaller disks have none."""
+    tables = lamb("viscous", 36.0, 36.0, wave)
+    places = {"above": [16.5, 30.5], "aside": [26.5, 20.5]}
+    return tables | {
+        "load": [{"name": "hit", "force": [4e5, -4e5], "position": [14.5, 20.5], "wave": "pulse"}],
+        "monitor": [{"name": name, "position": place} for name, place in places.items()],
+    }
+
+
 def two_loads(sides: str, wave: str) -> Tables:
     """Two forces on the surface, one of them along it."""
     tables = lamb(sides, 50.0, 24.0, wave)
@@ -146,6 +156,7 @@ def scenes() -> Iterator[tuple[str, Tables]]:
         for wide in (30.0, 50.0):
             yield f"embedded {wide:g} m along x {wave}", embedded(wide, wave, (1e6, 0.0))
             yield f"embedded {wide:g} m inclined {wave}", embedded(wide, wave, (1e6, 5e5))
+        yield f"below a surface {wave}", below_a_surface(wave)
         for sides in ("viscous", "outside"):
             yield f"two loads {sides} {wave}", two_loads(sides, wave)
         for sides, wide in (("viscous", 30.0), ("viscoelastic", 50.0)):

@@ -54,6 +54,25 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
     )
 
 
+def unevenness(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> float:
+    """RMS over the energy of velocities of k²LD, to which what uneven bricks scatter is in proportion; 0 on lattices.
+
+    k : of the slowest waves, none shorter than a brick; L, D : length of a random brick and mean diameter of its disks.
+    Of signals the largest. lowest : Hz, from which on the energy is that of displacements, see `choice.energies`.
+    """
+    if scene.case.packing.is_lattice:
+        return 0.0
+    assert scene.outside is not None
+    speed, brick = choice.slowest(scene.outside.body.medium), scene.ground.brick
+    length, found = float(max(brick.size)), [0.0]
+    for signal in signals:
+        frequency, energy = choice.energies(signal, lowest)
+        k = 2.0 * math.pi * np.minimum(frequency / speed, 1.0 / length)
+        squares = (k**2 * length * brick.mean_diameter) ** 2
+        found.append(math.sqrt(float(energy @ squares / energy.sum())))
+    return max(found)
+
+
 def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> tuple[float, float]:
     """RMS over the energy of velocities of what ties return, and of the lag of waves over the scene's longer side L.
 

@@ -19,7 +19,7 @@ from dembound.errors import DemboundError
 from dembound.methods import FiniteDifference
 
 COARSER = (32.0, 24.0, 16.0, 12.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25)
-FACTORS = (1.0, *COARSER, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125)
+FACTORS = (1.0, *COARSER, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125, 0.1)
 """Spacings over the given ones that are tried: the nearest that divide their ranges, and that have nodes at monitors.
 """
 

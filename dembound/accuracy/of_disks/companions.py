@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
 from dembound.accuracy.of_disks.pair import Pair, pair_of, ratios, sides_of_pair
 from dembound.accuracy.of_disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
 from dembound.accuracy.runner import Run, Runner, at_step
-from dembound.boundaries import normal_axis
+from dembound.boundaries import SIDES, is_far, normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts.breaks import BREAK_TIME
@@ -30,6 +30,9 @@ QUANTITIES = ("velocity", "displacement")
 
 LEEWAY = 1.5
 """Work of the cheapest pair over what may be spent, from which on an estimate runs none."""
+
+LEAST_SHIFT = 1e-6
+"""Shift of a load, over the diameter of companions, from which on its way to surfaces counts."""
 
 LESS = 0.9
 """Step of all companions over that of the pair, so that it is stable with the springs and half cells of any sides."""
@@ -48,6 +51,7 @@ class Companions:
     most: float
     runner: Runner = field(default_factory=Runner)
     _made: dict[tuple[str, float], Coarser] = field(default_factory=dict, init=False, repr=False)
+    _behind: dict[str, Motions] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def pair(self) -> Pair | None:
@@ -91,7 +95,11 @@ class Companions:
     @cached_property
     def _far(self) -> Run:
         """The run with far sides."""
-        return self._measured(self._own if self.pair is None else enlarged(build(self._own), self.pair.bricks))
+        return self._measured(self._with_far_sides(self._own))
+
+    def _with_far_sides(self, case: DiskCase) -> DiskCase:
+        """A companion with its sides so far away that nothing returns, if they may move."""
+        return case if self.pair is None else enlarged(build(case), self.pair.bricks)
 
     @cached_property
     def _lattice(self) -> DiskScene:
@@ -151,17 +159,47 @@ class Companions:
         """How that motion differs from that at the places asked for, (k, 2), by monitor and quantity.
 
         Monitors and loads have the nearest disks. Of several loads, of whose motion only the sum is known, the one by
-        which the motion differs most counts.
+        which the motion differs most counts. A load at another place has other distances from surfaces, too, from which
+        its waves return earlier or later.
         """
         there = self._places(scene)
         asked = {monitor.name: monitor.position - scene.monitored[monitor.name] for monitor in self.case.monitor}
         loads = [each.middle - each.asked for each in places_of_loads(scene)] or [np.zeros(2)]
         own = self._motion(self.far, there)
-        each = [self._motion(self.far, {name: there[name] + asked[name] + load for name in there}) for load in loads]
+        each = [self._unmoved({name: there[name] + asked[name] + load for name in there}, load) for load in loads]
         return {
             name: {q: max((own[name][q] - other[name][q] for other in each), key=np.linalg.norm) for q in QUANTITIES}
             for name in own
         }
+
+    def _unmoved(self, places: Mapping[str, np.ndarray], shift: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
+        """Motion (k, 2) at places (2,) m, by monitor, as it is where they and the loads were before a shift.
+
+        shift : (2,) m; sides that return waves have stayed. To the first order, by what one more row of disks there
+        changes.
+        """
+        far, cell = self._motion(self.far, places), self._lattice.ground.brick.mean_diameter
+        found = {name: dict(own) for name, own in far.items()}
+        for side in filter(partial(_stays, self.case), SIDES):
+            towards = float(shift[normal_axis(side)]) * (1.0 if is_far(side) else -1.0) / cell
+            if abs(towards) < LEAST_SHIFT:
+                continue
+            away = self._motion(self._with_row_at(side), places)
+            for name, own in far.items():
+                for q, values in own.items():
+                    found[name][q] = found[name][q] + towards * (away[name][q] - values)
+        return found
+
+    def _with_row_at(self, side: str) -> Motions:
+        """The motion of the disks of all patches with far sides and one more row of disks at a side that stays."""
+        if side not in self._behind:
+            own, axis = self._own, normal_axis(side)
+            copies, origin = list(own.packing.copies), list(own.packing.origin)
+            copies[axis] += 1
+            origin[axis] -= 0.0 if is_far(side) else own.packing.brick_size[axis]
+            packing = own.packing.with_copies(*copies).model_copy(update={"origin": tuple(origin)})
+            self._behind[side] = self._run(self._with_far_sides(replace(own, packing=packing)))
+        return self._behind[side]
 
     def _places(self, scene: DiskScene) -> dict[str, np.ndarray]:
         """Where (2,) m in the lattice of the companion the monitors of a scene are, seen from the middle of loads."""
@@ -227,6 +265,12 @@ class Companions:
     def _measured(self, case: DiskCase) -> Run:
         """The run of a companion."""
         return self.runner.run(at_step(case, self.step))
+
+
+def _stays(case: DiskCase, side: str) -> bool:
+    """Whether a side returns waves, and stays where it is: a surface or the end of a block."""
+    table = case.side(side)
+    return not (table.is_artificial or table.is_periodic or table.waves)
 
 
 def _named(monitor: str, number: int) -> str:

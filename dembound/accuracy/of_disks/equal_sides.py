@@ -32,7 +32,7 @@ def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dic
     case = replace(case, boundary={side: scene.case.boundary[side] for side in case.boundary})
     own = build(case)
     shares = {side: reflected(scene, side, time_step) for side, table in case.boundary.items() if table.factors}
-    halved = {side: found for side, found in shares.items() if case.boundary[side].may_halve}
+    halved = {side: found for side, found in shares.items() if _may_be_whole(case.boundary[side])}
     weight = _weight_of_mass(halved, build(with_whole_cells(case)), time_step)
     boundary = {side: _equal_supports(table, side, own, scene) for side, table in case.boundary.items()}
     boundary |= {
@@ -42,8 +42,16 @@ def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dic
 
 
 def with_whole_cells(case: DiskCase) -> DiskCase:
-    """A case with whole cells at its sides."""
-    return replace(case, boundary={side: table.with_half_cells(False) for side, table in case.boundary.items()})
+    """A case with whole cells at its sides, but for those that let waves in: what they return is known by formula."""
+    boundary = {
+        side: table.with_half_cells(False) if _may_be_whole(table) else table for side, table in case.boundary.items()
+    }
+    return replace(case, boundary=boundary)
+
+
+def _may_be_whole(table: Boundary) -> bool:
+    """Whether a side may have half cells or whole ones, and lets no waves in."""
+    return table.may_halve and not table.waves
 
 
 def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: DiskScene, time_step: float) -> float:

@@ -14,14 +14,17 @@ from dembound.nearest import nearest
 NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
 """Columns and rows of a patch, counted from its middle."""
 
+PATCHES = (NINE, NINE[NINE[:, 0] == 0], NINE[NINE[:, 1] == 0], np.zeros((1, 2), dtype=int))
+"""Columns and rows of patches, of which the first is taken that is all disks; in bodies two disks wide the second."""
+
 FARTHEST = 2.0
 """Cells from the middle of a patch up to which its polynomials are followed: one beyond its disks."""
 
 
 def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
-    """Places (9, 2) m of the patch of disks whose middle is nearest to a place (2,) m, in the order of `NINE`.
+    """Places (k, 2) m of the patch of disks whose middle is nearest to a place (2,) m, in the order of `PATCHES`.
 
-    Only the nearest disk (1, 2) where no nine stand together around it, such as in bodies two disks wide.
+    Nine disks, three in a column or row where no nine stand together around it, or only the nearest disk.
     """
     first = 0 if scene.seam is None else scene.seam.count
     disks = scene.positions[first : scene.disk_count]
@@ -29,24 +32,28 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     own = disks[nearest(disks, place[None])[0]]
     cells = np.rint((disks - own) / cell).astype(int)
     present = {(int(x), int(y)) for x, y in cells[(np.abs(cells) <= 2).all(axis=1)]}
-    middles = [shift for shift in NINE if all((int(x), int(y)) in present for x, y in NINE + shift)]
-    if not middles:
-        return np.asarray(own[None])
+    for patch in PATCHES:
+        middles = [shift for shift in NINE if all((int(x), int(y)) in present for x, y in patch + shift)]
+        if middles:
+            break
     middle = middles[nearest(own + cell * np.array(middles), place[None])[0]]
-    return np.asarray(own + cell * (middle + NINE))
+    return np.asarray(own + cell * (middle + patch))
 
 
 def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Weights of the motion of the disks of a patch (9, 2) m in that at a place (2,) m: exact for quadratic motion.
+    """Weights (k,) of the motion of the disks of a patch (k, 2) m in that at a place (2,) m.
 
-    Lagrange's polynomials through three places along x, times those along y. Beyond `FARTHEST` they are those there, as
-    in a continuum beyond the disks.
+    They are exact for quadratic motion: Lagrange's polynomials through three places along x, times those along y, or
+    one of them where a patch is one disk wide or high. Beyond `FARTHEST` they are those there, as in a continuum beyond
+    the disks.
     """
-    if len(patch) == 1:
-        return np.ones(1)
-    away = np.clip((place - patch[4]) / (patch[-1] - patch[4]), -FARTHEST, FARTHEST)
-    x, y = ((-s * (1.0 - s) / 2.0, 1.0 - s * s, s * (1.0 + s) / 2.0) for s in away)
-    return np.outer(x, y).ravel()
+    middle = patch[len(patch) // 2]
+    weights = []
+    for away, cell in zip(place - middle, patch[-1] - middle, strict=True):
+        s = float(np.clip(away / cell, -FARTHEST, FARTHEST)) if cell > 0.0 else 0.0
+        polynomials = np.array([-s * (1.0 - s) / 2.0, 1.0 - s * s, s * (1.0 + s) / 2.0])
+        weights.append(polynomials if cell > 0.0 else np.ones(1))
+    return np.outer(*weights).ravel()
 
 
 class LoadPlace(NamedTuple):

@@ -49,13 +49,14 @@ COSTLIEST = 64.0
 def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
     """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
-    of : the truth that errors are those of; kept : keys that do not change. Where one bound is asked for, which the
-    case keeps in less time than a search takes, this is the choice.
+    of : the truth that errors are those of; where these are the disks, they remain. kept : keys that do not change.
+    Where one bound is asked for, which the case keeps in less time than a search takes, this is the choice.
 
     Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
     the companions.
     """
     _require_known(case)
+    kept = [*kept, "packing.radius"] if of == "disks" else kept
     planned: Plan[DiskScene] = plan(case)
     most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
     companions = Companions(case, planned.scene, planned.time_step, most, Runner())

@@ -120,6 +120,8 @@ def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken()
     several = advise(bar(), (0.6, 0.5))  # larger disks cost less
     assert several.best[0.6].choice.changes
     assert several.best[0.6].cost < taken.cost
+    of_these = advise(bar(), (0.6, 0.5), of="disks")  # of others the truth would be another one
+    assert of_these.best[0.6].case.packing.radius == 0.25  # type: ignore[attr-defined]
 
 
 def test_what_cannot_be_chosen_for_is_refused() -> None:

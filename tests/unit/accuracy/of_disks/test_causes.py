@@ -89,8 +89,8 @@ def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_mor
     there = companions._places(scene)["m"]
     left, right = (
         companions._motion(companions.far, {"m": there})["m"]["velocity"]
-        - companions._motion(companions.far, {"m": there + np.array([-0.25 + load, 0.25])})["m"]["velocity"]
-        for load in (0.25, -0.25)
+        - companions._unmoved({"m": there + np.array([-0.25, 0.25]) + shift}, shift)["m"]["velocity"]
+        for shift in (each.middle - each.asked for each in places)
     )
     cause = next(cause for cause in of_ground(companions, scene, planned.time_step) if cause.name == "places")
 

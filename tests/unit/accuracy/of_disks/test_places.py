@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
+from dembound.accuracy.extended import extended
+from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.places import NINE, middle_of_loads, patch_around, weights_at
+from dembound.accuracy.runner import measure
 from dembound.disks.scene import DiskScene, build
+from dembound.kinds import with_changes
+from dembound.running import Progress, plan
 
 HOLE = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.0, 6.0, 1.0]}
 
@@ -37,7 +42,11 @@ def test_quadratic_motion_is_found_at_any_place() -> None:
 def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], middle: tuple[float, float]) -> None:
     np.testing.assert_allclose(patch_around(lattice(), np.array(place)), 0.5 * NINE + middle, atol=1e-12)
     low = lattice(**{"packing.size": [10.0, 1.0], "monitor": [{"name": "back", "position": [9.6, 0.2]}]})
-    np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), [[3.25, 0.25]], atol=1e-12)
+    row = [[2.75, 0.25], [3.25, 0.25], [3.75, 0.25]]
+    np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), row, atol=1e-12)
+    assert weights_at(np.array(row), np.array([3.4, 0.9])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
+    column = np.array(row)[:, ::-1]
+    assert weights_at(column, np.array([0.9, 3.4])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
 
 
 def test_a_patch_has_no_disks_that_a_hole_has_taken() -> None:
@@ -74,3 +83,37 @@ def test_loads_that_a_body_rests_under_start_no_waves() -> None:
     sudden = {"load": [foot, hit], "boundary": {}}
     found = middle_of_loads(build(small(PUSHED, changes=sudden)))  # type: ignore[arg-type]
     assert found == pytest.approx(np.array([(10 * 2.5 + 6.5) / 11, 1.0]))
+
+
+def test_a_load_nearer_to_a_surface_counts_even_if_monitors_have_moved_with_it() -> None:
+    """Disks of 3 m have load and monitor 1 m lower below a surface than those of 1 m that were asked for.
+
+    It is found from the change over a row of 3 m below, 2 m from that over 1 m above, so that what a wave of 88 m sends
+    back comes by the phase 2·2π·2/88 = 0.29 too early or late; the disks of 3 m add less.
+    """
+    low, high = (
+        small(
+            PUSHED
+            | {
+                "packing": {"pattern": "A", "size": [30.0, 30.0], "radius": 0.5},
+                "motion": {},
+                "boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom")},
+                "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+                "wave": {"push": {"type": "ricker", "amplitude": 1.0, "frequency": 8.0}},
+                "load": [{"name": "hit", "force": [1e5, 1e5], "position": [10.5, y], "wave": "push"}],
+                "monitor": [{"name": "there", "position": [16.5, y]}],
+                "run": {"duration": 0.25},
+            }
+        )
+        for y in (19.5, 20.5)
+    )
+    planned = plan(high)
+    larger = build(with_changes(high, {"packing.radius": 1.5}))  # type: ignore[arg-type]
+    companions = Companions(high, planned.scene, planned.time_step, 1e9)
+    found, time = companions.moved(larger)["there"]["velocity"], companions.recorded(larger)["there"].time
+    runs = (measure(extended(case).case, Progress())[0] for case in (low, high))
+    own, other = (run.motions["there"].at(time) for run in runs)
+    true = (own.values["velocity"] - other.values["velocity"])[:, :2]
+
+    assert np.linalg.norm(true) > 0.03 * np.linalg.norm(other.values["velocity"])
+    assert np.linalg.norm(found - true) < 0.4 * np.linalg.norm(true)

@@ -9,6 +9,7 @@ from small_cases import SURROUNDED, Tables, small
 from dembound.disks.reports import continuum_errors as of
 from dembound.disks.reports.continuum_errors import expected_errors
 from dembound.disks.scene import DiskScene, build
+from dembound.outside.choice import slowest
 
 SPEED, DIAMETER = 1000.0 / math.sqrt(2.0), 1.0
 SIDES = ("left", "right", "bottom", "top")
@@ -109,3 +110,17 @@ def test_nothing_is_known_without_a_continuum_or_of_waves_that_jump() -> None:
     assert expected_errors(scene(20.0, wave={"w": {"type": "constant", "amplitude": 1.0}}), {}) is None
     assert expected_errors(scene(20.0, boundary={}), {}) is None
     assert expected_errors(scene(20.0), {}) == {}
+
+
+def test_what_random_bricks_would_scatter_is_missing_beside_a_continuum(monkeypatch) -> None:
+    """0.06 k²LD of a burst about one frequency; waves shorter than a brick are as those of its length."""
+    packing = {"pattern": "B", "size": [20.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
+    for frequency in (20.0, 200.0):
+        made = scene(frequency, packing=packing)
+        assert made.outside is not None
+        k = 2.0 * math.pi * min(frequency / slowest(made.outside.body.medium), 1.0 / 10.0)
+        both = velocity(made)
+        monkeypatch.setattr(of, "BRICKS", 0.0)
+        bricks = math.sqrt(both**2 - velocity(made) ** 2)
+        monkeypatch.undo()
+        assert bricks == pytest.approx(0.06 * k**2 * 10.0 * made.ground.brick.mean_diameter, rel=0.02)
