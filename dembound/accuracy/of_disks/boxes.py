@@ -44,8 +44,9 @@ class BoxOfDisks(NamedTuple):
 def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
     """The keys of a case with disks in a box (m) only, by table; those of the packing that it keeps are left out."""
     left, bottom, right, top = box
+    size, origin = ([round(length, 10) for length in each] for each in ((right - left, top - bottom), (left, bottom)))
     outside = {f"boundary.{side}": continuum_beyond(case.side(side)) for side in _sides_beyond(case, box)}
-    packing = {"size": [right - left, top - bottom], "origin": [left, bottom]}
+    packing = {"size": size, "origin": origin}
     ground = {"size": list(case.size)} | ({"origin": list(case.box[:2])} if any(case.box[:2]) else {})
     return {"ground": ground, "packing": packing, **outside}
 
