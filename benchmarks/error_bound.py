@@ -42,7 +42,7 @@ QUANTITIES = ("velocity", "displacement")
 
 def reference(case: DiskCase) -> Motions:
     """The motion in the enlarged scene, extrapolated to small disks, at the times of the finer run."""
-    own, fine = (far_motion(with_changes(case, {"packing.radius": 0.5 / k})) for k in (1, FINER))
+    own, fine = (far_motion(with_changes(case, {"packing.radius": case.packing.radius / k})) for k in (1, FINER))
     found = {}
     for name, gauge in fine.items():
         coarse = own[name].at(gauge.time)
