@@ -52,7 +52,7 @@ def errors(material: dict[str, float], region: tuple[float, float], frequency: f
     }
     case = loads(tomli_w.dumps(tables), name="near_loads")
     scene = plan(case).scene
-    own, fine = (far_motion(with_changes(case, {"packing.radius": 0.5 / k})) for k in (1, FINER))
+    own, fine = (far_motion(with_changes(case, {"packing.radius": case.packing.radius / k})) for k in (1, FINER))
     for name, history in fine.items():
         late = own[name].at(history.time).velocity - history.velocity
         exact = history.velocity - late / (FINER**2 - 1)
