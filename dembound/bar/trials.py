@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dembound.bar import step_cost
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import own_step
 from dembound.casefile.bar import BarCase
@@ -15,7 +16,7 @@ def trials_of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
     Raises the errors of building a scene.
     """
     scene = build_bar(at_rest(case))
-    step = own_step(scene, scene.step_limit())
+    step, cost = own_step(scene, scene.step_limit()), step_cost.of_bar(scene)
     stages = case.method.stages(scene.rod)
     found = []
     for index, bonds in enumerate(stages):
@@ -24,6 +25,6 @@ def trials_of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
             return scene.system(time_step, case.method.stages(scene.rod)[index])
 
         name = case.method.name if len(stages) == 1 else f"{case.method.type}, stage {index + 1}"
-        found.append(Trial(name, scene, scene.stable_step(bonds), step, system, is_linear=True))
+        found.append(Trial(name, scene, scene.stable_step(bonds), step, system, is_linear=True, step_cost=cost))
     stays = ["the method stays at each stage"] if len(stages) > 1 else []
     return found, [f"{scene.count:,} nodes, the whole bar", *left_out(case), *stays]

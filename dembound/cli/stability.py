@@ -23,7 +23,13 @@ if TYPE_CHECKING:
 @app.command("stability", rich_help_panel="Cases")
 def stability(
     case: OneCase,
-    steps: Annotated[int, typer.Option(help="Steps of noise at the case's own time step.", min=1)] = 100_000,
+    steps: Annotated[
+        int | None,
+        typer.Option(
+            help="Steps of noise at the case's own time step; by default 5,000 to 100,000, by their cost.",
+            min=1,
+        ),
+    ] = None,
     full: Annotated[
         bool, typer.Option("--full", help="Use the whole scene of disks instead of fewer copies of its brick.")
     ] = False,
@@ -46,7 +52,8 @@ def stability(
     loaded = load_case(case, changes)
     found, words = measure(loaded, steps=steps, full=full, report=lambda line: err.print(line))
     out.print(_overview(found, f"{loaded.name}: {words[0]}"))
-    for line in words[1:]:
+    done = max(run.course.steps[-1] for each in found for run in each.long_runs)
+    for line in [*words[1:], f"{done:,} steps at the case's own step"]:
         out.print(f"  {line}")
     short, long = _lines(found)
     figure = plot_stability(short, long, f"Noise in {loaded.name}: {words[0]}")
@@ -60,10 +67,14 @@ def stability(
 
 def _overview(found: Sequence[Stability], title: str) -> Table:
     """One line for each law or stage and part: limits, the case's own step, and how its energy changed."""
+    from dembound.studies.noise import RESOLUTION
+
     overview = compact_table("", "limit (s)", "measured", "own step", "energy", "rise", "", title=title)
     for each in found:
         limit = each.trial.limit
-        measured = f"{each.measured / limit:.4f}" if each.measured < float("inf") else f"> {each.below / limit:.4g}"
+        measured = f"> {each.below / limit:.4g}"
+        if each.measured < float("inf"):
+            measured = f"{each.measured / limit:.{4 if each.width < 2.0 * RESOLUTION else 2}f}"
         for run in each.long_runs:
             name = each.trial.name if len(each.long_runs) == 1 else f"{each.trial.name}, {run.part}"
             last = f"{run.shown[1][-1]:.4g}"

@@ -1,7 +1,6 @@
 """The largest stable time step, from the largest eigenfrequency of the scene."""
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -50,8 +49,9 @@ def step_limit(scene: DiskScene, damp: float | None = None) -> float:
 def _largest_eigenvalue(scene: DiskScene) -> float:
     """The largest eigenvalue of M⁻¹K (1/s²), see `motion.eigenvalue`."""
     if not scene.continua:
-        forces = partial(fill_forces, scene)
-        return largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, scene.moves, forces)
+        return largest_eigenvalue(
+            scene.layout, scene.mass, scene.inertia, scene.free, scene.moves, filling_forces(scene)
+        )
     return _largest_with(scene, scene.continua)
 
 
@@ -62,13 +62,13 @@ def _largest_with(scene: DiskScene, continua: Sequence[Surroundings]) -> float:
     equation, and is found by iteration from below: each larger step makes the ties less stiff.
     """
     mass = np.concatenate([scene.mass[: scene.disk_count], *(each.body.mass_for_limit for each in continua)])
-    adding = [each.adds_forces(scene.layout) for each in continua]
+    fill, adding = filling_forces(scene), [each.adds_forces(scene.layout) for each in continua]
     times = 1.0
     largest = 0.0
     for _ in range(MOST_ROUNDS):
 
         def forces(u: np.ndarray, force: np.ndarray, times: float = times) -> None:
-            fill_forces(scene, u, force)
+            fill(u, force)
             for add in adding:
                 add(u, force, times)
 
@@ -82,11 +82,22 @@ def _largest_with(scene: DiskScene, continua: Sequence[Surroundings]) -> float:
 
 def fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:
     """Fill force (3, slots) with the forces at displacements u: of contacts, of supports, none where prescribed."""
-    for rows in scene.rows:
-        contact_forces(u, rows, force)
+    filling_forces(scene)(u, force)
+
+
+def filling_forces(scene: DiskScene) -> Callable[[np.ndarray, np.ndarray], None]:
+    """`fill_forces` of a scene, to be called often."""
     supports = scene.supports
-    place = supports.component, scene.layout.slot[supports.node]
-    force[place] = np.where(supports.prescribed, 0.0, force[place] - supports.stiffness * u[place])
+    acting = np.flatnonzero(supports.prescribed | (supports.stiffness != 0.0))
+    place = supports.component[acting], scene.layout.slot[supports.node[acting]]
+    stiffness, prescribed = supports.stiffness[acting], supports.prescribed[acting]
+
+    def fill(u: np.ndarray, force: np.ndarray) -> None:
+        for rows in scene.rows:
+            contact_forces(u, rows, force)
+        force[place] = np.where(prescribed, 0.0, force[place] - stiffness * u[place])
+
+    return fill
 
 
 def _loose_eigenvalue(scene: DiskScene) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.casefile.types import LAWS, linear_law
-from dembound.disks import stability
+from dembound.disks import stability, step_cost
 from dembound.disks.scene import DiskScene, build, ground_of
 from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.start import Start
@@ -18,7 +18,7 @@ from dembound.motion.part import System
 from dembound.motion.trial import NOISE, Trial, at_rest, left_out
 
 PARTICLES = 2500
-"""Particles of a reduced copy, about; one brick may have more. 100,000 steps of them take some ten seconds."""
+"""Particles of a reduced copy, about; one brick may have more."""
 
 NOTHING = Load.model_construct(name="nothing", acceleration=(0.0, 0.0))
 """A load of zero on all of the ground, for which a case keeps its free-field column beside a continuum."""
@@ -73,7 +73,8 @@ def _under(scene: DiskScene, name: str) -> Trial:
         return DiskSystem(scene, time_step, start, load=nothing)
 
     linear = scene.ground.law.is_linear
-    return Trial(name, scene, limit, stability.own_step(scene.case, limit), system, is_linear=linear)
+    step, cost = stability.own_step(scene.case, limit), sum(step_cost.of_scene(scene).values())
+    return Trial(name, scene, limit, step, system, is_linear=linear, step_cost=cost)
 
 
 def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:

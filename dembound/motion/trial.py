@@ -29,6 +29,7 @@ class Trial:
     limit : s, the stability limit computed from the largest eigenvalue; step : s, that of the case.
     system : its parts and ties for a time step (s); anew for every run.
     is_linear : whether forces are linear, so that central differences conserve an energy exactly.
+    step_cost : time of a step on one core, counted, ns.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Trial:
     step: float
     system: Callable[[float], System]
     is_linear: bool
+    step_cost: float
 
     def noise(self, part: str | None = None) -> np.ndarray:
         """Random velocities (3, n), m/s and rad/s, of all nodes or of those of one part; the same in every call.

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from dembound.plot.style import COLOURS, DASHES, line_style, new_figure, outside_legend, styled
 
@@ -89,8 +90,9 @@ def _against_frequency(panel: Axes, angles: np.ndarray, frequencies: np.ndarray,
 
 
 def _log(panel: Axes) -> None:
-    """Shares on a logarithmic axis."""
+    """Shares on a logarithmic axis, without the minor ticks that take as long to lay out as all else."""
     panel.set_yscale("log")
+    panel.yaxis.set_minor_locator(NullLocator())
     panel.set_ylim(LEAST, 1.3)
 
 

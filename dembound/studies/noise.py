@@ -26,7 +26,10 @@ from dembound.motion.trackers import Every, Run, Tracker
 from dembound.motion.trial import Trial
 
 RESOLUTION = 1e-3
-"""Relative width of the bracket in which the largest stable step is found: ε is half of it."""
+"""Width of the bracket in which the largest stable step is found, over the computed limit: ε is half of it."""
+
+COARSE = 1e-2
+"""Resolution farther than this from the computed limit, where the measured one is not to confirm it."""
 
 GROWN = 1e4
 """Kinetic energy, over that of the noise, from which on a short run is unstable."""
@@ -37,11 +40,12 @@ PATIENCE = 20
 DECIDED = float(np.log(10.0))
 """Growth of ln T in the second half of a short run, by a fitted line, from which on it is unstable."""
 
-LOOKS = 10
-"""Steps between two looks at the kinetic energy in a short run."""
+LOOKS, LOOKS_AT_CONTACTS = 25, 10
+"""Steps between two looks at the kinetic energy in a short run, and under laws with contacts: these are searched for
+again where disks move, which takes for ever once they have grown to any size."""
 
 SAMPLES = 500
-"""Samples of the energy in a long run."""
+"""Samples of the energy in a long run, each of which takes as long as some dozens of steps of a small scene."""
 
 OPENING_ERROR = 0.01
 """Largest rise of the energy under a law in which contacts open and close within a step, see `motion.energy.GAIN`."""
@@ -108,21 +112,22 @@ class LongRun:
         return self.rise <= self.allowed and bool(np.max(self.course.kinetic) <= self.bound)
 
 
-def short_run(trial: Trial, step: float) -> Course:
-    """Noise in all parts at a time step (s), until it has grown or a scene unstable by `RESOLUTION` would show it."""
-    needed = np.log(1e4 * 3 * trial.scene.count * GROWN) / (2.0 * np.sqrt(8.0 * 0.5 * RESOLUTION))
-    return _run(_noisy(trial, step), Look(LOOKS, most=GROWN), int(np.ceil(PATIENCE * needed)))
+def short_run(trial: Trial, step: float, resolution: float = RESOLUTION) -> Course:
+    """Noise in all parts at a time step (s), until it has grown or would have half a resolution above the limit."""
+    needed = np.log(1e4 * 3 * trial.scene.count * GROWN) / (2.0 * np.sqrt(8.0 * 0.5 * resolution))
+    looks = LOOKS if trial.is_linear else LOOKS_AT_CONTACTS
+    return _run(_noisy(trial, step), Look(looks, most=GROWN), int(np.ceil(PATIENCE * needed)))
 
 
-def long_run(trial: Trial, part: str, steps: int) -> LongRun:
-    """Noise in one part at the case's own step.
+def long_run(trial: Trial, part: str, steps: int, samples: int = SAMPLES) -> LongRun:
+    """Noise in one part at the case's own step; samples : times that its energy is noted.
 
     Under a linear law the energy is ½v⁻ᵀMv⁻ + ½uᵀKu⁻ with the displacements u⁻ of the step before, which central
     differences conserve and dampers reduce. Under other laws it is the energy of the ledger, at whole steps and of all
     parts, plus what boundaries have taken: friction and contacts that close reduce it. It begins with the second
     sample, as the law may change in the first step.
     """
-    every, share = max(1, steps // SAMPLES), trial.step / trial.limit
+    every, share = max(1, steps // samples), trial.step / trial.limit
     bound = (2.0 * steps + 1.0) ** 2
     if share < 1.0:
         bound = min(bound, 1.0 / (1.0 - share**2))

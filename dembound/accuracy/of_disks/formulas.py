@@ -14,7 +14,7 @@ from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
 from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_error
-from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, delay_of
+from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, Frequencies, delay_of, frequencies_of
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
 from dembound.disks.reports.continuum_errors import CONTINUUM_FACTOR, expected_errors
@@ -161,11 +161,16 @@ class Formulas:
         for way in self._ways(own):
             if not math.isfinite(way.path * way.speed):
                 continue
-            delay = delay_of(self.scene.ground, way.motion, way.directions, way.path, way.speed, step)
+            about = way.motion, way.directions, way.path, way.speed, step
+            delay = delay_of(self.scene.ground, *about, self._frequencies)
             parts = error_of_delay(own.time, (own.values["velocity"] @ way.moves)[:, None], delay)
             for quantity, part in zip(MOTIONS, parts, strict=True):
                 errors[quantity] += part * way.moves
         return errors
+
+    @cached_property
+    def _frequencies(self) -> Frequencies:
+        return frequencies_of(self.scene.ground)
 
     @cached_property
     def _sources(self) -> list[Source]:

@@ -39,8 +39,12 @@ LONGEST, PART = 8.0, 0.2
 """CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
 that it finds the same on every machine."""
 
-PER_CHOICE, PER_DISK, PER_STEP = 0.05, 3e-6, 2e-8
-"""CPU seconds of finding the error of a choice, of building it by disk, and of its companions by particle-step."""
+PER_FACTOR, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.04, 0.12, 5e-6, 2e-8
+"""CPU seconds of counting the costs of all choices with disks of one diameter, of building a choice, of finding its
+error, of building it by disk, and of its companions by particle-step."""
+
+HELD = 30_000
+"""Disks up to which a choice remains in memory, for other bounds."""
 
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
@@ -161,7 +165,9 @@ class _Search:
     whether choices were left out for that. waiting : by cost, what may come next: diameters, their choices, and those
     that are built and cost more than others may. of_sides : by arrangement and distance the largest error of its sides
     alone. of_disks : by factor of the diameter, with a continuum and without, the smallest error of disks alone.
-    known : choices whose error was found for another bound, by the digest of their case.
+    known : choices whose error was found for another bound, by the digest of their case. made : those that were built,
+    or that cannot run, by the text of their case and how much farther away their sides are. counted : factors of the
+    diameter for which the time steps of continua have been found.
     """
 
     companions: Companions
@@ -178,14 +184,16 @@ class _Search:
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
     of_disks: dict[tuple[float, bool], float] = field(default_factory=dict)
     known: dict[str, list[_Found]] = field(default_factory=dict)
+    made: dict[tuple[str, float], Built | None] = field(default_factory=dict)
+    counted: set[float] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.options = Options(self.planned, self.bound, self.kept)
 
     def proposal(self, given: DiskCase, bound: float) -> Proposal:
         """The best choice for a bound; given : the case that it is a choice for."""
-        self.options = Options(self.planned, bound, self.kept)
-        self.bound, self.spent, self.was_cut, self.waiting = bound, 0.0, False, []
+        self.options.bound = self.bound = bound
+        self.spent, self.was_cut, self.waiting = 0.0, False, []
         best = self.best()
         words = best.option.words if self.twin is None else f"{self.twin.words}; {best.option.words}"
         words += (until := _before_breaks(self.companions))
@@ -198,10 +206,11 @@ class _Search:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
         found: list[_Found] = []
         left: list[DiskOption] = []
+        too_long: list[DiskOption] = []
         for item in self._by_cost():
             option = item.option if isinstance(item, Built) else item
             if not self._affords(option):
-                self.was_cut = True
+                too_long.append(option)
                 continue
             if not self._keeps(self._alone(option)):
                 left.append(option)
@@ -215,33 +224,37 @@ class _Search:
             found += self._with_error(built, left)
             if found and self._keeps(found[-1].upper):
                 return found[-1]
-        return self._most_accurate(found, left)
+        return self._most_accurate(found, left, too_long)
 
-    def _most_accurate(self, found: list[_Found], left: list[DiskOption]) -> _Found:
+    def _most_accurate(self, found: list[_Found], left: list[DiskOption], too_long: list[DiskOption]) -> _Found:
         """The choice with the smallest error of those found and those left out, as none keeps the bound.
 
         These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
-        below the smallest one found.
+        below the smallest one found. Those that take too long come last, the cheapest first, where there is no other.
         """
         while left:
             left.sort(key=self._alone)
             option = left.pop(0)
             if found and self._alone(option) >= min(each.upper for each in found):
                 break
-            if found and not self._affords(option):
-                continue
-            if (built := self._built(option)) is not None:
+            if not self._affords(option):
+                too_long.append(option)
+            elif (built := self._built(option)) is not None:
+                found += self._with_error(built, None)
+        self.was_cut = bool(too_long)
+        for option in sorted(too_long, key=lambda each: each.cost):
+            if not found and (built := self._built(option)) is not None:
                 found += self._with_error(built, None)
         if not found:
             raise CaseError(["advise: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each.upper)
 
     def _affords(self, option: DiskOption) -> bool:
-        """Whether the search may go on with a choice, as always with the first one."""
+        """Whether the search may go on with a choice."""
         packing = option.case.packing
         disks = packing.about(packing.extent)
         spent = self.spent + PER_STEP * self.companions.runner.work
-        return self.spent == 0.0 or spent + PER_CHOICE + PER_DISK * disks <= max(LONGEST, PART * self.own_cost)
+        return spent + PER_CHOICE + PER_ERROR + PER_DISK * disks <= max(LONGEST, PART * self.own_cost)
 
     def _alone(self, option: DiskOption) -> float:
         """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
@@ -282,15 +295,25 @@ class _Search:
 
     def _built(self, option: DiskOption) -> Built | None:
         """A choice, built; None if it cannot run."""
-        built = self.options.build(option)
-        self.spent += PER_CHOICE + (0.0 if built is None else PER_DISK * built.planned.scene.disk_count)
-        return built
+        key = option.case.text, option.wider
+        if key not in self.made:
+            built = self.options.build(option)
+            disks = 0 if built is None else built.planned.scene.disk_count
+            self.spent += PER_CHOICE + PER_DISK * disks
+            if disks > HELD:
+                return built
+            self.made[key] = built
+        return self.made[key]
 
     def _of(self, factor: float) -> list[DiskOption]:
         """Choices with disks of one diameter."""
         own = self.companions.scene.ground.brick.mean_diameter
-        may_be = self.twin is None or self.twin.holds(factor * own)
-        return self.options.of(factor) if may_be else []
+        if self.twin is not None and not self.twin.holds(factor * own):
+            return []
+        if factor not in self.counted:
+            self.counted.add(factor)
+            self.spent += PER_FACTOR
+        return self.options.of(factor)
 
     def _with_error(self, built: Built, left: list[DiskOption] | None) -> list[_Found]:
         """A choice with its error; nothing if a companion of it cannot run.
@@ -310,6 +333,7 @@ class _Search:
                 left.append(option)
                 return []
             self.tried += 1
+            self.spent += PER_ERROR
             causes = causes_of_choice(self.companions, scene, step, option.wider, ground)
         except DemboundError:
             return []

@@ -8,8 +8,9 @@ disperse like the lattice of the same material and mean diameter.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -22,7 +23,12 @@ from dembound.packings.square import Square
 LONG, SHORT, PHASES = 1e-3, 0.3, 1000
 """Wave numbers, in radians per disk, of long waves and of those by which directions are compared; number of them."""
 
+_LENGTHS = np.concatenate([[LONG, SHORT], np.linspace(LONG, math.pi, PHASES)[1:]])
+
 Direction = tuple[float, float]
+
+Frequencies = Callable[[Direction], np.ndarray]
+"""Angular frequencies (k, m) rad/s of plane waves in a direction, see `frequencies_of`."""
 
 AXES: Sequence[Direction] = ((1.0, 0.0), (0.0, 1.0))
 """Directions along the axes x and y."""
@@ -45,24 +51,40 @@ def is_square_lattice(ground: PackedMaterial) -> bool:
     return len(ground.brick.radii) == 1 and own.shape == square.shape and np.allclose(own, square, EQUAL, 0.0)
 
 
+def frequencies_of(ground: PackedMaterial) -> Frequencies:
+    """Frequencies on the square lattice of a packing's material, found once for each direction."""
+    lattice = square_lattice(ground)
+
+    @cache
+    def along(direction: Direction) -> np.ndarray:
+        return plane_wave_frequencies(lattice, np.array(direction), _LENGTHS)
+
+    return along
+
+
 def delay_of(
-    ground: PackedMaterial, motion: Motion, directions: Sequence[Direction], path: float, speed: float, step: float
+    ground: PackedMaterial,
+    motion: Motion,
+    directions: Sequence[Direction],
+    path: float,
+    speed: float,
+    step: float,
+    frequencies: Frequencies | None = None,
 ) -> Delay:
     """Delay (s) of waves of given angular frequencies (rad/s) over a path (m), nan above those of the shortest wave.
 
     directions : unit vectors, of which that with the largest delay is taken. speed : of long waves, m/s. step : of the
-    run, s; 0 for waves that are not stepped in time.
+    run, s; 0 for waves that are not stepped in time. frequencies : of this ground, if they are at hand.
     """
-    lattice = square_lattice(ground)
-    phase = np.concatenate([[LONG, SHORT], np.linspace(LONG, math.pi, PHASES)[1:]])
+    along = frequencies or frequencies_of(ground)
     frequency, slowness = max(
-        (_slowness(lattice, motion, direction, phase, step) for direction in directions),
+        (_slowness(along(direction), ground.held, motion, step) for direction in directions),
         key=lambda found: abs(found[1][1] - 1.0),
     )
     frequency, slowness = np.delete(frequency, 1), np.delete(slowness, 1)
     rising = np.concatenate([[True], np.diff(np.maximum.accumulate(frequency)) > 0.0])
     # the packing's own long waves have another speed than the lattice's, and as many disks in a wave
-    scale = speed / (frequency[0] / phase[0] * ground.brick.mean_diameter)
+    scale = speed / (frequency[0] / LONG * ground.brick.mean_diameter)
 
     def delay(omega: np.ndarray) -> np.ndarray:
         found = np.interp(omega, scale * frequency[rising], slowness[rising], right=np.nan)
@@ -71,15 +93,12 @@ def delay_of(
     return delay
 
 
-def _slowness(
-    lattice: PackedMaterial, motion: Motion, direction: Direction, phase: np.ndarray, step: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Angular frequencies (k,) rad/s of plane waves, and their slowness over that of long ones."""
-    found = plane_wave_frequencies(lattice, np.array(direction), phase)
-    moving = sum(axis not in lattice.held for axis in (0, 1))
+def _slowness(found: np.ndarray, held: Sequence[int], motion: Motion, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Angular frequencies (k,) rad/s of P or S waves among those found (k, m), and slowness over that of long ones."""
+    moving = sum(axis not in held for axis in (0, 1))
     frequency = found[:, 1 if motion == "p" and moving == 2 else 0]
     if step > 0.0:
         sine = 0.5 * step * frequency
         frequency = np.where(sine < 1.0, 2.0 / step * np.arcsin(np.minimum(sine, 1.0)), np.nan)
-    slowness = phase / frequency
+    slowness = _LENGTHS / frequency
     return frequency, slowness / slowness[0]

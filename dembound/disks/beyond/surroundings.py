@@ -21,7 +21,7 @@ from dembound.errors import CaseError
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
-from dembound.motion.layout import Layout
+from dembound.motion.layout import Layout, aligned_zeros
 from dembound.outside.body import GridBody
 from dembound.outside.edges import free_edges
 from dembound.packings.cut import cut_contacts
@@ -203,12 +203,14 @@ class Surroundings:
         """
         slot, tied = self.body.blocks.slot, layout.slot[self.tied]
         ties = replace(self, twin=None).ties(layout, self.tied)  # twins do not move with the body
+        own, rest = aligned_zeros(3, layout.count), aligned_zeros(3, layout.count)
+        of_ties = np.zeros((len(tied), 3))
 
         def add(u: np.ndarray, force: np.ndarray, times: float) -> None:
-            own, of_ties = np.zeros_like(force), np.zeros((len(tied), 3))
             self.body.fill_forces(u, own)
             force[:, slot] = own[:, slot]
-            tie_forces(ties, u, np.zeros_like(u), of_ties, 0.0)
+            of_ties[:] = 0.0
+            tie_forces(ties, u, rest, of_ties, 0.0)
             force[:, tied] += times * of_ties.T
 
         return add

@@ -107,11 +107,14 @@ class Condensed:
         images = (every * np.arange(3)[:, None] + count + np.arange(len(disks))).ravel()
         imaged = (count * np.arange(3)[:, None] + disks).ravel()  # of the body, which the images are of
         moves = body.moves[imaged]
-        images, imaged, self._periods = images[moves], imaged[moves], np.tile(periods, 3)[moves]
+        images, imaged, periods = images[moves], imaged[moves], np.tile(periods, 3)[moves]
         base = np.concatenate([interface, np.setdiff1d(imaged, interface)])
         place = np.full(3 * count, -1)
         place[base] = np.arange(len(base))
-        self._base, self._imaged = len(base), place[imaged]
+        self._base, self._turned = len(base), []  # by periods ahead: images, and what they are of
+        for ahead in np.unique(periods).tolist():
+            chosen = np.flatnonzero(periods == ahead)
+            self._turned.append((ahead, len(base) + chosen, place[imaged[chosen]]))
 
         matrix = (_stiffness(body.within._replace(disks=every)) + _stiffness(beyond)).tocsc()
         mass, damping, springs = np.zeros((3, 3 * every))
@@ -134,15 +137,14 @@ class Condensed:
 
     def stiffness(self, phase: complex) -> np.ndarray:
         """Dynamic stiffness (k, k) of the interface if the motion of the next copy is this one's times the phase."""
-        from scipy.sparse import csr_matrix
-
         assert self._fixed is not None
         base, kept = self._base, len(self.interface)
-        images = np.arange(len(self._imaged))
-        shape = len(images), base
-        turn = csr_matrix((phase**self._periods, (images, self._imaged)), shape=shape)  # from disks to their images
-        columns = self._fixed[:, :base] + self._fixed[:, base:] @ turn
-        matrix = columns[:base] + turn.conj().T @ columns[base:]
+        columns = self._fixed[:, :base].astype(complex)
+        for periods, images, imaged in self._turned:
+            columns[:, imaged] += phase**periods * self._fixed[:, images]
+        matrix = columns[:base]
+        for periods, images, imaged in self._turned:
+            matrix[imaged] += np.conj(phase**periods) * columns[images]
         if base == kept:
             return matrix
         return matrix[:kept, :kept] - matrix[:kept, kept:] @ np.linalg.solve(matrix[kept:, kept:], matrix[kept:, :kept])
