@@ -10,6 +10,7 @@ from small_cases import PUSHED, small
 from dembound.accuracy.advise import advise
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks import search as of_disks
+from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
@@ -122,6 +123,27 @@ def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken()
     assert several.best[0.6].cost < taken.cost
     of_these = advise(bar(), (0.6, 0.5), of="disks")  # of others the truth would be another one
     assert of_these.best[0.6].case.packing.radius == 0.25  # type: ignore[attr-defined]
+
+
+def test_without_time_for_any_the_cheapest_choice_is_tried_and_this_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(of_disks, "LONGEST", 0.0)
+    choice = advised(bar(), 0.001)
+    assert "the search ended early" in choice.words
+    assert choice.cost < choice.own_cost
+    assert choice.tried == 1
+
+
+def test_a_choice_is_built_once_for_all_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    built: list[tuple[str, float]] = []
+    build = Options.build
+
+    def counting(self: Options, option: DiskOption) -> Built | None:
+        built.append((option.case.text, option.wider))
+        return build(self, option)
+
+    monkeypatch.setattr(Options, "build", counting)
+    advise(bar(), (0.02, 0.01), kept=["boundary"])  # of which none holds
+    assert len(built) == len(set(built)) > 1
 
 
 def test_what_cannot_be_chosen_for_is_refused() -> None:
