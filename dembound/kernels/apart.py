@@ -1,114 +1,177 @@
-"""Kernels that are compiled once, apart from those that call them.
+"""Kernels that are compiled when they are first called, apart from those that call them, and shared out among threads.
 
 Numba copies the code of a called function into that of its caller, where it is optimised and translated anew: once for
-every combination of laws and ties of the loop, and at every level between. A kernel with `@apart` stays where it is.
-The caller contains its name alone, which is linked to its address when the caller is compiled, or loaded. Each call
-passes all arrays, some hundred nanoseconds, so only loops over particles, contacts or ties are worth it.
+every combination of laws and ties of the loop, and at every level between, also where the case never calls it. Code
+that calls a kernel with `@apart` or `@in_chunks` contains a pointer, which is null until the first call asks for the
+kernel to be compiled, or loaded. Each call passes all arrays, some hundred nanoseconds, so only loops over particles,
+contacts or ties are worth it.
 """
 
-import hashlib
+import base64
+import ctypes
+import pickle
+import traceback
 from collections.abc import Callable
 from functools import wraps
 from importlib import import_module
-from inspect import signature
-from typing import Any, NamedTuple
+from typing import Any
 
 import numba
-from llvmlite import binding  # type: ignore[import-untyped]
+from llvmlite import binding, ir  # type: ignore[import-untyped]
 from numba import config
 from numba.core import cgutils, types
-from numba.core.compiler import CompileResult
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global
+from numba.core.typing.templates import signature as typed
+
+from dembound.interrupts import put_off
+from dembound.kernels.common import CHUNKS
+
+_BYTES = ir.IntType(8).as_pointer()
+_INDEX = ir.IntType(64)
+_RESOLVE = "dembound_compiled_kernel"
 
 
-class _Needed(NamedTuple):
-    """A kernel for certain types of arguments that compiled code calls; it is called itself before this is loaded."""
-
-    module: str
-    name: str
-    arguments: tuple[Any, ...]
-
-    def __call__(self) -> None:
-        """Link its name to its address; compiled or loaded before, if necessary."""
-        kernel = getattr(import_module(self.module), self.name).__wrapped__
-        kernel.compile(self.arguments)
-        found = kernel.overloads[self.arguments]
-        binding.add_symbol(self.symbol, found.library.get_pointer_to_function(found.fndesc.llvm_func_name))
-
-    @property
-    def symbol(self) -> str:
-        """Name of the function in the machine code of callers."""
-        types_of = hashlib.sha256(repr(self.arguments).encode()).hexdigest()
-        return f"{self.module}.{self.name}.{types_of}"
+def _compiled(needed: bytes) -> int:
+    """Address of the kernel with the module, name and types of arguments that `_address` wrote; compiled, or loaded."""
+    module, name, arguments, returned = pickle.loads(base64.b64decode(needed))
+    kernel = getattr(import_module(module), name).__wrapped__
+    with put_off():
+        kernel.compile(arguments)
+    found = kernel.overloads[arguments]
+    if found.signature.return_type != returned:
+        raise TypeError(f"{module}.{name} returns {found.signature.return_type}, not {returned}")
+    return int(found.library.get_pointer_to_function(found.fndesc.llvm_func_name))
 
 
-KEPT = ["target_context", "libdata", "fndesc", "env", "signature", "objectmode", "lifted", "typeann"]
-KEPT += ["reload_init", "referenced_envs"]
-"""What numba keeps of compiled code on disk, in the versions with which `_rebuilt` works."""
+@ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_char_p)
+def _resolve(needed: bytes) -> int | None:
+    """`_compiled` for compiled code, which raises RuntimeError where it gets no address."""
+    try:
+        return _compiled(needed)
+    except BaseException:
+        traceback.print_exc()
+        return None
 
 
-def require_known(rebuild: Callable[..., Any]) -> None:
-    """Raise ImportError if numba's own function for loading compiled code takes something else than `KEPT`.
-
-    Loaded code would then call kernels that are not linked.
-    """
-    if (found := list(signature(rebuild).parameters)) != KEPT:
-        raise ImportError(
-            f"numba {numba.__version__} loads compiled code in a way that this dembound does not know "
-            f"({', '.join(found)}); install a version of numba that dembound's requirements name"
-        )
+binding.add_symbol(_RESOLVE, ctypes.cast(_resolve, ctypes.c_void_p).value)
+numba.get_num_threads()  # makes the functions known by which compiled code starts threads
 
 
-_rebuild = CompileResult._rebuild
-require_known(_rebuild)
+def _address(context: Any, builder: Any, kernel: Any, arguments: tuple[Any, ...], returned: Any) -> Any:
+    """Write the code that looks up the address of a kernel, and asks for it at the first call."""
+    module, name = kernel.py_func.__module__, kernel.py_func.__name__
+    kind = context.call_conv.get_function_type(returned, arguments).as_pointer()
+    known = cgutils.add_global_variable(builder.module, kind, f".{module}.{name}")
+    known.linkage, known.initializer = "internal", kind(None)
+    with cgutils.if_unlikely(builder, cgutils.is_null(builder, builder.load(known))):
+        needed = base64.b64encode(pickle.dumps((module, name, arguments, returned)))
+        resolve = cgutils.get_or_insert_function(builder.module, ir.FunctionType(_BYTES, [_BYTES]), _RESOLVE)
+        text = cgutils.global_constant(builder.module, ".needed", cgutils.make_bytearray(needed + b"\0"))
+        found = builder.call(resolve, [builder.bitcast(text, _BYTES)])
+        with cgutils.if_unlikely(builder, cgutils.is_null(builder, found)):
+            context.call_conv.return_user_exc(builder, RuntimeError, (f"{module}.{name} was not compiled",))
+        builder.store(builder.bitcast(found, kind), known)
+    return builder.load(known)
 
 
-def _rebuilt(*kept: Any) -> Any:
-    """Compiled code from what was kept on disk, for numba.
-
-    Numba itself forgets what loaded code needs, so that a caller that is compiled from it would not know.
-    """
-    code = _rebuild(*kept)
-    code.library._reload_init.update(code.reload_init)
-    return code
-
-
-CompileResult._rebuild = _rebuilt  # type: ignore[method-assign]
-
-
-def apart(kernel: Any) -> Callable[..., Any]:
-    """A compiled kernel for others to call without becoming part of them; they have to pass all arguments by place.
-
-    It must be a name of its module. Called from Python it is the kernel itself.
-    """
-    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
-        return kernel  # type: ignore[no-any-return]
+def _callable(kernel: Any, own: tuple[Any, ...], returned: Any, call: Callable[..., Any]) -> Callable[..., Any]:
+    """What compiled code can call for a kernel, whose arguments have the types of `own`, then those of the call."""
+    count = kernel.py_func.__code__.co_argcount - len(own)
 
     @wraps(kernel)
-    def stub(*arguments: Any, **more: Any) -> Any:
-        return kernel(*arguments, **more)
+    def stub(*arguments: Any) -> Any:
+        return kernel(*((0, CHUNKS) if own else ()), *arguments)
 
     class Typing(AbstractTemplate):
         key = stub
 
         def generic(self, args: Any, kws: Any) -> Any:
-            if kws or len(args) != kernel.py_func.__code__.co_argcount:
-                return None
-            kernel.compile(args)
-            return kernel.overloads[args].signature
+            return None if kws or len(args) != count else typed(returned, *(types.unliteral(each) for each in args))
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        needed = _Needed(kernel.py_func.__module__, kernel.py_func.__name__, sig.args)
-        needed()
-        context.active_code_library._reload_init.add(needed)
-        kind = context.call_conv.get_function_type(sig.return_type, sig.args)
-        callee = cgutils.get_or_insert_function(builder.module, kind, needed.symbol)
-        status, result = context.call_conv.call_function(builder, callee, sig.return_type, sig.args, args)
-        with cgutils.if_unlikely(builder, status.is_error):
-            context.call_conv.return_status_propagate(builder, status)
-        return result
+        return call(context, builder, _address(context, builder, kernel, own + sig.args, returned), sig, args)
 
     infer_global(stub, types.Function(Typing))
     lower_builtin(stub, types.VarArg(types.Any))(lower)
     return stub
+
+
+def apart(returned: Any = types.none) -> Callable[[Any], Callable[..., Any]]:
+    """A decorator of a compiled kernel for others to call without becoming part of them, with all arguments by place.
+
+    It must be a name of its module. returned : type of what it returns. Called from Python it is the kernel itself.
+    """
+
+    def call(context: Any, builder: Any, address: Any, sig: Any, args: Any) -> Any:
+        status, result = context.call_conv.call_function(builder, address, sig.return_type, sig.args, args)
+        with cgutils.if_unlikely(builder, status.is_error):
+            context.call_conv.return_status_propagate(builder, status)
+        return result
+
+    return lambda kernel: kernel if config.DISABLE_JIT else _callable(kernel, (), returned, call)  # type: ignore[attr-defined]
+
+
+def in_chunks(kernel: Any) -> Callable[..., Any]:
+    """A compiled kernel of chunks first to last − 1, its first two arguments, for others to call without these two.
+
+    The `CHUNKS` chunks are shared out among the threads. What a chunk does must not depend on others; the kernel must
+    be a name of its module, and return nothing. Called from Python it computes all chunks in turn.
+    """
+    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
+        return wraps(kernel)(lambda *arguments: kernel(0, CHUNKS, *arguments))
+    return _callable(kernel, (types.int64, types.int64), types.none, _share_out)
+
+
+def _share_out(context: Any, builder: Any, address: Any, sig: Any, args: Any) -> Any:
+    """Write the code that calls a kernel of chunks in all threads, by the functions behind numba's own parallel loops.
+
+    These call a function (places, counts, steps, data) for some of the `counts[0]` shares, the first of which is at
+    places[0]; the data are the kernel and its arguments.
+    """
+    values = [address, *context.call_conv._get_arg_packer(sig.args).as_arguments(builder, args)]
+    data = cgutils.alloca_once(builder, ir.LiteralStructType([value.type for value in values]))
+    for k, value in enumerate(values):
+        builder.store(value, cgutils.gep_inbounds(builder, data, 0, k))
+    threads = builder.call(
+        cgutils.get_or_insert_function(builder.module, ir.FunctionType(_INDEX, []), "get_num_threads"), []
+    )
+    starts = cgutils.alloca_once(builder, ir.ArrayType(_INDEX, CHUNKS + 1))
+    shares = builder.select(builder.icmp_signed("<", threads, _INDEX(CHUNKS)), threads, _INDEX(CHUNKS))
+    with cgutils.for_range(builder, builder.add(shares, _INDEX(1)), intp=_INDEX) as loop:
+        start = builder.sdiv(builder.mul(loop.index, _INDEX(CHUNKS)), shares)
+        builder.store(start, cgutils.gep_inbounds(builder, starts, 0, loop.index))
+    pointers = [cgutils.alloca_once(builder, kind) for kind in (_BYTES, _INDEX, _INDEX)]
+    for pointer, value in zip(
+        pointers, (builder.bitcast(starts, _BYTES), shares, _INDEX(_INDEX.width // 8)), strict=True
+    ):
+        builder.store(value, pointer)
+    share = _share(context, builder.module, data.type)
+    with builder.if_else(builder.icmp_signed("==", shares, _INDEX(1))) as (alone, together):
+        with alone:
+            builder.call(share, [*pointers, builder.bitcast(data, _BYTES)])
+        with together:
+            kinds = [_BYTES, *(pointer.type for pointer in pointers), _BYTES, _INDEX, _INDEX, ir.IntType(32)]
+            launch = cgutils.get_or_insert_function(
+                builder.module, ir.FunctionType(ir.VoidType(), kinds), "numba_parallel_for"
+            )
+            more = [_INDEX(0), _INDEX(1), builder.trunc(shares, ir.IntType(32))]
+            builder.call(launch, [builder.bitcast(share, _BYTES), *pointers, builder.bitcast(data, _BYTES), *more])
+    return context.get_dummy_value()
+
+
+def _share(context: Any, module: Any, data: Any) -> Any:
+    """The function that calls a kernel of chunks for some shares, see `_share_out`; data : type of their address."""
+    kinds = [_BYTES.as_pointer(), _INDEX.as_pointer(), _INDEX.as_pointer(), _BYTES]
+    function = ir.Function(module, ir.FunctionType(ir.VoidType(), kinds), module.get_unique_name(".share"))
+    function.linkage = "internal"
+    builder = ir.IRBuilder(function.append_basic_block())
+    places, counts, _, known = function.args
+    begin = builder.bitcast(builder.load(places), _INDEX.as_pointer())
+    chunks = [builder.load(begin), builder.load(builder.gep(begin, [builder.load(counts)]))]
+    known = builder.bitcast(known, data)
+    address, *values = [builder.load(cgutils.gep_inbounds(builder, known, 0, k)) for k in range(len(data.pointee))]
+    returned, raised = (builder.alloca(kind.pointee) for kind in address.type.pointee.args[:2])
+    builder.call(address, [returned, raised, *chunks, *values])
+    builder.ret_void()
+    return function

@@ -7,10 +7,10 @@ the displacements of each cell. Disks in other cells are so far apart that they 
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit, types
 
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, largest
+from dembound.kernels.apart import apart, in_chunks
+from dembound.kernels.common import CHUNKS, FAST, MAKES, largest
 
 ACROSS = ((0, 0), (1, 0), (-1, 1), (0, 1), (1, 1))
 """Steps to a cell itself and to half of those that touch it."""
@@ -22,10 +22,12 @@ def _span(a, b):
     return np.hypot(max(a[1] - b[0], b[1] - a[0]), max(a[3] - b[2], b[3] - a[2]))
 
 
-@njit(**PARALLEL)
-def _boxes(u, begin, origin, cells, boxes):
+@in_chunks
+@njit(**FAST)
+def _boxes(first_chunk, last_chunk, u, begin, origin, cells, boxes):
     """Fill boxes (c, 4) with smallest and largest displacement along x and y in every cell since the origin (2, n)."""
-    for c in prange(len(boxes)):
+    n = len(boxes)
+    for c in range(first_chunk * n // CHUNKS, last_chunk * n // CHUNKS):
         box = boxes[c]
         box[0] = box[2] = np.inf
         box[1] = box[3] = -np.inf
@@ -55,22 +57,29 @@ def _farthest_of(c, cells, boxes):
     return far
 
 
-@njit(**PARALLEL)
+@njit(**MAKES)
 def moved(u, begin, origin):
     """Largest displacement (m) of the n particles from `begin` on since the displacements origin (2, n)."""
+    squares = np.empty(CHUNKS)
+    _largest_squares(u, begin, origin, squares)
+    return np.sqrt(largest(squares))
+
+
+@in_chunks
+@njit(**FAST)
+def _largest_squares(first_chunk, last_chunk, u, begin, origin, squares):
+    """Fill squares (chunks,) with the largest squared displacements of the particles of each chunk, see `moved`."""
     n = origin.shape[1]
-    most = np.empty(CHUNKS)
-    for chunk in prange(CHUNKS):
+    for chunk in range(first_chunk, last_chunk):
         square = 0.0
         for i in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
             x, y = u[0, begin + i] - origin[0, i], u[1, begin + i] - origin[1, i]
             square = max(square, x**2 + y**2)
-        most[chunk] = square
-    return np.sqrt(largest(most))
+        squares[chunk] = square
 
 
-@apart
-@njit(**PARALLEL)
+@apart(types.float64)
+@njit(**MAKES)
 def approach(u, begin, origin, cells):
     """Upper bound (m) of the relative displacement since the origin (2, n) of two disks that may meet.
 
@@ -83,10 +92,18 @@ def approach(u, begin, origin, cells):
     boxes = np.empty((count, 4))
     _boxes(u, begin, origin, cells, boxes)
     far = np.empty(CHUNKS)
-    for chunk in prange(CHUNKS):
+    _farthest(cells, boxes, far)
+    return min(2.0 * alone, largest(far))
+
+
+@in_chunks
+@njit(**FAST)
+def _farthest(first_chunk, last_chunk, cells, boxes, far):
+    """Fill far (chunks,) with the farthest that disks of each chunk of cells may have moved from others."""
+    count = cells.start.size - 1
+    for chunk in range(first_chunk, last_chunk):
         most = 0.0
         for c in range(chunk * count // CHUNKS, (chunk + 1) * count // CHUNKS):
             if cells.start[c + 1] > cells.start[c]:
                 most = max(most, _farthest_of(c, cells, boxes))
         far[chunk] = most
-    return min(2.0 * alone, largest(far))

@@ -1,11 +1,11 @@
 """The history-dependent law in the loop: first the forces of pairs, then the motion of particles under their sums."""
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.apart import apart
+from dembound.kernels.apart import in_chunks
 from dembound.kernels.approach import approach
-from dembound.kernels.common import CHUNKS, DONE, FAST, LIST_ENDS, PARALLEL, U, column_sum, largest
+from dembound.kernels.common import CHUNKS, DONE, FAST, LIST_ENDS, U, column_sum, largest
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_pairs
 from dembound.kernels.law import is_law, is_tie
@@ -52,9 +52,9 @@ def push(bonded, u, u_next, v, number, step, work):
     return breaks if bonded.stops else 0
 
 
-@apart
-@njit(**PARALLEL)
-def _move(u, v, contacts, body, u_next, fastest, damped):
+@in_chunks
+@njit(**FAST)
+def _move(first_chunk, last_chunk, u, v, contacts, body, u_next, fastest, damped):
     """One step of the contacts' particles, see `move_particle`.
 
     fastest (chunks,) gets their speeds, damped (chunks, 2) the work of local damping.
@@ -62,7 +62,7 @@ def _move(u, v, contacts, body, u_next, fastest, damped):
     force, start, end = contacts.force, contacts.start, contacts.end
     begin = contacts.begin
     n = start.size - 1 - begin
-    for chunk in prange(CHUNKS):
+    for chunk in range(first_chunk, last_chunk):
         most = 0.0
         whole = 0.0
         half = 0.0

@@ -5,14 +5,24 @@ different groups, are computed one by one, and their forces are added to those o
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from dembound.kernels import bonded as law
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
+from dembound.kernels.apart import in_chunks
+from dembound.kernels.common import FAST, U
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_others
-from dembound.kernels.lane_step import INLINED, first_at, go_on, kick, larger, local_damping, next_place, place_of
+from dembound.kernels.lane_step import (
+    INLINED,
+    blocks_of,
+    first_at,
+    go_on,
+    kick,
+    larger,
+    local_damping,
+    next_place,
+    place_of,
+)
 from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, splat
 from dembound.kernels.law import is_law
 from dembound.kernels.pair_lanes import push_rows
@@ -55,11 +65,10 @@ def _stray_forces(stray, start, end, force, first, last, extra):
 
 
 @njit(**FAST)
-def _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next, result):
-    """One step of the disks in blocks first to last − 1; result (3,) gets the largest speed and works."""
-    result[:] = 0.0
+def _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next):
+    """One step of the disks in blocks first to last − 1; returns the largest speed and works, see `bonded._move`."""
     if first == last:
-        return
+        return 0.0, 0.0, 0.0
     across, up, about = body.free[0], body.free[1], body.free[2]
     nothing = splat(0.0)
     whole, half, speed = nothing, nothing, nothing
@@ -110,25 +119,19 @@ def _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next, 
         fastest = max(fastest, lane(speed, U(k)))
         taken += lane(whole, U(k))
         late += lane(half, U(k))
-    result[0] = np.sqrt(fastest)
-    result[1] = 0.5 * body.step * (taken + late)
-    result[2] = 0.5 * body.step * late
+    return np.sqrt(fastest), 0.5 * body.step * (taken + late), 0.5 * body.step * late
 
 
-@apart
-@njit(**PARALLEL)
-def _move(u, v, rows, pairs, contacts, stray, stray_start, stray_end, extra, body, u_next, fastest, damped):
+@in_chunks
+@njit(**FAST)
+def _move(begin, end, u, v, rows, pairs, contacts, stray, stray_start, stray_end, extra, body, u_next, fastest, damped):
     """One step of all disks; fastest (chunks,) gets speeds, damped (chunks, 2) the work of local damping."""
-    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
-    n = end - begin
-    result = np.zeros((CHUNKS, 3))
-    for chunk in prange(CHUNKS):
-        first, last = begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
+    for chunk in range(begin, end):
+        first, last = blocks_of(rows, chunk)
         _stray_forces(stray, stray_start, stray_end, contacts.force, first, last, extra)
-        _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next, result[chunk])
-        fastest[chunk] = result[chunk, 0]
-        damped[chunk, 0] = result[chunk, 1]
-        damped[chunk, 1] = result[chunk, 2]
+        fastest[chunk], damped[chunk, 0], damped[chunk, 1] = _move_blocks(
+            rows, pairs, first, last, u, v, body, contacts, extra, u_next
+        )
 
 
 @njit(**FAST)

@@ -29,9 +29,6 @@ EXACT = FAST | {"fastmath": False}
 EXACT_MAKES = EXACT | {"_nrt": True}
 """`EXACT` for functions that create arrays."""
 
-PARALLEL = MAKES | {"parallel": True}
-"""Compiler options of loops over particles and contacts."""
-
 REST = 1e-250
 """Speeds below this are set to zero: they would decay into denormal numbers, which are a hundred times slower."""
 

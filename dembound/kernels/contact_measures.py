@@ -1,10 +1,10 @@
 """Measures of contacts with a history that leave them as they are: how far they may still move, and their energy."""
 
 import numpy as np
-from numba import njit, prange
+from numba import njit, types
 
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, PARALLEL, U, column_sum, largest
+from dembound.kernels.apart import apart, in_chunks
+from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum, largest
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
 
@@ -12,8 +12,8 @@ TURN = 0.01
 """Largest rotation of a pair under the law of small displacements, whose error is half its square."""
 
 
-@apart
-@njit(**PARALLEL)
+@apart(types.float64)
+@njit(**MAKES)
 def slack(u, contacts, limits, keeps_slip):
     """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
 
@@ -21,11 +21,19 @@ def slack(u, contacts, limits, keeps_slip):
     motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
     motion of the surfaces, which gives a lower bound for each condition. keeps_slip : contacts have slid earlier.
     """
+    closest = np.empty(CHUNKS)
+    _closest(u, contacts, limits, keeps_slip, closest)
+    return -largest(closest)
+
+
+@in_chunks
+@njit(**FAST)
+def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
+    """Fill closest (chunks,) with the least `slack` of each chunk of pairs, negative."""
     _, first, second, contact_type, constants, state, _, slip, _, _, _, _, _, _ = contacts
     friction, tension, cohesion, tan_fa, geometry = limits
     b = first.size
-    least = np.empty(CHUNKS)
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         room = np.inf
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
             c = U(p)
@@ -54,20 +62,27 @@ def slack(u, contacts, limits, keeps_slip):
                 room = min(room, (tension - stress - turned) / (2.0 * normal))
                 strength = cohesion - stress * tan_fa - sheared * abs(shear)
                 room = min(room, strength / (sheared + normal * tan_fa))
-        least[chunk] = -room
-    return -largest(least)
+        closest[chunk] = -room
 
 
-@njit(**PARALLEL)
+@njit(**MAKES)
 def strain_energy(u, contacts, geometry):
     """Energy (J) stored in contacts and in bonds at displacements u (3, n), with the tangential ones of the last push.
 
     With the geometry REFERENCE shear and slip are not read.
     """
+    stored = np.empty((CHUNKS, 2))
+    _strain_energies(u, contacts, geometry, stored)
+    return column_sum(stored, 0), column_sum(stored, 1)
+
+
+@in_chunks
+@njit(**FAST)
+def _strain_energies(begin, end, u, contacts, geometry, stored):
+    """Fill stored (chunks, 2) with the `strain_energy` of contacts and of bonds in each chunk of pairs."""
     _, first, second, contact_type, constants, state, all_shear, slip, _, _, _, _, _, _ = contacts
     b = first.size
-    stored = np.empty((CHUNKS, 2))
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         in_contacts = 0.0
         in_bonds = 0.0
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
@@ -94,4 +109,3 @@ def strain_energy(u, contacts, geometry):
                 in_bonds += 0.5 * constants[k, U(9)] * turn * turn
         stored[chunk, 0] = in_contacts
         stored[chunk, 1] = in_bonds
-    return column_sum(stored, 0), column_sum(stored, 1)

@@ -14,10 +14,10 @@ the contact and of the bond. Force (4,) of a pair: x and y on i (the opposite on
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
+from dembound.kernels.apart import apart, in_chunks
+from dembound.kernels.common import CHUNKS, FAST, U, column_sum
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
@@ -140,8 +140,21 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
     return rubbed
 
 
-@apart
-@njit(**PARALLEL)
+@in_chunks
+@njit(**FAST)
+def _push(first_chunk, last_chunk, u, v, step, number, contacts, limits, lost, begin):
+    b = contacts.first.size - begin
+    for chunk in range(first_chunk, last_chunk):
+        rubbed = 0.0
+        own = lost[chunk]
+        for k in range(4):
+            own[k] = 0.0
+        for p in range(begin + chunk * b // CHUNKS, begin + (chunk + 1) * b // CHUNKS):
+            rubbed += push_pair(U(p), u, v, step, number, contacts, limits, own)
+        own[0] = rubbed
+
+
+@njit(**FAST)
 def push(u, v, step, number, contacts, limits, lost, begin):
     """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
 
@@ -150,18 +163,11 @@ def push(u, v, step, number, contacts, limits, lost, begin):
     broke. Friction and cracks take none in pairs whose force changes its sign in the step: the energy that they then
     add counts, negative, with opening and closing. begin : the first pair. Returns the number of bonds that broke.
     """
-    b = contacts.first.size - begin
-    for chunk in prange(CHUNKS):
-        rubbed = 0.0
-        own = lost[chunk]
-        own[:] = 0.0
-        for p in range(begin + chunk * b // CHUNKS, begin + (chunk + 1) * b // CHUNKS):
-            rubbed += push_pair(U(p), u, v, step, number, contacts, limits, own)
-        own[0] = rubbed
+    _push(u, v, step, number, contacts, limits, lost, begin)
     return int(column_sum(lost, 3))
 
 
-@apart
+@apart()
 @njit(**FAST)
 def note_places(u, number, contacts):
     """Record the positions, at displacements u (3, n), of the bonds that broke in step `number`."""
@@ -188,26 +194,32 @@ def ends_force(row, force, start, end):
     return fx, fy, moment
 
 
-@njit(**PARALLEL)
-def sum_forces(contacts, total):
-    """Fill total (3, n) of the contacts' particles with the sums of their last forces and moments."""
+@in_chunks
+@njit(**FAST)
+def _sum_forces(first_chunk, last_chunk, contacts, total):
     force, start, end = contacts.force, contacts.start, contacts.end
     begin = contacts.begin
     n = start.size - 1 - begin
-    for chunk in prange(CHUNKS):
+    for chunk in range(first_chunk, last_chunk):
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
             total[U(0), i], total[U(1), i], total[U(2), i] = ends_force(i, force, start, end)
 
 
-@njit(**PARALLEL)
+@njit(**FAST)
+def sum_forces(contacts, total):
+    """Fill total (3, n) of the contacts' particles with the sums of their last forces and moments."""
+    _sum_forces(contacts, total)
+
+
+@njit(**FAST)
 def start_from_displacements(u, contacts, keeps_slip=False):
     """Set the pairs' tangential displacements to those of small displacements u (3, n), without slip.
 
     keeps_slip : contacts that are closed at the start keep theirs.
     """
     _, first, second, contact_type, constants, _, shear, slip, _, _, _, _, _, _ = contacts
-    for p in prange(first.size):
+    for p in range(first.size):
         c = U(p)
         i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
         _, _, _, stretch, sheared = reference_strain(i, j, k, dx, dy, u, constants)

@@ -14,11 +14,11 @@ so that N = √k_n n·Δu, S = √k_s (t·Δu − l_iθ_i − l_jθ_j), and the 
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.apart import apart
+from dembound.kernels.apart import in_chunks
 from dembound.kernels.approach import approach
-from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, PARALLEL, U, largest
+from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, U, largest
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.law import answer, generic, is_law, is_tie
 from dembound.kernels.step import move_particle, note_damping
@@ -66,12 +66,12 @@ def move_rows(rows, u, v, body, u_next, fastest, arms, damped):
     """
 
 
-@apart
-@njit(**PARALLEL)
-def _fill(rows, u, force):
+@in_chunks
+@njit(**FAST)
+def _fill(first_chunk, last_chunk, rows, u, force):
     begin, start, neighbour, contact_type, constants = rows
     n = start.size - 1 - begin
-    for chunk in prange(CHUNKS):
+    for chunk in range(first_chunk, last_chunk):
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
             force[U(0), i], force[U(1), i], force[U(2), i] = row_force(
@@ -91,13 +91,13 @@ def seam_forces(seam, u, v, force):
             force[s, 2] += moment
 
 
-@apart
-@njit(**PARALLEL)
-def _move(rows, u, v, body, u_next, fastest, arms, damped):
+@in_chunks
+@njit(**FAST)
+def _move(first_chunk, last_chunk, rows, u, v, body, u_next, fastest, arms, damped):
     begin, start, neighbour, contact_type, constants = rows
     n = start.size - 1 - begin
     watched = arms.size > 0
-    for chunk in prange(CHUNKS):
+    for chunk in range(first_chunk, last_chunk):
         most = 0.0
         whole = 0.0
         half = 0.0

@@ -12,13 +12,23 @@ all copies have also has a mask of those that do. Contacts that no row shares, s
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
+from dembound.kernels.apart import in_chunks
+from dembound.kernels.common import FAST, U
 from dembound.kernels.elastic import fill_forces, move_rows
 from dembound.kernels.held_lanes import move_pair, moving_pair
-from dembound.kernels.lane_step import INLINED, go_on, kick, larger, local_damping, next_place, place_of, stray_forces
+from dembound.kernels.lane_step import (
+    INLINED,
+    blocks_of,
+    go_on,
+    kick,
+    larger,
+    local_damping,
+    next_place,
+    place_of,
+    stray_forces,
+)
 from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, magnitude, splat, store
 from dembound.kernels.law import answer
 from dembound.kernels.tables import LaneRows
@@ -138,10 +148,10 @@ def _move_blocks(rows, first, last, u, v, body, u_next):
 
 
 @njit(**FAST)
-def _move_loaded_blocks(rows, first, last, u, v, body, u_next, arms, result):
-    """Move blocks under steady loads and local damping; result (3,): surface speed, works, see elastic.move_rows."""
+def _move_loaded_blocks(rows, first, last, u, v, body, u_next, arms):
+    """Move blocks under steady loads and local damping; returns surface speed and works, see elastic.move_rows."""
     if first == last:
-        return
+        return 0.0, 0.0, 0.0
     stray_forces(rows, first, last, u)
     across, up, about = body.free[0], body.free[1], body.free[2]
     nothing = splat(0.0)
@@ -179,41 +189,33 @@ def _move_loaded_blocks(rows, first, last, u, v, body, u_next, arms, result):
         turning = max(turning, lane(spin, U(k)))
         taken += lane(whole, U(k))
         late += lane(half, U(k))
-    result[0] = np.sqrt(fastest) + turning
-    result[1] = 0.5 * body.step * (taken + late)
-    result[2] = 0.5 * body.step * late
+    return np.sqrt(fastest) + turning, 0.5 * body.step * (taken + late), 0.5 * body.step * late
 
 
-@apart
-@njit(**PARALLEL)
-def _fill(rows, u, force):
-    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
-    n = end - begin
-    for chunk in prange(CHUNKS):
-        _force_blocks(rows, begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS, u, force)
+@in_chunks
+@njit(**FAST)
+def _fill(begin, end, rows, u, force):
+    for chunk in range(begin, end):
+        first, last = blocks_of(rows, chunk)
+        _force_blocks(rows, first, last, u, force)
 
 
-@apart
-@njit(**PARALLEL)
-def _move(rows, u, v, body, u_next):
-    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
-    n = end - begin
-    for chunk in prange(CHUNKS):
-        _move_blocks(rows, begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS, u, v, body, u_next)
+@in_chunks
+@njit(**FAST)
+def _move(begin, end, rows, u, v, body, u_next):
+    for chunk in range(begin, end):
+        first, last = blocks_of(rows, chunk)
+        _move_blocks(rows, first, last, u, v, body, u_next)
 
 
-@apart
-@njit(**PARALLEL)
-def _move_and_more(rows, u, v, body, u_next, fastest, arms, damped):
-    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
-    n = end - begin
-    result = np.zeros((CHUNKS, 3))
-    for chunk in prange(CHUNKS):
-        first, last = begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
-        _move_loaded_blocks(rows, first, last, u, v, body, u_next, arms, result[chunk])
-        fastest[chunk] = result[chunk, 0]
-        damped[chunk, 0] = result[chunk, 1]
-        damped[chunk, 1] = result[chunk, 2]
+@in_chunks
+@njit(**FAST)
+def _move_and_more(begin, end, rows, u, v, body, u_next, fastest, arms, damped):
+    for chunk in range(begin, end):
+        first, last = blocks_of(rows, chunk)
+        fastest[chunk], damped[chunk, 0], damped[chunk, 1] = _move_loaded_blocks(
+            rows, first, last, u, v, body, u_next, arms
+        )
 
 
 @njit(**FAST)

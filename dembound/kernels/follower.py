@@ -9,7 +9,7 @@ of width W give a moment pHW·θ for a rotation θ, which grows at the rate √(
 """
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 
 from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST, MAKES, U
@@ -78,7 +78,7 @@ def side_rotations(u, followers):
     return means
 
 
-@apart
+@apart(types.float64)
 @njit(**MAKES)
 def turn_forces(followers, u, v, load, step):
     """Rotate the forces with their sides at displacements u (3, n), in load (3, n); returns work (J) of half a step.

@@ -8,11 +8,11 @@ In the ledger, the work done on elements that absorb counts as taken by damping 
 The sum of it with kinetic energy and the strain energy of the others is conserved, exactly as by central differences.
 """
 
-from numba import get_thread_id, njit, prange
+from numba import get_thread_id, njit
 
 from dembound.kernels import lane_step
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
+from dembound.kernels.apart import in_chunks
+from dembound.kernels.common import CHUNKS, FAST, U, column_sum
 from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, gather, shape_of
 from dembound.kernels.lanes import LANES, at_most, choose, lane, load, splat, store
 from dembound.kernels.law import is_law
@@ -160,22 +160,22 @@ def _move_shared(blocks, force, first, last, u, v, body, u_next, taken):
     taken[3] = -0.5 * body.step * half
 
 
-@apart
-@njit(**PARALLEL)
-def _move_all_blocks(points, elements, blocks, absorber, force, space, taken, u, v, body, u_next):
+@in_chunks
+@njit(**FAST)
+def _move_all_blocks(begin, end, points, elements, blocks, absorber, force, space, taken, u, v, body, u_next):
     n = blocks.blocks
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
         if first < last:
             own, result = space[get_thread_id()], taken[chunk]
             _move_blocks(points, elements, blocks, absorber, force, first, last, u, v, body, u_next, own, result)
 
 
-@apart
-@njit(**PARALLEL)
-def _move_all_shared(blocks, force, taken, u, v, body, u_next):
+@in_chunks
+@njit(**FAST)
+def _move_all_shared(begin, end, blocks, force, taken, u, v, body, u_next):
     n = blocks.start.size - 1
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
         _move_shared(blocks, force, first, last, u, v, body, u_next, taken[chunk])
 
@@ -224,14 +224,20 @@ def _store_forces(points, elements, blocks, force, first, last, u, result, space
             slot += _STEP
 
 
-@apart
-@njit(**PARALLEL)
-def _fill(points, elements, blocks, force, space, u, result):
-    n, m = blocks.blocks, blocks.start.size - 1
-    for chunk in prange(CHUNKS):
+@in_chunks
+@njit(**FAST)
+def _fill_blocks(begin, end, points, elements, blocks, force, space, u, result):
+    n = blocks.blocks
+    for chunk in range(begin, end):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
         _store_forces(points, elements, blocks, force, first, last, u, result, space[get_thread_id()])
-    for chunk in prange(CHUNKS):
+
+
+@in_chunks
+@njit(**FAST)
+def _fill_shared(begin, end, blocks, force, result):
+    m = blocks.start.size - 1
+    for chunk in range(begin, end):
         for k in range(chunk * m // CHUNKS, (chunk + 1) * m // CHUNKS):
             x, y = _sum_at(blocks, U(k), force)
             result[U(0), U(blocks.shared_begin + k)] = x
@@ -241,7 +247,8 @@ def _fill(points, elements, blocks, force, space, u, result):
 @njit(**FAST)
 def fill_forces(grid, u, result):
     """Fill result (3, slots) with the elastic forces (N) of all elements at displacements u; none on outer edges."""
-    _fill(grid.points, grid.elements, grid.blocks, grid.force, grid.space, u, result)
+    _fill_blocks(grid.points, grid.elements, grid.blocks, grid.force, grid.space, u, result)
+    _fill_shared(grid.blocks, grid.force, result)
 
 
 @njit(**FAST)
@@ -259,11 +266,11 @@ def _block_energies(points, elements, blocks, first, last, u, energy, space):
         energy[block] = -0.5 * _sum(doubled)
 
 
-@apart
-@njit(**PARALLEL)
-def _energies(points, elements, blocks, space, u, energy):
+@in_chunks
+@njit(**FAST)
+def _energies(begin, end, points, elements, blocks, space, u, energy):
     n = energy.size
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
         _block_energies(points, elements, blocks, first, last, u, energy, space[get_thread_id()])
 

@@ -8,11 +8,11 @@ With p a translation and q the other component that moves, and w = q_j, less q_i
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
-from dembound.kernels.lane_step import INLINED, kick, next_place, place_of, stray_forces
+from dembound.kernels.apart import in_chunks
+from dembound.kernels.common import FAST, U
+from dembound.kernels.lane_step import INLINED, blocks_of, kick, next_place, place_of, stray_forces
 from dembound.kernels.lanes import LANES, at_most, bits, choose, load, splat, store
 
 _ALL = np.uint8(2**LANES - 1)
@@ -116,13 +116,11 @@ def _move_blocks(rows, first, last, p, q, u, v, body, u_next):
         store(u_next[q], i, y)
 
 
-@apart
-@njit(**PARALLEL)
-def move_pair(rows, p, q, u, v, body, u_next):
+@in_chunks
+@njit(**FAST)
+def move_pair(begin, end, rows, p, q, u, v, body, u_next):
     """One step of components p and q of all disks, without steady loads and local damping."""
-    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
-    n = end - begin
-    for chunk in prange(CHUNKS):
-        first, last = begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
+    for chunk in range(begin, end):
+        first, last = blocks_of(rows, chunk)
         stray_forces(rows, first, last, u)
         _move_blocks(rows, first, last, p, q, u, v, body, u_next)

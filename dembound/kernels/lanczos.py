@@ -5,44 +5,58 @@ scaled copies of vectors are needed. Sums are added chunk by chunk: they are the
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
+from dembound.kernels.apart import in_chunks
+from dembound.kernels.common import CHUNKS, FAST, MAKES, U
 
 
 @njit(**FAST)
 def _total(sums):
-    """Sum of sums (chunks,), in order; sums.sum() would be shared out among threads."""
+    """Sum of sums (chunks,), in order."""
     total = 0.0
     for chunk in range(sums.size):
         total += sums[chunk]
     return total
 
 
-@njit(**PARALLEL)
+@njit(**MAKES)
 def work(u, force):
     """Σ u·F (J) of displacements and forces (3, slots)."""
+    sums = np.empty(CHUNKS)
+    _works(u, force, sums)
+    return _total(sums)
+
+
+@in_chunks
+@njit(**FAST)
+def _works(begin, end, u, force, sums):
     n = u.shape[1]
-    sums = np.zeros(CHUNKS)
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         total = 0.0
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
             i = U(p)
             total += u[U(0), i] * force[U(0), i] + u[U(1), i] * force[U(1), i] + u[U(2), i] * force[U(2), i]
         sums[chunk] = total
-    return _total(sums)
 
 
-@njit(**PARALLEL)
+@njit(**MAKES)
 def next_vector(u, before, force, mass, inertia, free, pull, along, back):
     """Replace `before` by pull·M⁻¹F − along·u − back·before, all (3, slots), and return its square ⟨·, ·⟩.
 
     mass kg, inertia kg·m² : (slots,), both zero in slots without a disk; free : (3,) 1, or 0 for a component held
     everywhere; pull, along, back : numbers.
     """
+    squares = np.empty(CHUNKS)
+    _next_vector(u, before, force, mass, inertia, free, pull, along, back, squares)
+    return _total(squares)
+
+
+@in_chunks
+@njit(**FAST)
+def _next_vector(begin, end, u, before, force, mass, inertia, free, pull, along, back, squares):
     n = u.shape[1]
-    sums = np.zeros(CHUNKS)
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         total = 0.0
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
             i = U(p)
@@ -59,5 +73,4 @@ def next_vector(u, before, force, mass, inertia, free, pull, along, back):
             before[U(1), i] = y
             before[U(2), i] = t
             total += m * (x * x + y * y) + inertia[i] * (t * t)
-        sums[chunk] = total
-    return _total(sums)
+        squares[chunk] = total

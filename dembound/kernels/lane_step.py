@@ -2,7 +2,7 @@
 
 from numba import njit
 
-from dembound.kernels.common import FAST, REST, U
+from dembound.kernels.common import CHUNKS, FAST, REST, U
 from dembound.kernels.elastic import row_force
 from dembound.kernels.lanes import LANES, at_most, choose, magnitude, store, with_sign
 
@@ -55,6 +55,14 @@ def stray_forces(rows, first, last, u):
         extra[U(0), i] = fx
         extra[U(1), i] = fy
         extra[U(2), i] = moment
+
+
+@njit(**INLINED)
+def blocks_of(rows, chunk):
+    """First block of a chunk, and the one after its last."""
+    begin = rows.group_block[0]
+    n = rows.group_block[rows.group_block.size - 1] - begin
+    return begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
 
 
 @njit(**INLINED)

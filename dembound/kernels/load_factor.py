@@ -1,13 +1,14 @@
 """The factor of the waves at which a pair first reaches a limit of its elastic law."""
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.common import CHUNKS, PARALLEL, U
+from dembound.kernels.apart import in_chunks
+from dembound.kernels.common import CHUNKS, FAST, U
 from dembound.kernels.pair_strain import pair, reference_strain
 
 
-@njit(**PARALLEL)
+@njit(**FAST)
 def least_factors(u, rest, contacts, slopes, allowed, least, where):
     """Find in each chunk of pairs the least factor f at which a pair reaches a limit with rest + f·(u − rest).
 
@@ -15,10 +16,16 @@ def least_factors(u, rest, contacts, slopes, allowed, least, where):
     limits of each type of contact, allowed (p, m) their d, infinite for none. u, rest : (3, slots) displacements.
     least (chunks,) receives the factor, infinite for none, and where (chunks, 2) the pair and its limit.
     """
+    _least_factors(u, rest, contacts, slopes, allowed, least, where)
+
+
+@in_chunks
+@njit(**FAST)
+def _least_factors(begin, end, u, rest, contacts, slopes, allowed, least, where):
     _, first, second, contact_type, constants, _, _, _, _, _, _, _, _, _ = contacts
     b = first.size
     limits = allowed.shape[1]
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         lowest = np.inf
         which = -1
         limit = -1

@@ -19,7 +19,7 @@ from dembound.kernels.law import (
     turn,
     turning_work,
 )
-from dembound.kernels.sides import note_side_halves, note_side_motion, note_side_work
+from dembound.kernels.sides import note_sides
 from dembound.kernels.step import clear, move_supported, note_after, note_before, note_top_speeds
 
 
@@ -37,26 +37,16 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
             u_next[c] = u[c]
     k = supports.nodes.size
     pulled, followed, moved = np.zeros((k, 3)), np.zeros((k, 3)), np.zeros((3, 3, k))
-    done, why = _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed, moved)
+    space = pulled, followed, moved, np.zeros((log.sides.kind.size, 4))
+    done, why = _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, *space)
     if done % 2 == 1:
         u[:] = u_next
     return done, why
 
 
-@njit(**FAST, forceinline=True)
-def note_sides(step, steps, number, u, supports, pulled, followed, moved, body, sides):
-    """Write what is recorded of the sides in this of all steps, the first of which is that of `number`."""
-    if (number + step) % sides.every == 0:
-        row = (number + step) // sides.every - sides.first
-        note_side_motion(step, row, u, supports, pulled, followed, moved, body, sides)
-    if step == steps - 1:  # the ledger is written after the last step only
-        note_side_halves(step, u, supports, pulled, followed, moved, body, sides)
-    note_side_work(step, u, supports, pulled, followed, moved, body, sides)
-
-
 @njit(**FAST)
-def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed, moved):
-    """The steps themselves, with work space of the k supported nodes; the last displacements may be in u_next."""
+def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed, moved, sums):
+    """The steps themselves, with work space; the last displacements may be in u_next."""
     steps = supports.drive.shape[0]
     nodes, work = supports.nodes, log.work
     here, there = u, u_next
@@ -78,7 +68,9 @@ def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pul
         move_all(laws, here, there, v, body, nodes)
         move_supported(step, here, v, there, pulled, followed, supports, body, work, moved)
         if log.sides.every > 0:
-            note_sides(step, steps, number, here, supports, pulled, followed, moved, body, log.sides)
+            sides = log.sides  # the ledger is written after the last step only
+            row = (number + step) // sides.every - sides.first if (number + step) % sides.every == 0 else -1
+            note_sides(step, row, step == steps - 1, here, supports, pulled, followed, moved, body, sides, sums)
         note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
         if log.top_speed.size > 0:
             note_top_speeds(v, log.top_speed)

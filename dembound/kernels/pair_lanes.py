@@ -5,10 +5,10 @@ and, where intact bonds keep the geometry of the start, from then on.
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
+from dembound.kernels.apart import in_chunks
+from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, push_pair
 from dembound.kernels.lane_step import INLINED, larger, next_place, place_of
 from dembound.kernels.lanes import (
@@ -211,8 +211,11 @@ def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limi
 
 @njit(**FAST)
 def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken, lost):
-    """The pairs in blocks first to last − 1; lost (4,) as of contacts.push, taken (16,) zeros."""
-    lost[:] = 0.0
+    """The pairs in blocks first to last − 1; lost (4,) as of contacts.push, taken (16,) is work space."""
+    for k in range(4):
+        lost[k] = 0.0
+    for k in range(2 * LANES):
+        taken[k] = 0.0
     if first == last:
         return
     group, column, q = place_of(pairs, first)
@@ -235,13 +238,18 @@ def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken
         lost[2] += taken[LANES + k]
 
 
-@apart
-@njit(**PARALLEL)
+@in_chunks
+@njit(**MAKES)
+def _push_rows(begin, end, u, v, step, number, pairs, contacts, limits, lost):
+    n = pairs.exists.size
+    taken = np.empty(2 * LANES)
+    for chunk in range(begin, end):
+        first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
+        _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken, lost[chunk])
+
+
+@njit(**FAST)
 def push_rows(u, v, step, number, pairs, contacts, limits, lost):
     """Forces of the pairs in rows, see contacts.push."""
-    n = pairs.exists.size
-    taken = np.zeros((CHUNKS, 2 * LANES))
-    for chunk in prange(CHUNKS):
-        first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
-        _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken[chunk], lost[chunk])
+    _push_rows(u, v, step, number, pairs, contacts, limits, lost)
     return int(column_sum(lost, 3))

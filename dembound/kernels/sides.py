@@ -136,15 +136,9 @@ def _of_side(b, step, u, supports, across, followed, moved, sides):
     return _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides)
 
 
-@apart
-@njit(**FAST)
-def note_side_motion(step, row, u, supports, across, followed, moved, body, sides):
-    """Write displacements and forces of all sides in this step to a row of sides.record.
-
-    u : (3, n) displacements before the step; across (k, 3) N forces of ties and followed (k, 3) m/s mean velocities of
-    twins in the step; moved (3, 3, k) velocities of the supported nodes before and after it, and all forces on them
-    from outside.
-    """
+@njit(**FAST, forceinline=True)
+def _note_motion(row, u, body, sides, sums):
+    """Write displacements and forces of all sides in this step to a row of sides.record."""
     record = sides.record
     for o in range(record.shape[1]):
         first, last = U(sides.member_start[o]), U(sides.member_start[o + 1])
@@ -156,35 +150,48 @@ def note_side_motion(step, row, u, supports, across, followed, moved, body, side
             record[row, o, 3 + c] = _steady(c, sides, o, body.load)
     for b in range(sides.kind.size):
         if sides.component[b] < 2:
-            force = _of_side(b, step, u, supports, across, followed, moved, sides)[0]
-            record[row, sides.side[b], 3 + sides.component[b]] += force
+            record[row, sides.side[b], 3 + sides.component[b]] += sums[b, 0]
 
 
-@apart
-@njit(**FAST)
-def note_side_halves(step, u, supports, across, followed, moved, body, sides):
-    """Fill sides.work[1], the work up to the beginning of this step; `note_side_work` has to be called after it."""
+@njit(**FAST, forceinline=True)
+def _note_halves(body, sides, sums):
+    """Fill sides.work[1], the work up to the beginning of this step, from that before it."""
     work = sides.work
     for o in range(work.shape[1]):
         for c in range(2):
             work[1, o, c] = work[0, o, c]
     for b in range(sides.kind.size):
-        _, power, before, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
-        # of dashpots without a wave all is absorbed, also in half a step
-        half = power + absorbed if sides.kind[b] == DASHPOT else before + absorbed
-        if sides.leaves[b]:
-            half = 0.0
-        work[1, sides.side[b], 0] += 0.5 * body.step * half
-        work[1, sides.side[b], 1] += 0.5 * body.step * (half - before)
+        if sides.kind[b] != SPRING:
+            power, before, absorbed = sums[b, 1], sums[b, 2], sums[b, 3]
+            # of dashpots without a wave all is absorbed, also in half a step
+            half = power + absorbed if sides.kind[b] == DASHPOT else before + absorbed
+            if sides.leaves[b]:
+                half = 0.0
+            work[1, sides.side[b], 0] += 0.5 * body.step * half
+            work[1, sides.side[b], 1] += 0.5 * body.step * (half - before)
 
 
-@njit(**FAST, forceinline=True)
-def note_side_work(step, u, supports, across, followed, moved, body, sides):
-    """Add the work of all sides in this step to sides.work[0]; see `note_side_motion`."""
+@apart()
+@njit(**FAST)
+def note_sides(step, row, is_last, u, supports, across, followed, moved, body, sides, sums):
+    """Add the work of all sides in this step to sides.work[0], and write what else is recorded of them.
+
+    row : of sides.record, −1 where this step has none; is_last : whether sides.work[1] is needed. u : (3, n)
+    displacements before the step; across (k, 3) N forces of ties and followed (k, 3) m/s mean velocities of twins in
+    the step; moved (3, 3, k) velocities of the supported nodes before and after it, and all forces on them from
+    outside; sums (b, 4) : work space.
+    """
+    for b in range(sides.kind.size):
+        if sides.kind[b] != SPRING or row >= 0:
+            force, power, before, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
+            sums[b, 0], sums[b, 1], sums[b, 2], sums[b, 3] = force, power, before, absorbed
+    if row >= 0:
+        _note_motion(row, u, body, sides, sums)
+    if is_last:
+        _note_halves(body, sides, sums)
     for b in range(sides.kind.size):
         if sides.kind[b] != SPRING:
-            _, power, _, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
-            if sides.leaves[b]:
-                absorbed = -power
+            power = sums[b, 1]
+            absorbed = -power if sides.leaves[b] else sums[b, 3]
             sides.work[0, sides.side[b], 0] += body.step * (power + absorbed)
             sides.work[0, sides.side[b], 1] += body.step * absorbed

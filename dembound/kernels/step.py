@@ -1,10 +1,10 @@
 """The step of central differences, velocities at half steps: functions for the kernels of all laws."""
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, REST, U, column_sum
+from dembound.kernels.apart import in_chunks
+from dembound.kernels.common import CHUNKS, FAST, REST, U, column_sum
 
 
 @njit(**FAST, inline="always")
@@ -135,12 +135,12 @@ def move_supported(step, u, v, u_next, across, followed, supports, body, work, m
     work[0, 1] += body.step * damped
 
 
-@apart
-@njit(**PARALLEL)
-def note_top_speeds(v, top_speed):
+@in_chunks
+@njit(**FAST)
+def note_top_speeds(begin, end, v, top_speed):
     """Update the largest speeds top_speed (n,) with velocities v (3, n)."""
     n = top_speed.size
-    for chunk in prange(CHUNKS):
+    for chunk in range(begin, end):
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
             i = U(p)
             vx = v[U(0), i]

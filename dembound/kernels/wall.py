@@ -16,7 +16,7 @@ scattered waves only.
 
 from typing import Any
 
-from numba import njit
+from numba import njit, types
 
 from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST, U
@@ -184,7 +184,7 @@ def _element_forces(points, within, e, u, v, lag, ties, force):
     return energy
 
 
-@apart
+@apart(types.float64)
 @njit(**FAST)
 def tie_forces(ties, u, v, force, lag):
     """Add the forces of all ties to force (k, 3), with `lag` as η; returns their energy (J) where η is 0."""
