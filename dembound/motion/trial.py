@@ -44,16 +44,20 @@ class Trial:
         """Random velocities (3, n), m/s and rad/s, of all nodes or of those of one part; the same in every call.
 
         Times the root of the mass, all directions are equally likely: every mode of vibration has the same expected
-        energy.
+        energy. There is no momentum: a free body would drift, and what its displacements are rounded by would grow.
         """
         scene = self.scene
         mass = np.stack([scene.mass, scene.mass, scene.inertia])
         velocity = np.random.default_rng(0).standard_normal(mass.shape) * scene.moves
         velocity *= NOISE * np.sqrt(scene.mass.mean() / mass)
+        moves = scene.moves.astype(float)
         if part is not None:
             chosen = np.zeros(scene.count, dtype=bool)
             chosen[next(each.nodes for each in self.system(self.step).parts if each.name == part)] = True
-            velocity[:, ~chosen] = 0.0
+            velocity[:, ~chosen] = moves[:, ~chosen] = 0.0
+        for c in range(2):
+            if np.sum(moves[c]) > 1:
+                velocity[c] -= moves[c] * (np.sum(mass[c] * velocity[c]) / np.sum(mass[c] * moves[c]))
         return velocity
 
     @property

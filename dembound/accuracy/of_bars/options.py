@@ -192,7 +192,7 @@ def _near(case: BarCase, wanted: Sequence[float], at_monitors: bool) -> Changes:
             continue
         places = [each.position - start for each in case.monitor if start <= each.position <= start + part.length]
         least = _equal_parts(part.length, places) if at_monitors else 1
-        changes[key] = float(f"{part.length / (least * max(1, round(part.length / spacing / least))):.12g}")
+        changes[key] = float(f"{part.length / (least * max(1, round(part.length / spacing / least))):.15g}")
     return changes
 
 

@@ -208,7 +208,7 @@ def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
     """The table of a packing of larger disks in the same place."""
     packing: dict[str, Any] = {key: value for key, value in case.packing.given().items() if key != "bricks"}
     size = [round(length, 10) for length in case.packing.extent]
-    sizes = {key: float(f"{length:.12g}") for key, length in case.packing.scaled(factor).items()}
+    sizes = {key: float(f"{length:.15g}") for key, length in case.packing.scaled(factor).items()}
     return packing | {"size": size, **sizes}
 
 
