@@ -20,6 +20,7 @@ import numba
 from llvmlite import binding, ir  # type: ignore[import-untyped]
 from numba import config
 from numba.core import cgutils, types
+from numba.core.dispatcher import Dispatcher
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.core.typing.templates import signature as typed
@@ -33,9 +34,10 @@ _RESOLVE = "dembound_compiled_kernel"
 
 
 def _compiled(needed: bytes) -> int:
-    """Address of the kernel with the module, name and types of arguments that `_address` wrote; compiled, or loaded."""
+    """Address of the kernel with the module, name and types of arguments that `address` wrote; compiled, or loaded."""
     module, name, arguments, returned = pickle.loads(base64.b64decode(needed))
-    kernel = getattr(import_module(module), name).__wrapped__
+    kernel = getattr(import_module(module), name)
+    kernel = kernel if isinstance(kernel, Dispatcher) else kernel.__wrapped__
     with put_off():
         kernel.compile(arguments)
     found = kernel.overloads[arguments]
@@ -58,7 +60,7 @@ binding.add_symbol(_RESOLVE, ctypes.cast(_resolve, ctypes.c_void_p).value)
 numba.get_num_threads()  # makes the functions known by which compiled code starts threads
 
 
-def _address(context: Any, builder: Any, kernel: Any, arguments: tuple[Any, ...], returned: Any) -> Any:
+def address(context: Any, builder: Any, kernel: Any, arguments: tuple[Any, ...], returned: Any) -> Any:
     """Write the code that looks up the address of a kernel, and asks for it at the first call."""
     module, name = kernel.py_func.__module__, kernel.py_func.__name__
     kind = context.call_conv.get_function_type(returned, arguments).as_pointer()
@@ -73,6 +75,14 @@ def _address(context: Any, builder: Any, kernel: Any, arguments: tuple[Any, ...]
             context.call_conv.return_user_exc(builder, RuntimeError, (f"{module}.{name} was not compiled",))
         builder.store(builder.bitcast(found, kind), known)
     return builder.load(known)
+
+
+def call_at(context: Any, builder: Any, kernel: Any, sig: Any, args: Any) -> Any:
+    """Write the code that calls the kernel at an address, and passes on what it raises."""
+    status, result = context.call_conv.call_function(builder, kernel, sig.return_type, sig.args, args)
+    with cgutils.if_unlikely(builder, status.is_error):
+        context.call_conv.return_status_propagate(builder, status)
+    return result
 
 
 def _callable(kernel: Any, own: tuple[Any, ...], returned: Any, call: Callable[..., Any]) -> Callable[..., Any]:
@@ -90,7 +100,7 @@ def _callable(kernel: Any, own: tuple[Any, ...], returned: Any, call: Callable[.
             return None if kws or len(args) != count else typed(returned, *(types.unliteral(each) for each in args))
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return call(context, builder, _address(context, builder, kernel, own + sig.args, returned), sig, args)
+        return call(context, builder, address(context, builder, kernel, own + sig.args, returned), sig, args)
 
     infer_global(stub, types.Function(Typing))
     lower_builtin(stub, types.VarArg(types.Any))(lower)
@@ -102,14 +112,7 @@ def apart(returned: Any = types.none) -> Callable[[Any], Callable[..., Any]]:
 
     It must be a name of its module. returned : type of what it returns. Called from Python it is the kernel itself.
     """
-
-    def call(context: Any, builder: Any, address: Any, sig: Any, args: Any) -> Any:
-        status, result = context.call_conv.call_function(builder, address, sig.return_type, sig.args, args)
-        with cgutils.if_unlikely(builder, status.is_error):
-            context.call_conv.return_status_propagate(builder, status)
-        return result
-
-    return lambda kernel: kernel if config.DISABLE_JIT else _callable(kernel, (), returned, call)  # type: ignore[attr-defined]
+    return lambda kernel: kernel if config.DISABLE_JIT else _callable(kernel, (), returned, call_at)  # type: ignore[attr-defined]
 
 
 def in_chunks(kernel: Any) -> Callable[..., Any]:
@@ -123,13 +126,13 @@ def in_chunks(kernel: Any) -> Callable[..., Any]:
     return _callable(kernel, (types.int64, types.int64), types.none, _share_out)
 
 
-def _share_out(context: Any, builder: Any, address: Any, sig: Any, args: Any) -> Any:
+def _share_out(context: Any, builder: Any, kernel: Any, sig: Any, args: Any) -> Any:
     """Write the code that calls a kernel of chunks in all threads, by the functions behind numba's own parallel loops.
 
     These call a function (places, counts, steps, data) for some of the `counts[0]` shares, the first of which is at
     places[0]; the data are the kernel and its arguments.
     """
-    values = [address, *context.call_conv._get_arg_packer(sig.args).as_arguments(builder, args)]
+    values = [kernel, *context.call_conv._get_arg_packer(sig.args).as_arguments(builder, args)]
     data = cgutils.alloca_once(builder, ir.LiteralStructType([value.type for value in values]))
     for k, value in enumerate(values):
         builder.store(value, cgutils.gep_inbounds(builder, data, 0, k))
@@ -170,8 +173,8 @@ def _share(context: Any, module: Any, data: Any) -> Any:
     begin = builder.bitcast(builder.load(places), _INDEX.as_pointer())
     chunks = [builder.load(begin), builder.load(builder.gep(begin, [builder.load(counts)]))]
     known = builder.bitcast(known, data)
-    address, *values = [builder.load(cgutils.gep_inbounds(builder, known, 0, k)) for k in range(len(data.pointee))]
-    returned, raised = (builder.alloca(kind.pointee) for kind in address.type.pointee.args[:2])
-    builder.call(address, [returned, raised, *chunks, *values])
+    kernel, *values = [builder.load(cgutils.gep_inbounds(builder, known, 0, k)) for k in range(len(data.pointee))]
+    returned, raised = (builder.alloca(kind.pointee) for kind in kernel.type.pointee.args[:2])
+    builder.call(kernel, [returned, raised, *chunks, *values])
     builder.ret_void()
     return function

@@ -1,7 +1,6 @@
 """The loop: the step of central differences for any laws of the parts of a scene.
 
-It is compiled separately for every combination of laws and ties, which are chosen by the types of their bundles
-(law.py).
+It calls the kernels of laws and ties by their addresses (law.py), so that it is compiled once.
 """
 
 import numpy as np
@@ -9,15 +8,20 @@ from numba import njit
 
 from dembound.kernels.common import BROKE, DONE, FAST
 from dembound.kernels.law import (
+    Given,
+    Motion,
     across_all,
     begin_all,
     check_all,
+    entered,
     finish_all,
+    given_at,
+    motion_at,
     move_all,
     note_all,
     push_all,
-    turn,
-    turning_work,
+    turn_all,
+    turning_work_all,
 )
 from dembound.kernels.sides import note_sides
 from dembound.kernels.step import clear, move_supported, note_after, note_before, note_top_speeds
@@ -35,48 +39,50 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
     for c in range(3):
         if body.free[c] == 0.0:
             u_next[c] = u[c]
-    k = supports.nodes.size
-    pulled, followed, moved = np.zeros((k, 3)), np.zeros((k, 3)), np.zeros((3, 3, k))
-    space = pulled, followed, moved, np.zeros((log.sides.kind.size, 4))
-    done, why = _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, *space)
+    turnings = () if turning is None else (turning,)
+    motions, given = (Motion(u, u_next, v), Motion(u_next, u, v)), Given.by(body, supports, log)
+    with entered(laws, ties, turnings, motions, given) as entries:
+        done, why = _advance(number, *entries)
     if done % 2 == 1:
         u[:] = u_next
     return done, why
 
 
 @njit(**FAST)
-def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed, moved, sums):
-    """The steps themselves, with work space; the last displacements may be in u_next."""
+def _advance(number, laws, ties, turning, motions, given):
+    """The steps themselves; the last displacements may be in u_next. For the arguments see `law.entered`."""
+    here, there, v = motion_at(motions[0])
+    body, supports, log, pulled, followed, moved, _ = given_at(given)
     steps = supports.drive.shape[0]
-    nodes, work = supports.nodes, log.work
-    here, there = u, u_next
+    work = log.work
     done = steps
     why = np.int64(DONE)
-    begin_all(laws)
+    begin_all(laws, motions[0], 0, number, given)
     for step in range(steps):
-        why = check_all(laws, here, there, v)
+        motion = motions[step % 2]
+        why = check_all(laws, motion, step, number + step, given)
         if why != DONE:
             done = step
             break
-        turned = turn(turning, here, v, body.load, body.step)
-        breaks = push_all(laws, here, there, v, number + step, body.step, work)
+        turned = turn_all(turning, motion, step, number + step, given)
+        breaks = push_all(laws, motion, step, number + step, given)
         if len(ties) > 0:
             clear(pulled)
-            across_all(ties, here, v, pulled)
+            across_all(ties, motion, step, number + step, given)
         note_before(step, here, v, log.probes, log.record, supports.twin, followed)
-        note_all(laws, step, here, log)
-        move_all(laws, here, there, v, body, nodes)
+        note_all(laws, motion, step, number + step, given)
+        move_all(laws, motion, step, number + step, given)
         move_supported(step, here, v, there, pulled, followed, supports, body, work, moved)
         if log.sides.every > 0:
             sides = log.sides  # the ledger is written after the last step only
             row = (number + step) // sides.every - sides.first if (number + step) % sides.every == 0 else -1
-            note_sides(step, row, step == steps - 1, here, supports, pulled, followed, moved, body, sides, sums)
+            note_sides(step, row, step == steps - 1, motion, given)
         note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
         if log.top_speed.size > 0:
             note_top_speeds(v, log.top_speed)
-        finish_all(laws, v, body, nodes, work)
+        finish_all(laws, motion, step, number + step, given)
         work[1, 5] = work[0, 5] + turned
-        work[0, 5] += turned + turning_work(turning, v, body.step)
+        work[0, 5] += turned + turning_work_all(turning, motion, step, number + step, given)
         log.supplied[0] = max(log.supplied[0], work[1, 0])
         here, there = there, here
         if breaks > 0:

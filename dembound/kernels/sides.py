@@ -11,6 +11,7 @@ from numba import njit
 
 from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST, FASTMATH, U
+from dembound.kernels.law import given_at, motion_at
 
 _REORDERED: Any = FAST | {"fastmath": FASTMATH | {"reassoc"}}
 """Compiler options of sums whose order of terms depends on their number alone."""
@@ -173,14 +174,15 @@ def _note_halves(body, sides, sums):
 
 @apart()
 @njit(**FAST)
-def note_sides(step, row, is_last, u, supports, across, followed, moved, body, sides, sums):
+def note_sides(step, row, is_last, motion, given):
     """Add the work of all sides in this step to sides.work[0], and write what else is recorded of them.
 
-    row : of sides.record, −1 where this step has none; is_last : whether sides.work[1] is needed. u : (3, n)
-    displacements before the step; across (k, 3) N forces of ties and followed (k, 3) m/s mean velocities of twins in
-    the step; moved (3, 3, k) velocities of the supported nodes before and after it, and all forces on them from
-    outside; sums (b, 4) : work space.
+    row : of sides.record, −1 where this step has none; is_last : whether sides.work[1] is needed. motion, given :
+    addresses of a law.Motion before the step, and of law.Given after it.
     """
+    u = motion_at(motion).u
+    body, supports, log, across, followed, moved, sums = given_at(given)
+    sides = log.sides
     for b in range(sides.kind.size):
         if sides.kind[b] != SPRING or row >= 0:
             force, power, before, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
