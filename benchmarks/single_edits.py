@@ -4,7 +4,7 @@
 
 The package is copied; for each edit of `single_edits.toml` the copy is edited, and its test run: the one that is known
 to fail, or with --all-tests the whole files of unit tests named like the module. Prints a line for each, and ends with
-1 if an edit with a known test is not caught. Edits in kernels compile them anew, 20 to 60 s each; --without-compiling
+1 if an edit with a known test is not caught. Edits in kernels compile them anew, 10 to 30 s each; --without-compiling
 runs them as Python, which the tests of kernels allow.
 """
 

@@ -1,10 +1,9 @@
 """Kernels that are compiled when they are first called, apart from those that call them, and shared out among threads.
 
-Numba copies the code of a called function into that of its caller, where it is optimised and translated anew: once for
-every combination of laws and ties of the loop, and at every level between, also where the case never calls it. Code
-that calls a kernel with `@apart` or `@in_chunks` contains a pointer, which is null until the first call asks for the
-kernel to be compiled, or loaded. Each call passes all arrays, some hundred nanoseconds, so only loops over particles,
-contacts or ties are worth it.
+Numba copies the code of a called function into that of its caller, where it is optimised and translated anew, at every
+level between, and also where the case never calls it. Code that calls a kernel with `@apart` or `@in_chunks` contains a
+pointer, which is null until the first call asks for the kernel to be compiled, or loaded. Each call passes all arrays,
+some hundred nanoseconds, so only loops over particles, contacts or ties are worth it.
 """
 
 import base64
@@ -36,11 +35,11 @@ _RESOLVE = "dembound_compiled_kernel"
 def _compiled(needed: bytes) -> int:
     """Address of the kernel with the module, name and types of arguments that `address` wrote; compiled, or loaded."""
     module, name, arguments, returned = pickle.loads(base64.b64decode(needed))
-    kernel = getattr(import_module(module), name)
+    kernel: Any = getattr(import_module(module), name)
     kernel = kernel if isinstance(kernel, Dispatcher) else kernel.__wrapped__
     with put_off():
         kernel.compile(arguments)
-    found = kernel.overloads[arguments]
+    found: Any = kernel.overloads[arguments]
     if found.signature.return_type != returned:
         raise TypeError(f"{module}.{name} returns {found.signature.return_type}, not {returned}")
     return int(found.library.get_pointer_to_function(found.fndesc.llvm_func_name))

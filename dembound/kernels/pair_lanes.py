@@ -209,7 +209,7 @@ def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limi
     )  # fmt: skip
 
 
-@njit(**FAST)
+@njit(**FAST, forceinline=True)  # called, it would call the functions above in turn: twice the time
 def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken, lost):
     """The pairs in blocks first to last − 1; lost (4,) as of contacts.push, taken (16,) is work space."""
     for k in range(4):
