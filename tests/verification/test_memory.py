@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 import tomli_w
 
+import dembound
 from dembound.kinds import load
 from dembound.running import plan
 
@@ -73,7 +74,7 @@ def measured(case: Path) -> float:
     "name", [pytest.param(n, marks=() if n == "medium, with pairs" else pytest.mark.slow) for n in CASES]
 )
 def test_computed_memory_is_that_of_the_run(name, tmp_path, monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    monkeypatch.setenv("PYTHONPATH", str(Path(dembound.__file__).parents[1]))
     case = tmp_path / "case.toml"
     case.write_text(tomli_w.dumps(CASES[name]))
     computed = plan(load(case)).stepped.largest_memory
