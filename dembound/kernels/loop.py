@@ -1,13 +1,12 @@
 """The loop: the step of central differences for any laws of the parts of a scene.
 
-It calls the kernels of laws and ties by their addresses (law.py), so that it is compiled once.
+It calls the kernels of laws and ties by their addresses (calls.py), so that it is compiled once.
 """
 
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import BROKE, DONE, FAST
-from dembound.kernels.law import (
+from dembound.kernels.calls import (
     Given,
     Motion,
     across_all,
@@ -23,6 +22,7 @@ from dembound.kernels.law import (
     turn_all,
     turning_work_all,
 )
+from dembound.kernels.common import BROKE, DONE, FAST
 from dembound.kernels.sides import note_sides
 from dembound.kernels.step import clear, move_supported, note_after, note_before, note_top_speeds
 
@@ -50,7 +50,7 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
 
 @njit(**FAST)
 def _advance(number, laws, ties, turning, motions, given):
-    """The steps themselves; the last displacements may be in u_next. For the arguments see `law.entered`."""
+    """The steps themselves; the last displacements may be in u_next. For the arguments see `calls.entered`."""
     here, there, v = motion_at(motions[0])
     body, supports, log, pulled, followed, moved, _ = given_at(given)
     steps = supports.drive.shape[0]

@@ -10,8 +10,8 @@ from typing import Any
 from numba import njit
 
 from dembound.kernels.apart import apart
+from dembound.kernels.calls import given_at, motion_at
 from dembound.kernels.common import FAST, FASTMATH, U
-from dembound.kernels.law import given_at, motion_at
 
 _REORDERED: Any = FAST | {"fastmath": FASTMATH | {"reassoc"}}
 """Compiler options of sums whose order of terms depends on their number alone."""
@@ -178,7 +178,7 @@ def note_sides(step, row, is_last, motion, given):
     """Add the work of all sides in this step to sides.work[0], and write what else is recorded of them.
 
     row : of sides.record, −1 where this step has none; is_last : whether sides.work[1] is needed. motion, given :
-    addresses of a law.Motion before the step, and of law.Given after it.
+    addresses of a calls.Motion before the step, and of calls.Given after it.
     """
     u = motion_at(motion).u
     body, supports, log, across, followed, moved, sums = given_at(given)
