@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from dembound.accuracy.cause import CONTINUUM, GRID, NEAR, STEP, WALLS, Cause
-from dembound.accuracy.delays import error_of_delay
+from dembound.accuracy.delays import error_of_delay, error_of_steps
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
 from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_error
@@ -144,7 +144,7 @@ class Formulas:
         if not any(self._ways(own) for own in motions.values()):
             yield Cause.unknown("grid and time step", "waves start everywhere")
             return
-        words = "by the dispersion of plane waves on the way from where waves start"
+        words = "by the dispersion of plane waves on the way from where waves start, and by velocities of half steps"
         whole, grid = (
             {name: self._delayed(own, step) for name, own in motions.items()} for step in (self.time_step, 0.0)
         )
@@ -166,6 +166,8 @@ class Formulas:
             parts = error_of_delay(own.time, (own.values["velocity"] @ way.moves)[:, None], delay)
             for quantity, part in zip(MOTIONS, parts, strict=True):
                 errors[quantity] += part * way.moves
+        for quantity, part in zip(MOTIONS, error_of_steps(own.time, own.values["velocity"], step), strict=True):
+            errors[quantity] += part
         return errors
 
     @cached_property

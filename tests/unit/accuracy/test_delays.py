@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.accuracy.delays import error_of_delay
+from dembound.accuracy.delays import error_of_delay, error_of_steps
 
 TIME = np.linspace(0.0, 4.0, 801)
 LATE = 0.05
@@ -51,3 +51,19 @@ def test_a_record_may_end_within_a_wave(last, off):
     velocity, _ = error_of_delay(time, width * np.logaddexp(0.0, x)[:, None], lambda omega: kappa * omega**2)
 
     assert np.linalg.norm(velocity[:, 0] - expected) < off * np.linalg.norm(expected)
+
+
+def test_steps_make_velocities_smaller_and_displacements_larger():
+    # a mass that is driven by the velocity v at half steps: u grows by Δt v(t + Δt/2), and the mean of two half steps
+    # is recorded, so that what is found is exact but for (ωΔt)⁴, 4e-4 of it here
+    step, omega = 0.2, 1.0
+    time = np.linspace(0.0, 40.0, 201)
+    halves = np.cos(omega * (time + 0.5 * step))
+    recorded = 0.5 * (halves[1:] + halves[:-1])
+    displacement = np.cumsum(step * halves)[:-1]
+    exact = np.cos(omega * time)[1:], np.sin(omega * time)[1:] / omega
+    velocity_error, displacement_error = error_of_steps(time[1:], recorded[:, None], step)
+    inside = slice(2, -2)  # differences at the ends are one-sided
+    drift = displacement - exact[1] - displacement_error[:, 0]  # a constant, as u begins with half a step
+    np.testing.assert_allclose(velocity_error[inside, 0], (recorded - exact[0])[inside], atol=0.04 * step**2 / 8.0)
+    assert np.ptp(drift[inside]) < 0.04 * step**2 / 24.0
