@@ -95,8 +95,8 @@ def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, fl
     if table.is_outside:
         beneath = scene.outside if scene.foot is None else scene.foot
         assert beneath is not None
-        begins = dict(zip(("left", "bottom", "right", "top"), beneath.box, strict=True))[side]
-        return dict.fromkeys(motions, -_inwards(side) * begins)
+        number = ("left", "bottom", "right", "top").index(side)
+        return dict.fromkeys(motions, -_inwards(side) * (beneath.box[number] - scene.case.box[number]))
     end = _Strip.of(scene.case, side)
     if not table.factors:
         return {motion: -end.depth(motion, rigid=True) for motion in motions}

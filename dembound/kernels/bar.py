@@ -10,8 +10,9 @@ loop reads contiguous numbers, without lists of families. Runs of nodes that hav
 """
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 
+from dembound.kernels.apart import apart
 from dembound.kernels.bar_contacts import close_contacts, note_approach, note_impacts
 from dembound.kernels.bar_cracks import soften
 from dembound.kernels.common import DONE, FAST, FASTMATH, REST, TRIGGERED, U
@@ -125,6 +126,7 @@ def _triggers(u, bonds):
     return False
 
 
+@apart(types.float64)
 @njit(**FAST)
 def break_at_limit(number, u, v, step, bonds):
     """Break all springs and bonds at their limit for good (L eq. 6), in step `number`; returns their energy (J).

@@ -13,8 +13,9 @@ changes: then no change adds energy, and cracks that open and close never make a
 """
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST
 
 WHOLE, OPENING = -1, -2
@@ -121,6 +122,7 @@ def _begin_row(u, row, stiffness, broken, number, step, soft):
         left = here
 
 
+@apart(types.float64)
 @njit(**FAST)
 def soften(number, u, v, step, bonds):
     """Adjust all bonds that open, and those that begin to, in step `number`; returns the energy (J) they take.

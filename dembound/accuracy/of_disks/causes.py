@@ -42,7 +42,7 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
         except DemboundError as error:
             reason = "; ".join(str(error).splitlines())
     unknown = [Cause.unknown(SIDES, reason)] if reason else []
-    return Causes([*unknown, *Formulas(scene, time_step).causes(recorded)], [], entry_notes(scene))
+    return Causes([*unknown, *Formulas(scene, time_step).causes(recorded)], _held(scene.case), entry_notes(scene))
 
 
 def entry_notes(scene: DiskScene) -> list[str]:
@@ -72,7 +72,8 @@ def causes_of_choice(
 
     ground : those of `of_ground`, if they are known.
     """
-    found = Causes(ground or of_ground(companions, scene, time_step), motions=companions.recorded(scene))
+    ground = ground or of_ground(companions, scene, time_step)
+    found = Causes(ground, _held(scene.case), motions=companions.recorded(scene))
     if sides_of_pair(scene.case):
         sides = of_sides(companions, scene, time_step, wider)
         found += Causes([sides], _breaks(companions), _echoes(companions), 0.0, companions.echo_free)
@@ -91,6 +92,17 @@ def of_sides(companions: Companions, scene: DiskScene, time_step: float, wider: 
     """What sides that absorb add; see `Companions.of_sides`."""
     parts = companions.of_sides(scene.case, scene, time_step, wider)
     return Cause(SIDES, companions.words, parts, "companion", factor=USUAL)
+
+
+def _held(case: DiskCase) -> list[str]:
+    """A line on sides of the problem itself that hold disks at their centres, if there are any."""
+    held = [
+        side
+        for side, table in case.boundary.items()
+        if not (table.is_artificial or table.is_free or table.is_mirror or table.is_periodic or table.waves)
+    ]
+    words = "holds disks at centres, inside of its plane, so that waves come back a little early, which is not counted"
+    return [f"{' and '.join(held)}: {words}"] if held else []
 
 
 def _breaks(companions: Companions) -> list[str]:

@@ -17,6 +17,7 @@ from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_nea
 from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, Frequencies, delay_of, frequencies_of
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
+from dembound.disks.entry import Entry, entries_of
 from dembound.disks.reports.continuum_errors import CONTINUUM_FACTOR, expected_errors
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import sources_of
@@ -58,6 +59,13 @@ class Formulas:
             table = self.scene.case.side(side)
             if table.is_artificial and not table.absorbs:
                 reason = f'"{table.type}" has no dashpots, by which its reflection would be known'
+                yield Cause.unknown(f"{side} side", reason)
+            if not table.factors and not table.is_outside and not self.scene.case.side(OPPOSITE[side]).is_artificial:
+                parts = {name: self._come_back_early(own, side) for name, own in motions.items()}
+                words = "by waves that come back to disks that are moved at their centres"
+                yield Cause(f"{side} side", words, parts, of_disks=True, factor=USUAL)
+            if table.factors and table.dashpots_alone() != table:
+                reason = "its springs send back waves, which check computes and an estimate does not"
                 yield Cause.unknown(f"{side} side", reason)
             if table.factors:
                 shares = reflected(self.scene, side, self.time_step)
@@ -138,6 +146,28 @@ class Formulas:
                 back = 0.0 if far.is_artificial else np.interp(later, own.time, values, left=0.0)
                 errors[quantity][:, column] = back - kept[quantity]
         return dict(errors)
+
+    def _come_back_early(self, own: History, side: str) -> dict[str, np.ndarray | float]:
+        """What is added by waves that come back to a side whose disks are moved at a depth s inside of its plane.
+
+        Of plane waves between this side and the far one, which sends back all. They go round in T = 2H/c, less 2s/c on
+        disks: v(t) = w(t) ± v(t − T) with the wave w that comes in, − beside a free surface. So the error of disks is
+        e(t) = ±(2s/c) dv/dt(t − T) ± e(t − T). That w itself comes early by s/c is no error (entry.py).
+        """
+        case, errors = self.scene.case, {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
+        sign = -1.0 if case.side(OPPOSITE[side]).is_free else 1.0
+        for motion, entry in self._entries.get(side, {}).items():
+            column = axis_of_motion(side, motion)
+            round_trip, early = 2.0 * case.size[normal_axis(side)] / entry.speed, -2.0 * entry.delay
+            for quantity, total in errors.items():
+                rate = np.gradient(own.values[quantity][:, column], own.time)
+                for k in range(1, 1 + int((own.time[-1] - own.time[0]) / round_trip)):
+                    total[:, column] += sign**k * early * np.interp(own.time - k * round_trip, own.time, rate, left=0.0)
+        return dict(errors)
+
+    @cached_property
+    def _entries(self) -> dict[str, dict[Motion, Entry]]:
+        return entries_of(self.scene)
 
     def _delays(self, motions: Motions) -> Iterator[Cause]:
         """The dispersion of the packing, and of the time step."""

@@ -94,6 +94,8 @@ def test_through_a_continuum_waves_enter_where_it_ends() -> None:
     assert found.late == pytest.approx(-scene.outside.box[1])
     assert found.late == pytest.approx(0.25, abs=0.02)  # D/2 of a row
     assert found.delay == pytest.approx(found.late / scene.ground.wave_speeds(1)[0])
+    moved = build(small(tables | {"packing": tables["packing"] | {"origin": [3.0, -32.0]}}))  # type: ignore[arg-type]
+    assert entries_of(moved)["bottom"]["p"].late == pytest.approx(found.late)
 
 
 def test_without_driven_sides_nothing_is_late() -> None:

@@ -1,5 +1,7 @@
 """Causes of errors of disks: driven sides, delays, a continuum, and what is not estimated."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_cases import GRAINS, SURROUNDED, Tables, small
@@ -9,7 +11,10 @@ from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.causes import causes_of_run
 from dembound.accuracy.of_disks.formulas import Formulas, reflected_motion
 from dembound.accuracy.of_disks.matched_sides import Reflected
+from dembound.accuracy.runner import measure
+from dembound.disks.entry import late_by
 from dembound.disks.scene import build
+from dembound.running import Progress
 
 HEIGHT, SPEED, PERIOD = 20.0, 1000.0, 0.02
 TIME = np.linspace(0.0, 0.08, 401)
@@ -120,3 +125,39 @@ def test_what_waves_that_start_everywhere_or_jump_do_is_not_estimated():
     jumping["load"] = [{"name": "push", "force": [0.0, -1.0], "position": [6.0, 6.0], "wave": "push"}]
     found = causes_of_run(small(jumping), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
     assert [each.how for each in found.found if each.name == "continuum"] == ["unknown"]
+
+
+def test_waves_that_come_back_to_prescribed_disks_are_early() -> None:
+    # The column of a finer lattice errs by the same, D'/D times as much, so that the difference of both is 1 - D'/D of
+    # the error. What the first order leaves is ωτ/2 of it, at most 0.24: τ = 5 · 2s/c = 22 ms after five round trips
+    tables = {
+        "packing": {"pattern": "A", "size": [2.0, 12.0], "radius": 0.5},
+        "material": {"density": 1800.0, "p_wave_speed": 400.0},
+        "boundary": {side: {"type": "periodic"} for side in ("left", "right")}
+        | {"bottom": {"type": "velocity", "wave_s": "q"}},
+        "wave": {"q": {"type": "cubic_spline", "amplitude": 0.1, "period": 0.28}},
+        "monitor": [{"name": "top", "position": [1.5, 11.5]}],
+        "run": {"duration": 0.6},
+    }
+    coarse, fine = (small(tables, changes={"packing.radius": radius}) for radius in (0.5, 0.125))
+    motions = [measure(case, Progress())[0].motions["top"] for case in (coarse, fine)]
+    late = [late_by(build(case)) for case in (coarse, fine)]
+    own = replace(motions[0], values={q: motions[0].values[q][:, :2] for q in ("velocity", "displacement")})
+    (found,) = [
+        each for each in causes_of_run(coarse, {"top": own}, 1e-4, 1e6, 1e6).found if each.name == "bottom side"
+    ]
+    assert found.of_disks
+    for quantity in ("velocity", "displacement"):
+        other = motions[1].at(own.time - late[0] + late[1]).values[quantity][:, 0]
+        inside = (own.time > 0.02) & (own.time < 0.58)
+        difference = (own.values[quantity][:, 0] - other)[inside]
+        expected = 0.75 * np.asarray(found.parts["top"][quantity])[:, 0][inside]
+        assert np.linalg.norm(difference - expected) < 0.24 * np.linalg.norm(difference)
+
+
+def test_springs_of_a_driven_side_and_held_sides_of_the_problem_are_named() -> None:
+    springs = {"type": "viscoelastic_input", "wave_p": "pulse", "distance": 40.0}
+    case = small(LAYER | {"boundary": {"bottom": springs, "left": {"type": "roller", "artificial": False}}})
+    found = causes_of_run(case, recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert any(each.name == "bottom side" and "springs" in each.words for each in found.unknown)
+    assert any(line.startswith("left: holds disks at centres") for line in found.limits)
