@@ -64,7 +64,11 @@ def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: S
     planned: Plan[DiskScene] = plan(case)
     most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
     companions = Companions(case, planned.scene, planned.time_step, most, Runner())
-    moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
+    try:
+        moved = [own.values["velocity"] for own in companions.recorded(companions.scene).values()]
+    except CaseError as error:
+        what = f"advise: the same with disks of {companions.diameter:.4g} m, which it has to run, is refused"
+        raise CaseError([f"{what}: {problem}" for problem in error.problems], case.name) from error
     if not _is_reached(planned) or not any(map(np.any, moved)):
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
     given = _given(companions, of, planned_cost(planned).seconds)

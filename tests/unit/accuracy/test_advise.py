@@ -166,3 +166,12 @@ def test_what_cannot_be_chosen_for_is_refused() -> None:
     ):
         with pytest.raises(CaseError, match=said):
             advise(small(tables), (bound,), kept=kept)
+
+
+def test_what_is_refused_with_larger_disks_is_said_to_be_so(monkeypatch) -> None:
+    def refused(*_: Any) -> Any:
+        raise CaseError(["hole: is too near to a corner"])
+
+    monkeypatch.setattr(of_disks.Companions, "recorded", refused)
+    with pytest.raises(CaseError, match=r"^advise: the same with disks of \d\.?\d* m, which .* hole: is too near"):
+        advise(bar(), (0.03,))
