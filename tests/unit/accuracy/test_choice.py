@@ -1,5 +1,7 @@
 """Choices: parsed from options, combined, named, and checked."""
 
+from dataclasses import replace
+
 import pytest
 
 from dembound.accuracy.choice import choices_of, combinations, digest, parsed
@@ -61,6 +63,9 @@ def test_invalid_choices_are_left_out_with_a_line_each(bar) -> None:
 def test_digests_differ_with_results_and_with_the_contents_of_files(bar, tmp_path) -> None:
     assert digest(bar()) == digest(bar({"chart": {"repeats": 7}, "title": "another"}))
     assert digest(bar()) != digest(bar({"run.duration": 0.011}))
+    still = bar({"static.stress": [-1e5, -1e5, 0.0], "boundary": {}, "wave": {}, "material.fric": 0.5})
+    assert digest(bar()) != digest(still)
+    assert digest(still) == digest(replace(still, text=still.text + "\n[static.boundary]\n"))  # which says nothing more
     path, found = tmp_path / "wave.txt", []
     for crest in (1.0, 2.0):
         path.write_text(f"0.0 0.0\n0.005 {crest}\n0.01 0.0\n", encoding="utf-8")
