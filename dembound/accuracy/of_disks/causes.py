@@ -101,7 +101,7 @@ def _held(case: DiskCase) -> list[str]:
         for side, table in case.boundary.items()
         if not (table.is_artificial or table.is_free or table.is_mirror or table.is_periodic or table.waves)
     ]
-    words = "holds disks at centres, inside of its plane, so that waves come back a little early, which is not counted"
+    words = "disks are held at centres, inside of the plane, so that waves come back a little early: not counted"
     return [f"{' and '.join(held)}: {words}"] if held else []
 
 

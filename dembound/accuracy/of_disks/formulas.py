@@ -155,9 +155,10 @@ class Formulas:
         e(t) = ±(2s/c) dv/dt(t − T) ± e(t − T). That w itself comes early by s/c is no error (entry.py).
         """
         case, errors = self.scene.case, {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
-        sign = -1.0 if case.side(OPPOSITE[side]).is_free else 1.0
+        far = case.side(OPPOSITE[side])
         for motion, entry in self._entries.get(side, {}).items():
             column = axis_of_motion(side, motion)
+            sign = -1.0 if far.is_free or (far.is_mirror and motion == "s") else 1.0
             round_trip, early = 2.0 * case.size[normal_axis(side)] / entry.speed, -2.0 * entry.delay
             for quantity, total in errors.items():
                 rate = np.gradient(own.values[quantity][:, column], own.time)

@@ -160,4 +160,4 @@ def test_springs_of_a_driven_side_and_held_sides_of_the_problem_are_named() -> N
     case = small(LAYER | {"boundary": {"bottom": springs, "left": {"type": "roller", "artificial": False}}})
     found = causes_of_run(case, recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
     assert any(each.name == "bottom side" and "springs" in each.words for each in found.unknown)
-    assert any(line.startswith("left: holds disks at centres") for line in found.limits)
+    assert any(line.startswith("left: disks are held at centres") for line in found.limits)
