@@ -15,6 +15,9 @@ SIDES, GRID, STEP, CONTINUUM, ENTRY, WALLS, NEAR = (
 )
 """Names of causes."""
 
+USUAL = 1.4
+"""Factor of formulas whose errors were at most 1.39 times as large in 100 scenes (docs/errors.md)."""
+
 QUANTITIES = ("velocity", "displacement", "stress")
 """Quantities whose errors are estimated; stress of bars only."""
 

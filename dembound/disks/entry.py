@@ -14,6 +14,7 @@ begins, and s, where the line through the displacements inside would meet that o
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import NamedTuple
@@ -97,16 +98,28 @@ def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, fl
         assert beneath is not None
         number = ("left", "bottom", "right", "top").index(side)
         return dict.fromkeys(motions, -_inwards(side) * (beneath.box[number] - scene.case.box[number]))
-    end = _Strip.of(scene.case, side)
     if not table.factors:
-        return {motion: -end.depth(motion, rigid=True) for motion in motions}
+        return {motion: -depth for motion, depth in depths_held(scene, side).items() if motion in motions}
+    end = _Strip.of(scene.case, side)
     factors = factors_in(scene, side)
     found = {}
     for motion in motions:
         matched = homogenised_beta(scene, side, motion)
         share = factors[motion] / (factors[motion] + matched)
-        found[motion] = -(share * end.depth(motion, rigid=False) + (1.0 - share) * end.mass_begins)
+        found[motion] = -(share * end.depth(motion) + (1.0 - share) * end.mass_begins)
     return found
+
+
+def depths_held(scene: DiskScene, side: str) -> dict[Motion, float]:
+    """The depth s (m) of those waves along the normal of a side whose motion it prescribes."""
+    axis = normal_axis(side)
+    held = scene.case.side(side).prescribed(axis)
+    kinds: tuple[Motion, ...] = ("p", "s")
+    motions = [motion for motion in kinds if {axis_of_motion(side, motion)} <= {*held} - {*scene.ground.held}]
+    if not motions:
+        return {}
+    end = _Strip.of(scene.case, side)
+    return {motion: end.depth(motion, held) for motion in motions}
 
 
 def _inwards(side: str) -> float:
@@ -164,11 +177,12 @@ class _Strip:
         """Length of a third, m."""
         return float(self.scene.assembly.size[self._axis]) / 3.0
 
-    def depth(self, motion: Motion, *, rigid: bool) -> float:
+    def depth(self, motion: Motion, held: Sequence[int] = ()) -> float:
         """s: depth (m) at which the line through the displacements inside meets that of the disks at the side.
 
-        The far third is pulled along its whole mass, the disks at the side are held (rigid), or pulled the other way by
-        the widths of their dashpots, whose mean displacement counts.
+        held : components of the disks at the side that are prescribed. The far third is pulled along its whole mass,
+        the disks at the side are held, or without that pulled the other way by the widths of their dashpots, whose mean
+        displacement counts.
         """
         component = axis_of_motion(self.side, motion)
         scene, edge = self.scene, self.scene.edges[self.side]
@@ -179,13 +193,13 @@ class _Strip:
         free = np.ones((3, count), dtype=bool)
         free[list(scene.ground.held)] = False
         weights = edge.widths / edge.widths.sum()
-        if rigid:
-            free[:2, edge.nodes] = False
+        if held:
+            free[np.ix_(np.array(held), edge.nodes)] = False
         else:
             force[component, edge.nodes] -= across * weights
             free[:2, np.flatnonzero(far)[0]] = False
         moved = self._moved(force, free)[component]
-        at_side = 0.0 if rigid else float(weights @ moved[edge.nodes])
+        at_side = 0.0 if held else float(weights @ moved[edge.nodes])
         mean = partial(np.average, weights=scene.mass[middle])
         strain = self._compliance(component)
         return float(mean(self._depths[middle]) - (mean(moved[middle]) - at_side) / strain)

@@ -18,8 +18,10 @@ from dembound.accuracy.of_disks.places import middle_of_loads, patch_around, pla
 from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import SIDES, is_far, normal_axis
 from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.symmetry import Symmetry
 from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts.breaks import BREAK_TIME
+from dembound.disks.entry import depths_held
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
@@ -52,6 +54,7 @@ class Companions:
     runner: Runner = field(default_factory=Runner)
     _made: dict[tuple[str, float], Coarser] = field(default_factory=dict, init=False, repr=False)
     _behind: dict[str, Motions] = field(default_factory=dict, init=False, repr=False)
+    _mirrored: dict[str, Motions] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def pair(self) -> Pair | None:
@@ -189,6 +192,33 @@ class Companions:
                 for q, values in own.items():
                     found[name][q] = found[name][q] + towards * (away[name][q] - values)
         return found
+
+    def of_held(self, scene: DiskScene, side: str) -> dict[str, dict[str, np.ndarray | float]]:
+        """What a side adds that holds disks at a depth s inside of its plane, (k, 2), by monitor and quantity.
+
+        Companions are lattices, which hold disks of the diameter D' at D'/2. One more row of them puts these as far
+        outside of the plane, so that the difference v(D'/2) - v(-D'/2) is the change over D' about the plane. Where
+        motion along the side is free, mass begins at the plane and must stay there: a mirror plane holds what the side
+        holds, at the plane, and the difference is that of D'/2. To the first order the error is s over that of it, with
+        the mean s of P and S waves, of which motion is the sum: on a lattice D/2 and 0.77 D at a fixed side.
+        """
+        places, table = self._places(scene), self.case.side(side)
+        far, cell = self._motion(self.far, places), self._lattice.ground.brick.mean_diameter
+        depths = depths_held(scene, side).values()
+        if {0, 1} & {*table.prescribed(normal_axis(side))} == {normal_axis(side)}:
+            other, way = self._with_mirror_at(side), 0.5 * cell
+        else:
+            other, way = self._with_row_at(side), cell
+        there = self._motion(other, places)
+        share = sum(depths) / (len(depths) * way)
+        return {name: {q: share * (own[q] - there[name][q]) for q in QUANTITIES} for name, own in far.items()}
+
+    def _with_mirror_at(self, side: str) -> Motions:
+        """The motion of the disks of all patches with far sides and a mirror plane at a side that stays."""
+        if side not in self._mirrored:
+            sides = {**self._own.boundary, side: Symmetry(type="symmetry")}
+            self._mirrored[side] = self._run(self._with_far_sides(replace(self._own, boundary=sides)))
+        return self._mirrored[side]
 
     def _with_row_at(self, side: str) -> Motions:
         """The motion of the disks of all patches with far sides and one more row of disks at a side that stays."""

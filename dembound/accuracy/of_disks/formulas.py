@@ -9,15 +9,15 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.cause import CONTINUUM, GRID, NEAR, STEP, WALLS, Cause
+from dembound.accuracy.cause import CONTINUUM, GRID, NEAR, STEP, USUAL, WALLS, Cause
 from dembound.accuracy.delays import error_of_delay, error_of_steps
 from dembound.accuracy.history import History, Motions
+from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
 from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_error
 from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, Frequencies, delay_of, frequencies_of
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
-from dembound.disks.entry import Entry, entries_of
 from dembound.disks.reports.continuum_errors import CONTINUUM_FACTOR, expected_errors
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import sources_of
@@ -25,9 +25,6 @@ from dembound.motion.paths import Source
 
 MOTIONS = ("velocity", "displacement")
 """Quantities of disks."""
-
-USUAL = 1.4
-"""Factor of formulas whose errors were at most 1.39 times as large in 100 scenes (docs/errors.md)."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +42,7 @@ class Formulas:
             *self._walls(motions),
             *self._near(motions),
             *self._edges(motions),
+            *self.held_sides.causes(motions),
         ]
 
     def without_motion(self, names: Sequence[str]) -> list[Cause]:
@@ -60,10 +58,6 @@ class Formulas:
             if table.is_artificial and not table.absorbs:
                 reason = f'"{table.type}" has no dashpots, by which its reflection would be known'
                 yield Cause.unknown(f"{side} side", reason)
-            if not table.factors and not table.is_outside and not self.scene.case.side(OPPOSITE[side]).is_artificial:
-                parts = {name: self._come_back_early(own, side) for name, own in motions.items()}
-                words = "by waves that come back to disks that are moved at their centres"
-                yield Cause(f"{side} side", words, parts, of_disks=True, factor=USUAL)
             if table.factors and table.dashpots_alone() != table:
                 reason = "its springs send back waves, which check computes and an estimate does not"
                 yield Cause.unknown(f"{side} side", reason)
@@ -128,10 +122,11 @@ class Formulas:
         """What a driven side keeps back of its waves, and sends back of what returns to it.
 
         A side that reflects R lets 1 − R of its wave in. What is sent back is the motion again, after the way to the
-        far side, if that is a free surface or another one that sends back everything; else nothing comes back that
-        counts. What is kept back out of phase is the time at which the wave enters, which is no error (entry.py).
+        far side, if that is a free surface or another one that sends back everything, with its sign; else nothing that
+        counts comes back. What is kept back out of phase is the time at which the wave enters, which is no error
+        (entry.py).
         """
-        axis, far = normal_axis(side), self.scene.case.side(OPPOSITE[side])
+        axis = normal_axis(side)
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
         for motion in waves:
             column = axis_of_motion(side, motion)
@@ -139,36 +134,18 @@ class Formulas:
             if motion not in shares or not math.isfinite(speed):
                 continue
             later = own.time - 2.0 * self.scene.case.size[axis] / speed
-            share = shares[motion]
+            share, sign = shares[motion], self.held_sides.reflects(OPPOSITE[side], motion)
             sent = reflected_motion(own, column, share)
             kept = reflected_motion(own, column, Reflected(abs(share.dashpots), share.dashpots))
             for quantity, values in sent.items():
-                back = 0.0 if far.is_artificial else np.interp(later, own.time, values, left=0.0)
+                back = sign * np.interp(later, own.time, values, left=0.0)
                 errors[quantity][:, column] = back - kept[quantity]
         return dict(errors)
 
-    def _come_back_early(self, own: History, side: str) -> dict[str, np.ndarray | float]:
-        """What is added by waves that come back to a side whose disks are moved at a depth s inside of its plane.
-
-        Of plane waves between this side and the far one, which sends back all. They go round in T = 2H/c, less 2s/c on
-        disks: v(t) = w(t) ± v(t − T) with the wave w that comes in, − beside a free surface. So the error of disks is
-        e(t) = ±(2s/c) dv/dt(t − T) ± e(t − T). That w itself comes early by s/c is no error (entry.py).
-        """
-        case, errors = self.scene.case, {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
-        far = case.side(OPPOSITE[side])
-        for motion, entry in self._entries.get(side, {}).items():
-            column = axis_of_motion(side, motion)
-            sign = -1.0 if far.is_free or (far.is_mirror and motion == "s") else 1.0
-            round_trip, early = 2.0 * case.size[normal_axis(side)] / entry.speed, -2.0 * entry.delay
-            for quantity, total in errors.items():
-                rate = np.gradient(own.values[quantity][:, column], own.time)
-                for k in range(1, 1 + int((own.time[-1] - own.time[0]) / round_trip)):
-                    total[:, column] += sign**k * early * np.interp(own.time - k * round_trip, own.time, rate, left=0.0)
-        return dict(errors)
-
     @cached_property
-    def _entries(self) -> dict[str, dict[Motion, Entry]]:
-        return entries_of(self.scene)
+    def held_sides(self) -> HeldSides:
+        """Sides of the problem itself that hold disks."""
+        return HeldSides(self.scene)
 
     def _delays(self, motions: Motions) -> Iterator[Cause]:
         """The dispersion of the packing, and of the time step."""

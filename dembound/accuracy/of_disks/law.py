@@ -20,12 +20,11 @@ from functools import partial
 
 import numpy as np
 
-from dembound.accuracy.cause import Cause, share_of
+from dembound.accuracy.cause import USUAL, Cause, share_of
 from dembound.accuracy.delays import error_of_delay
 from dembound.accuracy.differences import keeps
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.formulas import USUAL
 from dembound.accuracy.of_disks.pair import ratios
 from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step

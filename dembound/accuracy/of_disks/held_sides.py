@@ -1,0 +1,146 @@
+"""Waves that come back early from sides of the problem itself that hold disks, at their centres.
+
+The rock is held at the plane of a side, long waves on disks meet it at a depth s inside (entry.py; D/2 for P waves on a
+square lattice), so that what comes back at normal incidence has gone 2s less. Where a side lets motion free, as a
+roller does along itself, mass begins at the plane and nothing is early.
+
+Plane waves between a driven side at x = 0 and the far one at H, which reflect r₀ and r₁ of the velocity, −1 where they
+hold it and 1 where they let it free: with T = 2H/c and the wave a(t) as it comes to a monitor at x for the first time,
+
+    v(t) = a(t) + r₁ a(t') + r₀r₁ v(t − T),   t' = t − 2(H − x)/c.
+
+On disks the way to the far side and back is shorter by 2s₁, a round trip by 2(s₀ + s₁), so that the error is
+
+    e(t) = r₁ [a(t' + 2s₁/c) − a(t')] + r₀r₁ [2(s₀ + s₁)/c dv/dt(t − T) + e(t − T)].
+
+It is linear in s₀ and s₁, a part of each side. That a is early by s₀/c is no error (entry.py). Dashpots and a continuum
+at x = 0 have r₀ = 0: what they send back is another cause.
+
+Other waves, of loads, scattered by holes or along a side, come back from all directions: what one row of larger disks
+more, or a mirror plane, changes there is found with companions (`Companions.of_held`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.accuracy.cause import USUAL, Cause
+from dembound.accuracy.history import History, Motions
+from dembound.boundaries import SIDES, Motion, axis_of_motion, normal_axis
+from dembound.boundaries.sides import OPPOSITE, plane_of
+from dembound.disks.entry import Entry, depths_held, entries_of
+from dembound.disks.scene import DiskScene
+
+MOTIONS = ("velocity", "displacement")
+"""Quantities of disks."""
+
+
+@dataclass(frozen=True)
+class HeldSides:
+    """The sides of a scene that are part of the problem and hold disks."""
+
+    scene: DiskScene
+
+    @cached_property
+    def names(self) -> list[str]:
+        """The sides."""
+        return [side for side in SIDES if self._holds(side)]
+
+    @property
+    def among_others(self) -> list[str]:
+        """Those that meet other waves than plane ones along their normal, and do not move themselves."""
+        case = self.scene.case
+        return [side for side in self.names if side not in case.driving and not self._meets_only_plane_waves(side)]
+
+    @property
+    def driven_under_loads(self) -> list[str]:
+        """Those that move and meet waves of loads, too, whose early return has no formula."""
+        is_loaded = any(load.wave for load in self.scene.case.load)
+        return [side for side in self.names if side in self.scene.case.driving and is_loaded]
+
+    def causes(self, motions: Motions) -> Iterator[Cause]:
+        """The errors of those that meet plane waves, by formula."""
+        for side in self.names:
+            if self._returns_plane_waves(side):
+                parts = {name: self._of_plane_waves(own, side) for name, own in motions.items()}
+                words = "by plane waves that come back from disks that are held at their centres"
+                yield Cause(f"{side} side", words, parts, of_disks=True, factor=USUAL)
+
+    def _prescribed(self, side: str) -> tuple[int, ...]:
+        return self.scene.case.side(side).prescribed(normal_axis(side))
+
+    def _holds(self, side: str) -> bool:
+        moving = {0, 1} - {*self.scene.ground.held}
+        return bool(moving & {*self._prescribed(side)}) and not self.scene.case.side(side).is_artificial
+
+    def _returns_plane_waves(self, side: str) -> bool:
+        """Whether plane waves come back between it and the side across, and its error is not found with companions."""
+        if side in self.among_others:
+            return False
+        return any(not self.scene.case.side(OPPOSITE[driven]).is_artificial for driven in self._driven(side))
+
+    def _meets_only_plane_waves(self, side: str) -> bool:
+        """Whether all motion is that of waves that enter at this side or across, or which it does not hold."""
+        case = self.scene.case
+        if not case.driving or case.incident is not None or case.hole or any(load.wave for load in case.load):
+            return False
+        axis, held = normal_axis(side), {*self._prescribed(side)}
+        return all(
+            normal_axis(driven) == axis or not held & {axis_of_motion(driven, motion) for motion in waves}
+            for driven, waves in case.driving.items()
+        )
+
+    def _driven(self, side: str) -> list[str]:
+        """Which are driven of a side and that across."""
+        return [each for each in (side, OPPOSITE[side]) if each in self._entries]
+
+    @cached_property
+    def _entries(self) -> dict[str, dict[Motion, Entry]]:
+        return entries_of(self.scene)
+
+    @cached_property
+    def _depths(self) -> dict[str, dict[Motion, float]]:
+        return {side: depths_held(self.scene, side) for side in self.names}
+
+    def reflects(self, side: str, motion: Motion) -> float:
+        """Reflection of the velocity of waves along the normal: of sides that send back all, 0 of others."""
+        table = self.scene.case.side(side)
+        if table.is_artificial or table.factors:
+            return 0.0
+        held = motion == "p" if table.is_mirror else axis_of_motion(side, motion) in self._prescribed(side)
+        return -1.0 if held else 1.0
+
+    def _of_plane_waves(self, own: History, side: str) -> dict[str, np.ndarray | float]:
+        """What the depth of a side adds to plane waves between it and that across."""
+        errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
+        for driven in self._driven(side):
+            for motion, entry in self._entries[driven].items():
+                if motion in self._depths[side]:
+                    self._add_plane_wave(errors, own, side, driven, motion, entry)
+        return dict(errors)
+
+    def _add_plane_wave(
+        self, errors: dict[str, np.ndarray], own: History, side: str, driven: str, motion: Motion, entry: Entry
+    ) -> None:
+        """Add what the depth of a side does to a wave that enters at this side, or at that across."""
+        axis, far, case = normal_axis(driven), OPPOSITE[driven], self.scene.case
+        column, wave = axis_of_motion(driven, motion), case.wave[case.driving[driven][motion]]
+        early, round_trip = (2.0 * way / entry.speed for way in (self._depths[side][motion], case.size[axis]))
+        to_monitor = abs(float(own.place[axis]) - plane_of(driven, case.box)) / entry.speed
+        back = self.reflects(far, motion)
+        again = back * self.reflects(driven, motion)
+        trips = int((own.time[-1] - own.time[0]) / round_trip) if again else 0
+        for quantity, total in errors.items():
+            arriving = wave.velocity if quantity == "velocity" else wave.displacement
+            rate = np.gradient(own.values[quantity][:, column], own.time)
+            for k in range(1 + trips):
+                time = own.time - k * round_trip
+                if k > 0:
+                    total[:, column] += again**k * early * np.interp(time, own.time, rate, left=0.0)
+                if side == far:
+                    first = time - entry.delay - (round_trip - to_monitor)
+                    total[:, column] += again**k * back * (arriving(first + early) - arriving(first))
