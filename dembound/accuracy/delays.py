@@ -57,3 +57,15 @@ def _going_on(values: np.ndarray) -> np.ndarray:
     s = np.arange(1, len(values)) / len(values)
     fading = 1.0 - s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
     return np.asarray(fading[:, None] * turned)
+
+
+def part_above(
+    time: np.ndarray, velocity: np.ndarray, least: float, power: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """A velocity (k,) at even times (k,) s, its spectrum times ω^power, and the part of that above `least` rad/s."""
+    padded = np.concatenate([velocity, _going_on(velocity[:, None])[:, 0]])
+    length = 2 ** int(np.ceil(np.log2(2 * len(padded))))
+    omega = 2.0 * np.pi * np.fft.rfftfreq(length, float(time[1] - time[0]))
+    spectrum = np.fft.rfft(padded, length) * omega**power
+    whole, above = (np.fft.irfft(each, length)[: len(time)] for each in (spectrum, spectrum * (omega > least)))
+    return np.asarray(whole), np.asarray(above)

@@ -13,6 +13,7 @@ from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.held_sides import HeldSides
+from dembound.accuracy.of_disks.kinks import causes_of_kinks
 from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.casefile.disks import DiskCase
 from dembound.disks.entry import late_by
@@ -133,7 +134,9 @@ def of_ground(companions: Companions, scene: DiskScene, time_step: float) -> lis
     motions = companions.recorded(scene)
     words = "by the motion between the disks of companions"
     places = Cause(PLACES, words, companions.moved(scene), of_disks=True, factor=USUAL)
-    return [*Formulas(scene, time_step).causes(motions), places, *_held(companions, scene)]
+    formulas = Formulas(scene, time_step)
+    kinks = causes_of_kinks(formulas, motions, companions.diameter)
+    return [*formulas.causes(motions), *kinks, places, *_held(companions, scene)]
 
 
 def _held(companions: Companions, scene: DiskScene) -> Iterator[Cause]:

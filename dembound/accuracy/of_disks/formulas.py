@@ -149,7 +149,7 @@ class Formulas:
 
     def _delays(self, motions: Motions) -> Iterator[Cause]:
         """The dispersion of the packing, and of the time step."""
-        if not any(self._ways(own) for own in motions.values()):
+        if not any(self.ways(own) for own in motions.values()):
             yield Cause.unknown("grid and time step", "waves start everywhere")
             return
         words = "by the dispersion of plane waves on the way from where waves start, and by velocities of half steps"
@@ -166,11 +166,11 @@ class Formulas:
     def _delayed(self, own: History, step: float) -> dict[str, np.ndarray]:
         """What dispersion adds with steps of this length (s)."""
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
-        for way in self._ways(own):
+        for way in self.ways(own):
             if not math.isfinite(way.path * way.speed):
                 continue
             about = way.motion, way.directions, way.path, way.speed, step
-            delay = delay_of(self.scene.ground, *about, self._frequencies)
+            delay = delay_of(self.scene.ground, *about, self.frequencies)
             parts = error_of_delay(own.time, (own.values["velocity"] @ way.moves)[:, None], delay)
             for quantity, part in zip(MOTIONS, parts, strict=True):
                 errors[quantity] += part * way.moves
@@ -179,7 +179,8 @@ class Formulas:
         return errors
 
     @cached_property
-    def _frequencies(self) -> Frequencies:
+    def frequencies(self) -> Frequencies:
+        """Those of plane waves on the lattice of the ground, by direction."""
         return frequencies_of(self.scene.ground)
 
     @cached_property
@@ -187,7 +188,7 @@ class Formulas:
         """Where waves start."""
         return sources_of(self.scene.case, self.scene.ground)
 
-    def _ways(self, own: History) -> list[_Way]:
+    def ways(self, own: History) -> list[Way]:
         """The ways of P and S waves to a monitor: from a driven side, or from the nearest load or hole.
 
         A wave at an angle comes through a continuum, which delays it less: its way is the longer side of the disks.
@@ -216,7 +217,7 @@ class Formulas:
 
 
 @dataclass(frozen=True)
-class _Way:
+class Way:
     """The way of a kind of waves.
 
     motion : of the waves. moves : (2,) unit vector along which they move disks. path : m. speed : m/s, of long waves.
@@ -232,11 +233,11 @@ class _Way:
 
 def _both_ways(
     along: np.ndarray, path: float, speeds: tuple[float, float], directions: Sequence[Direction]
-) -> list[_Way]:
+) -> list[Way]:
     """The ways of P and S waves, of these speeds (m/s), along a unit vector."""
     across = np.array([-along[1], along[0]])
     p, s = speeds
-    return [_Way("p", along, path, p, directions), _Way("s", across, path, s, directions)]
+    return [Way("p", along, path, p, directions), Way("s", across, path, s, directions)]
 
 
 def reflected_motion(own: History, column: int, share: Reflected) -> dict[str, np.ndarray]:
