@@ -113,6 +113,36 @@ def test_displacements_beside_a_continuum_have_smaller_errors_than_velocities():
     assert 0.0 < errors["displacement"] < errors["velocity"] < 0.1
 
 
+@pytest.mark.parametrize(
+    ("changes", "is_known"),
+    [
+        ({}, True),  # the elastic law
+        ({"material.law": "linearpbond"}, False),
+        (
+            {"material.law": "linearpbond", "static.boundary.bottom.type": "fixed", "load.weight.wave": None},
+            True,
+        ),  # pressed together
+    ],
+)
+def test_contacts_that_may_be_open_beside_a_continuum_are_an_unknown_cause(changes, is_known) -> None:
+    weight = {"name": "weight", "acceleration": [0.0, -10.0], "wave": "push"}
+    tables = SURROUNDED | {"wave": {"push": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}}
+    tables["load"] = [weight, {"name": "push", "force": [0.0, -1.0], "position": [6.5, 5.5], "wave": "push"}]
+    found = Formulas(build(small(tables, changes=changes)), 1e-4).causes(recorded(pulse(TIME)))
+    assert ("continuum beside contacts" not in [each.name for each in found]) == is_known
+
+
+def test_random_packings_may_have_open_contacts_also_at_rest() -> None:
+    grains = GRAINS | {
+        "material": GRAINS["material"] | {"fric": 0.5, "law": "linearpbond", "locked_in": 1e5},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        "load": [{"name": "push", "force": [0.0, -1.0], "position": [4.0, 2.0], "wave": "pulse"}],
+        "static": {"damp": 0.7},
+    }
+    found = Formulas(build(small(grains)), 1e-4).causes(recorded(pulse(TIME)))
+    assert "continuum beside contacts" in [each.name for each in found if each.how == "unknown"]
+
+
 def test_what_waves_that_start_everywhere_or_jump_do_is_not_estimated():
     pulled = LAYER | {
         "boundary": {side: LAYER["boundary"][side] for side in ("left", "right")},
