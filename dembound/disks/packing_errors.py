@@ -31,7 +31,8 @@ def _dispersion(scene: DiskScene, signals: Sequence[Signal]) -> str:
     ties, across = lattice_errors(scene, signals)
     more = f"; more than outside.accuracy = {percent(accuracy)}" if max(ties, across) > accuracy else ""
     return (
-        f"up to {percent(ties)} returned by the ties, {percent(across)} of the velocity over the scene's length{more}"
+        f"ties return up to {percent(ties)} of the velocity of what meets them, and waves change by {percent(across)} "
+        f"over the scene's length{more}"
     )
 
 

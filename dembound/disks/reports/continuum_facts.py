@@ -205,7 +205,12 @@ def _is_flat(outside: Surroundings) -> bool:
 
 
 def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
-    """Elements too large for waves or for what is near, or too small for the disks."""
+    """Elements too large for waves or for what is near, or too small for the disks.
+
+    What they return is a share of what meets them: the part of the spectrum that has fewer nodes in its length than
+    `choice.NODES`. `expected_errors` at monitors are smaller: half of it comes there, and of longer waves it falls
+    gradually.
+    """
     order, side = keys.order, largest_element(outside)
     signals, medium = signals_of(scene.case), outside.body.medium
     error = choice.element_error(signals, medium, order, side) if signals else 0.0
@@ -213,7 +218,8 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
         if error > max(LEEWAY * keys.accuracy, LARGE):
             yield (
                 f"outside: elements of {side:.4g} m, the smallest useful ones beside these disks, return short waves, "
-                f"about {percent(error)} of the velocity, more than {asked}; the disks disperse these waves, too"
+                f"about {percent(error)} of the velocity of all that meets them, more than {asked}; the disks disperse "
+                "these waves, too"
             )
         return
     if error > LEEWAY * keys.accuracy:
@@ -222,7 +228,7 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
         if needed < side:
             yield (
                 f"outside.element: elements of {side:.4g} m return short waves, about {percent(error)} of the "
-                f"velocity, more than {asked}; {needed:.3g} m are small enough"
+                f"velocity of all that meets them, more than {asked}; {needed:.3g} m are small enough"
             )
     if (error := near_error(scene, outside)) > LEEWAY * keys.accuracy:
         yield (
@@ -260,7 +266,7 @@ def _from_the_surface(scene: DiskScene, outside: Surroundings, keys: OutsideTabl
         enough = max(margin_below_surface(settings, each, medium, keys.accuracy) for each in sources)
         yield (
             f"outside.margin: waves that the free surface sends back run along layers "
-            f"{keys.margin * axis.sizes[0]:.4g} m beside the disks, and about {percent(error)} of the velocity "
+            f"{keys.margin * axis.sizes[0]:.4g} m beside the disks, and about {percent(error)} of their velocity "
             f"returns from these, more than {asked}; "
             f"{enough} elements are enough"
         )

@@ -107,6 +107,7 @@ LASTING = {"wave": {"pulse": STAYS}, "outside.margin": 1}
 def test_poor_settings_have_one_line_each(case, changes: dict, start: str) -> None:
     (line,) = warnings_of(case, **changes)
     assert line.startswith(start)
+    assert ("of the velocity of all that meets them" in line) == ("return short waves" in line)  # not at monitors
     assert warnings_of(case, **changes, **{"outside.accuracy": 0.05}) == [line] * ("below 5 m" in line)
     assert warnings_of(case, **{key: value for key, value in changes.items() if key == "wave"}) == []
 
