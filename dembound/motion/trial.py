@@ -44,7 +44,8 @@ class Trial:
         """Random velocities (3, n), m/s and rad/s, of all nodes or of those of one part; the same in every call.
 
         Times the root of the mass, all directions are equally likely: every mode of vibration has the same expected
-        energy. There is no momentum: a free body would drift, and what its displacements are rounded by would grow.
+        energy. There is neither momentum nor angular momentum: a free body would drift and turn, and what its
+        displacements are rounded by would grow. A body of which a component is held cannot turn as a whole.
         """
         scene = self.scene
         mass = np.stack([scene.mass, scene.mass, scene.inertia])
@@ -58,6 +59,11 @@ class Trial:
         for c in range(2):
             if np.sum(moves[c]) > 1:
                 velocity[c] -= moves[c] * (np.sum(mass[c] * velocity[c]) / np.sum(mass[c] * moves[c]))
+        noisy = moves.any(axis=0)
+        if noisy.any() and moves[:, noisy].all():
+            arm = (scene.positions - np.average(scene.positions, axis=0, weights=mass[0] * noisy)).T
+            turn = np.stack([-arm[1], arm[0], np.ones(scene.count)]) * noisy
+            velocity -= turn * (np.sum(mass * turn * velocity) / np.sum(mass * turn**2))
         return velocity
 
     @property
