@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections import Counter
 from importlib.machinery import PathFinder
 from pathlib import Path
 
@@ -30,3 +31,18 @@ def session_cache(tmp_path_factory):
 def one_thread():
     """Test scenes are so small that threads would mostly wait for each other."""
     numba.set_num_threads(1)
+
+
+COMPILE_MOST = "of_bars/test_causes.py", "unit/test_cli.py", "verification/test_resume.py", "unit/test_mistakes.py"
+"""Files that run first, of bars and of disks in turn: two processes do not compile the same kernels side by side."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the files that compile most first, the others by their number of tests."""
+    sizes = Counter(item.path for item in items)
+
+    def place(item: pytest.Item) -> tuple[int, int]:
+        named = (k for k, name in enumerate(COMPILE_MOST) if item.path.as_posix().endswith(name))
+        return next(named, len(COMPILE_MOST)), -sizes[item.path]
+
+    items.sort(key=place)

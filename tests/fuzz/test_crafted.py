@@ -51,22 +51,18 @@ READING: Sequence[tuple[str, ...]] = (
     ("resume", "{}", "--until", "0.004"),
     ("estimate", "{}"),
 )
-QUICK = (READING[0], READING[7], READING[8], READING[13], READING[15])
-"""Those that start at once, for few structures."""
-
 CHART = ("chart", "bar.toml", "--vary", "run.courant=0.5,0.6", "--repeats", "1")
 CHARTED: Sequence[tuple[str, ...]] = ((*CHART, "--resume"),)
 
 
-def made(folder: Path, charted: bool) -> None:
-    """Sound results of each kind, and if asked for of a chart, with which everything is compiled and imported."""
+def made(folder: Path) -> None:
+    """Sound results of each kind, with which everything is compiled and imported."""
     for name, tables in (("bar", BAR), ("disks", DISKS)):
         (folder / f"{name}.toml").write_text(tomli_w.dumps(tables))
         assert ended(("run", f"{name}.toml", "-o", "made"))[0] == 0
         shutil.copytree(folder / "made" / name, folder / f"sound-{name}")
-    if charted:
-        assert ended(CHART)[0] == 0
-        (folder / "results" / "bar_chart").rename(folder / "sound-chart")
+    assert ended(CHART)[0] == 0
+    (folder / "results" / "bar_chart").rename(folder / "sound-chart")
 
 
 def ended(words: Sequence[str]) -> tuple[int, str]:
@@ -89,20 +85,19 @@ def ended(words: Sequence[str]) -> tuple[int, str]:
 def worked(folder: Path, count: int, seed: int) -> None:
     """Craft results and read them; prints what was done, and how each command ended, in lines of JSON."""
     os.chdir(folder)
-    made(folder, count == BATCH)
+    made(folder)
     draw = random.Random(seed)
-    reading = READING if count == BATCH else QUICK
-    for words in reading:  # import all that they need
+    for words in READING:  # import all that they need
         for kind in ("bar", "disks"):
             ended([word.format(f"sound-{kind}", kind=kind) for word in words])
     limit = int(most_memory() + 4 * BYTES)
     resource.setrlimit(resource.RLIMIT_AS, (limit + 2**36, limit + 2**36))
     resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
     for number in range(count):
-        kind = draw.choice(("bar", "disks", "disks", "bar", "chart")[: 5 if count == BATCH else 4])
+        kind = draw.choice(("bar", "disks", "disks", "bar", "chart"))
         target = copied(Path(f"sound-{kind}"), Path("results/bar_chart" if kind == "chart" else "crafted"))
         what = crafted(target, draw)
-        words = [w.format("crafted", kind=kind) for w in draw.choice(CHARTED if kind == "chart" else reading)]
+        words = [w.format("crafted", kind=kind) for w in draw.choice(CHARTED if kind == "chart" else READING)]
         print(json.dumps({"number": number, "what": what, "words": words}), flush=True)
         began, before = time.process_time(), most_memory()
         try:
@@ -123,18 +118,18 @@ def most_memory() -> int:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
-BATCH = 100
-"""Structures that one process reads: VTK keeps memory, which would reach the limit after some hundreds."""
+COUNT, BATCH = 1000, 100
+"""Structures in all, and in one process: VTK keeps memory, which would reach the limit after some hundreds."""
 
 
-@pytest.mark.parametrize("count", [15, pytest.param(1000, marks=pytest.mark.slow)])
-def test_crafted_results_are_refused_in_a_line_or_used(tmp_path, count) -> None:
+@pytest.mark.slow
+def test_crafted_results_are_refused_in_a_line_or_used(tmp_path) -> None:
     environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(Path(__file__).parents[1])}
     codes, bad, times, sizes = Counter(), [], [0.0], [0]
-    for seed in range(count, 2 * count, BATCH):
+    for seed in range(COUNT, 2 * COUNT, BATCH):
         folder = tmp_path / f"{seed}"
         folder.mkdir()
-        words = [sys.executable, __file__, str(folder), str(min(BATCH, count)), str(seed)]
+        words = [sys.executable, __file__, str(folder), str(BATCH), str(seed)]
         what = None
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=environment) as process:
             for line in process.stdout:
@@ -159,8 +154,8 @@ def test_crafted_results_are_refused_in_a_line_or_used(tmp_path, count) -> None:
     for before, after in bad:
         print(before, after["code"], after["took"], after["grown"], after["said"], sep="\n  ")
     assert not bad
-    assert codes.total() == count
-    assert codes[5] > 0.15 * count  # the others are numbers that change, and files that the command does not read
+    assert codes.total() == COUNT
+    assert codes[5] > 0.15 * COUNT  # the others are numbers that change, and files that the command does not read
 
 
 if __name__ == "__main__":

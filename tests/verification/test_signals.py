@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,7 +16,7 @@ import numpy as np
 import pytest
 import tomli_w
 from recorded import contents
-from small_cases import GRAINS, SPALLING, Tables
+from small_cases import GRAINS, SPALLING
 
 CASES = {
     "run": GRAINS
@@ -32,9 +31,6 @@ CASES = {
     "sweep": SPALLING,
     "chart": SPALLING,
 }
-
-SHORT: Tables = {"packing": GRAINS["packing"] | {"size": [8.0, 4.0]}, "run": {"duration": 0.2}}
-"""What makes the run a short one."""
 
 COMMANDS = {
     "run": ("run", "run.toml"),
@@ -90,13 +86,13 @@ CALIBRATED = "*_calibrated.toml"
 class Scene:
     """A folder with the cases, and what each command makes of them when nothing ends it."""
 
-    def __init__(self, folder: Path, commands: tuple[str, ...], cases: Mapping[str, Tables]) -> None:
+    def __init__(self, folder: Path) -> None:
         self.folder = folder
         folder.mkdir()
-        for name, tables in cases.items():
+        for name, tables in CASES.items():
             (folder / f"{name}.toml").write_text(tomli_w.dumps(tables))
         self.duration: dict[str, float] = {}
-        for command in commands:
+        for command in COMMANDS:
             for _ in range(2):
                 shutil.rmtree(folder / "results", ignore_errors=True)
                 began = time.monotonic()
@@ -163,14 +159,13 @@ class Scene:
 
 
 # half of the signals are SIGTERM, half SIGINT; cold ones find no compiled code
-@pytest.mark.parametrize(("count", "cold"), [(2, 0), pytest.param(400, 40, marks=pytest.mark.slow)])
-def test_a_signal_at_any_moment_ends_a_command(tmp_path, monkeypatch, count, cold) -> None:
-    commands = tuple(COMMANDS) if count > 10 else ("run",)
-    cases = CASES if count > 10 else {"run": CASES["run"] | SHORT}
-    scene, draw, found = Scene(tmp_path / "scene", commands, cases), random.Random(count), Found()
+@pytest.mark.slow
+def test_a_signal_at_any_moment_ends_a_command(tmp_path) -> None:
+    count, cold = 400, 40
+    scene, draw, found = Scene(tmp_path / "scene"), random.Random(count), Found()
     while len(found.took) < count:
         trial = len(found.took)
-        command, number = draw.choice(commands), (signal.SIGTERM, signal.SIGINT)[trial % 2]
+        command, number = draw.choice(tuple(COMMANDS)), (signal.SIGTERM, signal.SIGINT)[trial % 2]
         is_cold = trial < cold
         most = 60.0 if is_cold else scene.duration[command]
         empty = tmp_path / "cold" if is_cold else None

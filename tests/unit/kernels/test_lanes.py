@@ -157,8 +157,9 @@ def test_kernels_run_without_being_compiled(tmp_path) -> None:
     np.testing.assert_allclose(elsewhere(MOTION, tmp_path, NUMBA_DISABLE_JIT="1"), here(MOTION), rtol=0.0, atol=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="names of x86 processors")
-@pytest.mark.parametrize("processor", [pytest.param("haswell", marks=pytest.mark.slow), "x86-64"])
+@pytest.mark.parametrize("processor", ["haswell", "x86-64"])
 def test_other_processors_compute_the_same(tmp_path, processor: str) -> None:
     features = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": FEATURES[processor]}
     found, expected = elsewhere(FORCES, tmp_path, **features), here(FORCES)

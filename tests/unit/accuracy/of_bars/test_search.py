@@ -248,7 +248,7 @@ def test_bars_of_which_nothing_is_known_are_refused(case: Case, line: str) -> No
 
 def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
     """Of a pulse nothing remains once it has left; a bar between free ends rings on."""
-    case = with_changes(scene("viscous end, β = 0.7"), {"run.duration": 0.02})
+    case = with_changes(scene("viscous end, β = 0.7"), {"run.duration": 0.008})
     choice = advised(case, 0.01, ["bar"])
     assert choice.holds
     assert choice.case.run.until == "silent"
@@ -257,5 +257,5 @@ def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
     expected = float(choice.words.rpartition("about ")[2].removesuffix(" s"))
     # the run looks at its monitors some times only, and ends at the next of them
     assert next(iter(recorded.values())).time[-1] == pytest.approx(expected, rel=0.15)
-    ringing = with_changes(scene("finite differences, ν = 0.5"), {"run.duration": 0.02})
+    ringing = with_changes(scene("finite differences, ν = 0.5"), {"run.duration": 0.008})
     assert advised(ringing, 0.1).case.run.until == "duration"

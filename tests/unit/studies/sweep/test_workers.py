@@ -35,7 +35,8 @@ def elsewhere():
 
 
 @kills
-@pytest.mark.parametrize("workers", [here, pytest.param(elsewhere, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("workers", [here, elsewhere])
 def test_no_member_is_lost_with_a_worker_that_is_killed(rods, tmp_path, workers) -> None:
     members = rods(1e6, 2e6, 3e6, **{"run.duration": 0.02})
     folder, killed, standings = tmp_path / "rod_sweep", [], []
