@@ -98,9 +98,11 @@ def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, fl
         assert beneath is not None
         number = ("left", "bottom", "right", "top").index(side)
         return dict.fromkeys(motions, -_inwards(side) * (beneath.box[number] - scene.case.box[number]))
-    if not table.factors:
-        return {motion: -depth for motion, depth in depths_held(scene, side).items() if motion in motions}
+    if not table.factors and (held := depths_held(scene, side)).keys() >= set(motions):
+        return {motion: -held[motion] for motion in motions}
     end = _Strip.of(scene.case, side)
+    if not table.factors:  # a type of another package, that pushes: as if it held
+        return {motion: -end.depth(motion, (0, 1)) for motion in motions}
     factors = factors_in(scene, side)
     found = {}
     for motion in motions:
