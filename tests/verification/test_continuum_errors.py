@@ -7,10 +7,11 @@ The truth is the motion of the same disks where those of the box go on so far th
 import pytest
 from continuum_errors import around, rows
 
-from dembound.disks.reports.continuum_errors import CONTINUUM_FACTOR
-
 SMALL = around("A", 24.0, 24.0, "cosine 0.05 s", run={"duration": 0.15})
 """Elements and ties count alike in velocities, layers in displacements."""
+
+WITHIN = 3.0
+"""95 % of 395 rows are within this factor of their true errors (benchmarks/continuum_errors.py)."""
 
 OTHERS = {
     "ties": around("A", 30.0, 30.0, "ricker 20 Hz"),
@@ -29,11 +30,11 @@ def ratios(tables: dict) -> list[float]:
 def test_errors_beside_a_force_are_as_expected() -> None:
     found = ratios(SMALL)
     assert len(found) == 8
-    assert 1.0 / CONTINUUM_FACTOR < min(found) <= max(found) < CONTINUUM_FACTOR
+    assert 1.0 / WITHIN < min(found) <= max(found) < WITHIN
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", OTHERS)
 def test_errors_in_other_scenes_are_as_expected(name: str) -> None:
     found = ratios(OTHERS[name])
-    assert 1.0 / CONTINUUM_FACTOR < min(found) <= max(found) < CONTINUUM_FACTOR
+    assert 1.0 / WITHIN < min(found) <= max(found) < WITHIN
