@@ -84,6 +84,11 @@ def exact(case: Any, own: Mapping[str, Any], radius: float, middle: np.ndarray, 
     return result
 
 
+def key(quantity: str, radius: float) -> str:
+    """The name of a column: a quantity at so many radii."""
+    return f"{quantity} at {10.0 * radius:.0f} tenths"  # a point would be one of a format
+
+
 def row(name: str, own: Mapping[str, Any], wanted: Mapping[str, Any], along: float) -> dict[str, Any]:
     """A row of the table: errors by quantity and distance, times the disks along the smaller half."""
     found: dict[str, Any] = {"hole": name, "along": along}
@@ -95,7 +100,7 @@ def row(name: str, own: Mapping[str, Any], wanted: Mapping[str, Any], along: flo
                 column = int(np.argmax(np.abs(right).max(axis=0)))
                 rest = own[monitor].values[quantity][:, column] - right[:, column]
                 errors.append(np.linalg.norm(rest) / np.linalg.norm(right[:, column]))
-            found[f"{quantity} {radius:g}"] = along * float(np.sqrt(np.mean(np.square(errors))))
+            found[key(quantity, radius)] = along * float(np.sqrt(np.mean(np.square(errors))))
     return found
 
 
@@ -133,5 +138,5 @@ def rectangles() -> Iterator[dict[str, Any]]:
 
 if __name__ == "__main__":
     columns = {"hole": "{hole}", "disks": "{along:g}"}
-    columns |= {f"{q[0]}, {r:g} radii": "{" + f"{q} {r:g}" + ":.2f}" for q in QUANTITIES for r in RADII}
+    columns |= {f"{q[0]}, {r:g} radii": "{" + key(q, r) + ":.2f}" for q in QUANTITIES for r in RADII}
     show("errors times disks along the smaller half", columns, [*rectangles(), *round_holes()])

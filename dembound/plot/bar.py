@@ -128,7 +128,7 @@ def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -
     Raises CaseError when the file cannot be read or has no such snapshot.
     """
     with open_record(run) as file:
-        groups = snapshots_of(file, required=True) if snapshot is None else [snapshot_of(file, snapshot)]
+        groups = [*snapshots_of(file, required=True)] if snapshot is None else [snapshot_of(file, snapshot)]
         time = np.array([group.attrs["time"] for group in groups])
         cracks = cracks_until(file, time[-1])
         unit = time_unit(time[-1])

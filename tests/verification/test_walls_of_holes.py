@@ -6,7 +6,7 @@ The truth is the exact motion of the cavity in the medium that the packing is.
 import numpy as np
 import pytest
 from scene_tables import grains, lattice
-from walls import QUANTITIES, RADII, exact, motions, row, scene
+from walls import QUANTITIES, RADII, exact, key, motions, row, scene
 
 from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_error
 
@@ -27,5 +27,5 @@ def test_motion_beside_a_hole_is_as_wrong_as_expected(packing: dict, along: floa
     found = row("hole", own, exact(case, own, along, middle, is_pressed=True), along)
     for quantity in QUANTITIES:
         for radius in RADII:
-            ratio = found[f"{quantity} {radius:g}"] / (along * wall_error(case, 1.0))
+            ratio = found[key(quantity, radius)] / (along * wall_error(case, 1.0))
             assert 1.0 / WALL_FACTOR < ratio < WALL_FACTOR, (quantity, radius)
