@@ -158,8 +158,8 @@ class _Strip:
     @property
     def _depths(self) -> np.ndarray:
         """Of the centres (n,) below the side, m."""
-        plane = 0.0 if _inwards(self.side) > 0.0 else float(self.scene.assembly.extent[self._axis])
-        return _inwards(self.side) * (self.scene.assembly.positions[:, self._axis] - plane)
+        beyond = self.scene.assembly.positions[:, self._axis] - self.scene.plane(self.side)
+        return np.asarray(_inwards(self.side) * beyond)
 
     @cached_property
     def mass_begins(self) -> float:

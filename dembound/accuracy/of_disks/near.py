@@ -37,8 +37,8 @@ OF_WAVES = 0.45
 
 WALL_FACTOR = 2.0
 """95 % of true errors beside holes are at most so many times as large as `wall_error`: of means over 12 directions 1.4
-times in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, the largest 2.5), 1.6 times
-in lattices under waves (80, the largest 2.1), and 1.1 times in random packings under waves (80, the largest 1.7;
+times in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), 1.6 times in
+lattices under waves (80, at most 2.1), and 1.1 times in random packings under waves (80, at most 1.7;
 benchmarks/walls.py). Single directions scatter more."""
 
 

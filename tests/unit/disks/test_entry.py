@@ -44,6 +44,13 @@ def test_p_waves_enter_a_lattice_at_centres_and_dashpots_move_the_row_outside_of
     assert late(driven(side, type="viscous_input", half_mass=True), side) == pytest.approx(-D / 2, abs=1e-5)
 
 
+@pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
+def test_the_time_is_the_same_wherever_the_scene_is(side: str) -> None:
+    tables = driven(side, type="velocity")
+    moved = tables | {"packing": tables["packing"] | {"origin": [-3.5, 61.25]}}
+    assert late(moved, side) == pytest.approx(late(tables, side), abs=1e-9)  # rounding of 100 m
+
+
 def test_disks_of_a_driven_row_turn_less_so_that_s_waves_enter_farther_inside() -> None:
     """Without bending they turn half as far, and the row shears by 7/4 F/k in place of 2 F/k: 1/8 D farther.
 

@@ -42,7 +42,7 @@ class ExactPlaneWave(Exact[DiskCase]):
         """The wave at the monitors' particles, at the same times."""
         scene, axis = build(case), normal_axis(self.side)
         speed = scene.ground.wave_speeds(axis)[0 if self.motion == "p" else 1]
-        start = 0.0 if self.side in ("left", "bottom") else float(scene.assembly.extent[axis])
+        start = scene.plane(self.side)
         wave, column = case.wave[case.driving[self.side][self.motion]], axis_of_motion(self.side, self.motion)
         found = {}
         for name, history in recorded.items():

@@ -69,6 +69,19 @@ def test_a_plane_wave_that_leaves_has_one(bar) -> None:
     assert exact_of(bar({**wave, **sides})).motion == "s"
 
 
+def test_a_plane_wave_starts_at_its_side_wherever_the_scene_is(bar) -> None:
+    time = np.linspace(0.0, 0.02, 21)
+
+    def wave(x: float) -> np.ndarray:
+        gauge = {"name": "gauge", "position": [x + 1.25, 0.5]}
+        case = bar({**EVEN, "packing.origin": [x, 0.0], "monitor": [gauge]})
+        at = History.of(np.array([x + 1.25, 0.5]), time, np.zeros((21, 3)), np.zeros((21, 3)))
+        return np.asarray(exact_of(case).motions(case, {"gauge": at})["gauge"].velocity[:, 0])
+
+    assert np.abs(wave(0.0)).max() > 0.0
+    np.testing.assert_allclose(wave(-40.0), wave(0.0), rtol=0.0, atol=1e-9)  # rounding of 40 m over the wavelength
+
+
 @pytest.mark.parametrize(
     "changes",
     [
