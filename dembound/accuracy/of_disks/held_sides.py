@@ -7,14 +7,11 @@ roller does along itself, mass begins at the plane and nothing is early.
 Plane waves between a driven side at x = 0 and the far one at H, which reflect r₀ and r₁ of the velocity, −1 where they
 hold it and 1 where they let it free: with T = 2H/c and the wave a(t) as it comes to a monitor at x for the first time,
 
-    v(t) = a(t) + r₁ a(t') + r₀r₁ v(t − T),   t' = t − 2(H − x)/c.
+    v(t) = Σ_k (r₀r₁)^k [a(t − kT) + r₁ a(t' − kT)],   t' = t − 2(H − x)/c.
 
-On disks the way to the far side and back is shorter by 2s₁, a round trip by 2(s₀ + s₁), so that the error is
-
-    e(t) = r₁ [a(t' + 2s₁/c) − a(t')] + r₀r₁ [2(s₀ + s₁)/c dv/dt(t − T) + e(t − T)].
-
-It is linear in s₀ and s₁, a part of each side. That a is early by s₀/c is no error (entry.py). Dashpots and a continuum
-at x = 0 have r₀ = 0: what they send back is another cause.
+On disks the way to the far side and back is shorter by 2s₁, a round trip by 2(s₀ + s₁). The error of one side is what
+its s changes alone; to the first order both add. That a is early by s₀/c is no error (entry.py). Dashpots and a
+continuum at x = 0 have r₀ = 0: what they send back is another cause.
 
 Other waves, of loads, scattered by holes or along a side, come back from all directions: what one row of larger disks
 more, or a mirror plane, changes there is found with companions (`Companions.of_held`).
@@ -133,14 +130,10 @@ class HeldSides:
         to_monitor = abs(float(own.place[axis]) - plane_of(driven, case.box)) / entry.speed
         back = self.reflects(far, motion)
         again = back * self.reflects(driven, motion)
-        trips = int((own.time[-1] - own.time[0]) / round_trip) if again else 0
+        trips = int((own.time[-1] - own.time[0]) / max(round_trip - early, early)) if again else 0
         for quantity, total in errors.items():
             arriving = wave.velocity if quantity == "velocity" else wave.displacement
-            rate = np.gradient(own.values[quantity][:, column], own.time)
             for k in range(1 + trips):
-                time = own.time - k * round_trip
-                if k > 0:
-                    total[:, column] += again**k * early * np.interp(time, own.time, rate, left=0.0)
-                if side == far:
-                    first = time - entry.delay - (round_trip - to_monitor)
-                    total[:, column] += again**k * back * (arriving(first + early) - arriving(first))
+                for share, way, times in ((1.0, to_monitor, k), (back, round_trip - to_monitor, k + (side == far))):
+                    time = own.time - entry.delay - way - k * round_trip
+                    total[:, column] += again**k * share * (arriving(time + times * early) - arriving(time))

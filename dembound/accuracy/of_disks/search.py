@@ -46,8 +46,12 @@ error, of building it by disk, and of its companions by particle-step."""
 HELD = 30_000
 """Disks up to which a choice remains in memory, for other bounds."""
 
-COSTLIEST = 64.0
-"""Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
+COSTLIEST, AFFORDABLE = 64.0, 60.0
+"""Cost up to which choices are tried: so many times that of the given case, as disks of a quarter of the diameter have,
+or so many CPU seconds if that is more."""
+
+BY_FORMULA = 1.5
+"""How much longer a search goes on with choices in a continuum, which need no companions of their own."""
 
 
 def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
@@ -75,6 +79,7 @@ def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: S
     if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
         return Advice(given, {bounds[0]: given}, 1)
     searches = [_Search(companions, planned, of, kept, given.cost)]
+    searches[0].know_sides(given.budget)
     if bounds and (twin := elastic_twin(case, planned, most, kept, companions.runner)) is not None:
         own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
         searches.insert(0, _Search(own, twin.planned, of, kept, planned_cost(twin.planned).seconds, twin))
@@ -206,6 +211,12 @@ class _Search:
         found = Proposal(Choice.of(given, best.built.case, words), best.built.cost, best.budget)
         return found if until else ended_earlier(found, given, bound, best.motion, self.kept)
 
+    def know_sides(self, given: Budget) -> None:
+        """Take what the sides of the given case add, which disks of other sizes hardly change."""
+        sides = Causes([cause for cause in given.causes.found if cause.name == SIDES])
+        if sides.found:
+            self.of_sides[_sides(self.options.own)] = Budget(given.motions, sides, self.of).worst().share.upper
+
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
         found: list[_Found] = []
@@ -258,7 +269,8 @@ class _Search:
         packing = option.case.packing
         disks = packing.about(packing.extent)
         spent = self.spent + PER_STEP * self.companions.runner.work
-        return spent + PER_CHOICE + PER_ERROR + PER_DISK * disks <= max(LONGEST, PART * self.own_cost)
+        most = max(LONGEST, PART * self.own_cost) * (BY_FORMULA if option.case.outside_sides else 1.0)
+        return spent + PER_CHOICE + PER_ERROR + PER_DISK * disks <= most
 
     def _alone(self, option: DiskOption) -> float:
         """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
@@ -276,7 +288,7 @@ class _Search:
         self._wait(least, factors.pop(0))
         while self.waiting:
             cost, _, item = heapq.heappop(self.waiting)
-            if cost > COSTLIEST * self.own_cost:
+            if cost > max(COSTLIEST * self.own_cost, AFFORDABLE):
                 return
             if not isinstance(item, float):
                 yield item

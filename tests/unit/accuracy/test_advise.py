@@ -78,6 +78,7 @@ def test_kept_keys_remain_and_the_best_is_returned_where_nothing_holds() -> None
 
 def test_the_best_may_have_sides_that_only_larger_disks_can_afford(monkeypatch: pytest.MonkeyPatch) -> None:
     """Far sides and disks of 0.5 m have an error of 0.1 %, disks of 0.17 m without them one of 40 %."""
+    monkeypatch.setattr(of_disks, "AFFORDABLE", 0.0)
     monkeypatch.setattr(of_disks, "COSTLIEST", 10.0)  # those of 0.17 m cost 9 times the given ones, far sides 3 times
     push = {"name": "push", "region": [13.5, 0.0, 15.0, 1.5], "force": [1e6, 0.0], "wave": "push"}
     ends = {"boundary": dict.fromkeys(("left", "right"), BAR["boundary"]["right"]), "load": [push]}
