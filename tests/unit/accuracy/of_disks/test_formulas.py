@@ -10,6 +10,7 @@ from dembound.accuracy.cause import GRID, STEP
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.causes import causes_of_run
 from dembound.accuracy.of_disks.formulas import Formulas, reflected_motion
+from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.matched_sides import Reflected
 from dembound.accuracy.runner import measure
 from dembound.disks.entry import late_by
@@ -195,6 +196,25 @@ def test_waves_that_come_back_to_disks_held_at_their_centres_are_early(bottom, t
         difference = (own.values[quantity][:, column] - other)[inside]
         expected = sum(2.0 / 3.0 * np.asarray(each.parts["top"][quantity])[:, column][inside] for each in found)
         assert np.linalg.norm(difference - expected) < 0.24 * np.linalg.norm(difference)
+
+
+def test_the_shift_of_many_round_trips_adds_no_more_than_twice_the_motion() -> None:
+    tables = {
+        "packing": {"pattern": "A", "size": [2.0, 12.0], "radius": 0.5},
+        "material": {"density": 1800.0, "p_wave_speed": 400.0},
+        "boundary": {side: {"type": "periodic"} for side in ("left", "right")}
+        | {"bottom": {"type": "velocity", "wave_p": "q"}},
+        "wave": {"q": {"type": "cubic_spline", "amplitude": 0.1, "period": 0.05}},
+        "monitor": [{"name": "top", "position": [1.5, 11.5]}],
+        "run": {"duration": 6.0},  # 100 round trips, each early by 2.5 ms
+    }
+    case = small(tables)
+    own = measure(case, Progress())[0].motions["top"]
+    own = replace(own, values={q: own.values[q][:, :2] for q in ("velocity", "displacement")})
+    (cause,) = HeldSides(build(case)).causes({"top": own})
+    error = np.abs(cause.parts["top"]["velocity"]).max()
+    largest = np.abs(own.values["velocity"]).max()
+    assert 1.5 * largest < error < 2.1 * largest  # the pulses are apart by then
 
 
 def test_springs_of_a_driven_side_and_held_sides_without_an_estimate_are_named() -> None:
