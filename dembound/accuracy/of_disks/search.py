@@ -26,6 +26,7 @@ from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
 from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_error
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
+from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.accuracy.proposal import Advice, Proposal
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
 from dembound.casefile.disks import DiskCase
@@ -49,9 +50,6 @@ HELD = 30_000
 COSTLIEST, AFFORDABLE = 64.0, 60.0
 """Cost up to which choices are tried: so many times that of the given case, as disks of a quarter of the diameter have,
 or so many CPU seconds if that is more."""
-
-BY_FORMULA = 1.5
-"""How much longer a search goes on with choices in a continuum, which need no companions of their own."""
 
 
 def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
@@ -166,6 +164,15 @@ class _Found:
 
 
 @dataclass
+class _Tried:
+    """Choices with their errors, those left out as part of their error is too large, and those that take too long."""
+
+    found: list[_Found] = field(default_factory=list)
+    left: list[DiskOption] = field(default_factory=list)
+    too_long: list[DiskOption] = field(default_factory=list)
+
+
+@dataclass
 class _Search:
     """The search for a choice.
 
@@ -195,6 +202,7 @@ class _Search:
     known: dict[str, list[_Found]] = field(default_factory=dict)
     made: dict[tuple[str, float], Built | None] = field(default_factory=dict)
     counted: set[float] = field(default_factory=set)
+    _options: dict[float, list[DiskOption]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.options = Options(self.planned, self.bound, self.kept)
@@ -202,7 +210,7 @@ class _Search:
     def proposal(self, given: DiskCase, bound: float) -> Proposal:
         """The best choice for a bound; given : the case that it is a choice for."""
         self.options.bound = self.bound = bound
-        self.spent, self.was_cut, self.waiting = 0.0, False, []
+        self.spent, self.was_cut, self._options = 0.0, False, {}
         best = self.best()
         words = best.option.words if self.twin is None else f"{self.twin.words}; {best.option.words}"
         words += (until := _before_breaks(self.companions))
@@ -218,17 +226,35 @@ class _Search:
             self.of_sides[_sides(self.options.own)] = Budget(given.motions, sides, self.of).worst().share.upper
 
     def best(self) -> _Found:
-        """The cheapest choice that keeps the bound, or the one with the smallest error."""
-        found: list[_Found] = []
-        left: list[DiskOption] = []
-        too_long: list[DiskOption] = []
+        """The cheapest choice that keeps the bound, or the one with the smallest error.
+
+        Those whose errors are known by formulas are tried first, then those with companions of their own that cost less
+        than the one found.
+        """
+        tried, most = _Tried(), math.inf
+        for with_companions in (False, True):
+            most = self._cheapest(with_companions, most, tried)
+        if math.isfinite(most):
+            return min((each for each in tried.found if self._keeps(each.upper)), key=lambda each: each.built.cost)
+        return self._most_accurate(tried.found, tried.left, tried.too_long)
+
+    def _cheapest(self, with_companions: bool, most: float, tried: _Tried) -> float:
+        """Cost of the first choice that keeps the bound of those with or without companions; `most` if all cost more.
+
+        What was tried is added to `tried`.
+        """
+        self.waiting = []
         for item in self._by_cost():
             option = item.option if isinstance(item, Built) else item
+            if item.cost >= most:
+                break
+            if bool(sides_of_pair(option.case)) is not with_companions:
+                continue
             if not self._affords(option):
-                too_long.append(option)
+                tried.too_long.append(option)
                 continue
             if not self._keeps(self._alone(option)):
-                left.append(option)
+                tried.left.append(option)
                 continue
             built = item if isinstance(item, Built) else self._built(item)
             if built is None:
@@ -236,10 +262,10 @@ class _Search:
             if built is not item and self.waiting and built.cost > self.waiting[0][0]:
                 self._wait(built.cost, built)
                 continue
-            found += self._with_error(built, left)
-            if found and self._keeps(found[-1].upper):
-                return found[-1]
-        return self._most_accurate(found, left, too_long)
+            tried.found += self._with_error(built, tried.left)
+            if tried.found and self._keeps(tried.found[-1].upper):
+                return built.cost
+        return most
 
     def _most_accurate(self, found: list[_Found], left: list[DiskOption], too_long: list[DiskOption]) -> _Found:
         """The choice with the smallest error of those found and those left out, as none keeps the bound.
@@ -265,12 +291,13 @@ class _Search:
         return min(found, key=lambda each: each.upper)
 
     def _affords(self, option: DiskOption) -> bool:
-        """Whether the search may go on with a choice."""
+        """Whether the search may go on with a choice; half of its time is kept for those that need no companions."""
         packing = option.case.packing
-        disks = packing.about(packing.extent)
-        spent = self.spent + PER_STEP * self.companions.runner.work
-        most = max(LONGEST, PART * self.own_cost) * (BY_FORMULA if option.case.outside_sides else 1.0)
-        return spent + PER_CHOICE + PER_ERROR + PER_DISK * disks <= most
+        most = max(LONGEST, PART * self.own_cost)
+        spent = self.spent + PER_CHOICE + PER_ERROR + PER_DISK * packing.about(packing.extent)
+        if not sides_of_pair(option.case) and spent <= 0.5 * most:
+            return True
+        return spent + PER_STEP * self.companions.runner.work <= most
 
     def _alone(self, option: DiskOption) -> float:
         """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
@@ -329,7 +356,9 @@ class _Search:
         if factor not in self.counted:
             self.counted.add(factor)
             self.spent += PER_FACTOR
-        return self.options.of(factor)
+        if factor not in self._options:
+            self._options[factor] = self.options.of(factor)
+        return self._options[factor]
 
     def _with_error(self, built: Built, left: list[DiskOption] | None) -> list[_Found]:
         """A choice with its error; nothing if a companion of it cannot run.
