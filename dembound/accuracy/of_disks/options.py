@@ -32,6 +32,9 @@ FACTORS = (
 )
 """Diameters of a lattice over the given one that are tried, if the scene is made of whole cells of this size."""
 
+SHORTER = (1.0, 0.5, 0.25)
+"""Time steps over the longest one that are tried where disks remain, whose step would be shorter were they smaller."""
+
 WIDER = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0)
 """How much farther away sides with dashpots may be, over the length of the scene across them."""
 
@@ -55,8 +58,8 @@ EQUAL = 1e-6
 class DiskOption:
     """A choice before it is built.
 
-    case : with its sides where they are in the `arrangement` of this name, if they are `wider`, too. factor : its
-    diameter over that given. cost : counted, in seconds of CPU time of the steps.
+    case : with its sides where they are in the `arrangement` of this name, if they are `wider`, too. factor, shorter :
+    its diameter and its time step over those given. cost : counted, in seconds of CPU time of the steps.
     """
 
     case: DiskCase
@@ -64,12 +67,14 @@ class DiskOption:
     factor: float
     wider: float
     cost: float
+    shorter: float = 1.0
 
     @property
     def words(self) -> str:
         """The choice in words."""
         wider = f", {self.wider:g} times the scene farther away" if self.wider else ""
-        return f"{self.arrangement}{wider}, disks of {2.0 * self.case.packing.radius:.4g} m"
+        shorter = f", steps {self.shorter:g} times as long" if self.shorter != 1.0 else ""
+        return f"{self.arrangement}{wider}, disks of {2.0 * self.case.packing.radius:.4g} m{shorter}"
 
 
 @dataclass(frozen=True)
@@ -113,8 +118,9 @@ class Options:
             return []
         case, ground = found
         return [
-            each
-            for arrangement in arrangements(case, ground, self.bound)
+            replace(each, shorter=shorter)
+            for shorter in self._shorter
+            for arrangement in arrangements(_with_step(case, shorter), ground, self.bound)
             for each in self._each(arrangement.case, arrangement.name, factor, may_widen(arrangement))
         ]
 
@@ -141,6 +147,12 @@ class Options:
         case = self._case
         sizes = {"packing", *(f"packing.{key}" for key in case.packing.scaled(1.0))}
         return case.packing.is_lattice and LAWS[case.material.law].is_linear and sizes.isdisjoint(self.kept)
+
+    @cached_property
+    def _shorter(self) -> Sequence[float]:
+        """Time steps over that of the case's tables that are tried."""
+        kept = {"run", "run.safety", "run.time_step"}
+        return (1.0,) if self._may_change_diameter or not kept.isdisjoint(self.kept) else SHORTER
 
     def _with_diameter(self, factor: float) -> tuple[DiskCase, PackedMaterial] | None:
         """The given case with larger or smaller disks, and their ground; None if its scene cannot be made of them."""
@@ -200,6 +212,12 @@ class Options:
         )
         packing = case.packing.model_copy(update={"size": extent, "origin": origin, "bricks": None})
         return checked(replace(case, packing=packing, run=own.run, name=own.name))
+
+
+def _with_step(case: DiskCase, shorter: float) -> DiskCase:
+    """A case with a time step so many times as long as its tables ask for."""
+    key = "safety" if case.run.time_step == "auto" else "time_step"
+    return case if shorter == 1.0 else with_changes(case, {f"run.{key}": shorter * getattr(case.run, key)})
 
 
 def _area(case: DiskCase) -> float:

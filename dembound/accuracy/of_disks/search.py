@@ -180,7 +180,7 @@ class _Search:
     number of choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut :
     whether choices were left out for that. waiting : by cost, what may come next: diameters, their choices, and those
     that are built and cost more than others may. of_sides : by arrangement and distance the largest error of its sides
-    alone. of_disks : by factor of the diameter, with a continuum and without, the smallest error of disks alone.
+    alone. of_disks : by factors of diameter and step, with a continuum and without, the smallest error of disks.
     known : choices whose error was found for another bound, by the digest of their case. made : those that were built,
     or that cannot run, by the text of their case and how much farther away their sides are. counted : factors of the
     diameter for which the time steps of continua have been found.
@@ -198,7 +198,7 @@ class _Search:
     was_cut: bool = False
     waiting: list[tuple[float, int, DiskOption | Built | float]] = field(default_factory=list)
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
-    of_disks: dict[tuple[float, bool], float] = field(default_factory=dict)
+    of_disks: dict[tuple[float, float, bool], float] = field(default_factory=dict)
     known: dict[str, list[_Found]] = field(default_factory=dict)
     made: dict[tuple[str, float], Built | None] = field(default_factory=dict)
     counted: set[float] = field(default_factory=set)
@@ -395,6 +395,6 @@ def _sides(option: DiskOption) -> tuple[str, float]:
     return option.arrangement, option.wider
 
 
-def _disks(option: DiskOption) -> tuple[float, bool]:
-    """The size of the disks of a choice over that given, and whether they are in a continuum."""
-    return option.factor, bool(option.case.outside_sides)
+def _disks(option: DiskOption) -> tuple[float, float, bool]:
+    """The size of the disks of a choice and its time step over those given, and whether they are in a continuum."""
+    return option.factor, option.shorter, bool(option.case.outside_sides)
