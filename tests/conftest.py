@@ -33,7 +33,13 @@ def one_thread():
     numba.set_num_threads(1)
 
 
-COMPILE_MOST = "of_bars/test_causes.py", "unit/test_cli.py", "verification/test_resume.py", "unit/test_mistakes.py"
+COMPILE_MOST = (
+    "of_bars/test_causes.py",
+    "of_disks/test_law.py",
+    "verification/test_resume.py",
+    "unit/test_cli.py",
+    "unit/test_mistakes.py",
+)
 """Files that run first, of bars and of disks in turn: two processes do not compile the same kernels side by side."""
 
 

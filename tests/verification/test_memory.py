@@ -70,9 +70,8 @@ def measured(case: Path) -> float:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of the program is that on Linux")
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=() if n == "medium, with pairs" else pytest.mark.slow) for n in CASES]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
 def test_computed_memory_is_that_of_the_run(name, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(Path(dembound.__file__).parents[1]))
     case = tmp_path / "case.toml"

@@ -11,9 +11,10 @@ import pytest
 from reflection_packets import SOFT, SPRINGS, Packet, in_a_run, without_a_run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "packet",
-    [Packet("B", SOFT, "p", 45.0), pytest.param(Packet("B", SPRINGS, "s", 30.0), marks=pytest.mark.slow)],
+    [Packet("B", SOFT, "p", 45.0), Packet("B", SPRINGS, "s", 30.0)],
     ids=["dashpots, P at 45°", "springs and dashpots, S at 30°"],
 )
 def test_packets_of_oblique_waves(packet: Packet) -> None:
