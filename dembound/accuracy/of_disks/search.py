@@ -20,7 +20,7 @@ from dembound.accuracy.cause import SIDES, STEP, Causes, Truth
 from dembound.accuracy.choice import OWN, Choice, digest
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.causes import causes_of_choice, entry_notes, of_ground
+from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, entry_notes, of_ground
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
@@ -77,7 +77,7 @@ def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: S
     if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
         return Advice(given, {bounds[0]: given}, 1)
     searches = [_Search(companions, planned, of, kept, given.cost)]
-    searches[0].know_sides(given.budget)
+    searches[0].know(given.budget)
     if bounds and (twin := elastic_twin(case, planned, most, kept, companions.runner)) is not None:
         own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
         searches.insert(0, _Search(own, twin.planned, of, kept, planned_cost(twin.planned).seconds, twin))
@@ -181,6 +181,7 @@ class _Search:
     whether choices were left out for that. waiting : by cost, what may come next: diameters, their choices, and those
     that are built and cost more than others may. of_sides : by arrangement and distance the largest error of its sides
     alone. of_disks : by factors of diameter and step, with a continuum and without, the smallest error of disks.
+    of_given_disks : that of the given disks.
     known : choices whose error was found for another bound, by the digest of their case. made : those that were built,
     or that cannot run, by the text of their case and how much farther away their sides are. counted : factors of the
     diameter for which the time steps of continua have been found.
@@ -202,6 +203,7 @@ class _Search:
     known: dict[str, list[_Found]] = field(default_factory=dict)
     made: dict[tuple[str, float], Built | None] = field(default_factory=dict)
     counted: set[float] = field(default_factory=set)
+    of_given_disks: float = 0.0
     _options: dict[float, list[DiskOption]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -219,11 +221,18 @@ class _Search:
         found = Proposal(Choice.of(given, best.built.case, words), best.built.cost, best.budget)
         return found if until else ended_earlier(found, given, bound, best.motion, self.kept)
 
-    def know_sides(self, given: Budget) -> None:
-        """Take what the sides of the given case add, which disks of other sizes hardly change."""
+    def know(self, given: Budget) -> None:
+        """Take the errors of the given case: of its sides, which disks of other sizes hardly change, and of its disks.
+
+        That of disks, without the places of monitors, which may fit any, grows at least with the diameter, and falls at
+        most with its square.
+        """
         sides = Causes([cause for cause in given.causes.found if cause.name == SIDES])
         if sides.found:
             self.of_sides[_sides(self.options.own)] = Budget(given.motions, sides, self.of).worst().share.upper
+        disks = Causes([cause for cause in given.causes.found if cause.of_disks and cause.name != PLACES])
+        if disks.found and not disks.unknown:
+            self.of_given_disks = Budget(given.motions, disks, self.of).worst().share.upper
 
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error.
@@ -291,13 +300,13 @@ class _Search:
         return min(found, key=lambda each: each.upper)
 
     def _affords(self, option: DiskOption) -> bool:
-        """Whether the search may go on with a choice; half of its time is kept for those that need no companions."""
+        """Whether the search may go on with a choice; the work of companions leaves its time to those without any."""
         packing = option.case.packing
         most = max(LONGEST, PART * self.own_cost)
         spent = self.spent + PER_CHOICE + PER_ERROR + PER_DISK * packing.about(packing.extent)
-        if not sides_of_pair(option.case) and spent <= 0.5 * most:
-            return True
-        return spent + PER_STEP * self.companions.runner.work <= most
+        if sides_of_pair(option.case):
+            spent += PER_STEP * self.companions.runner.work
+        return spent <= most
 
     def _alone(self, option: DiskOption) -> float:
         """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
@@ -352,6 +361,9 @@ class _Search:
         """Choices with disks of one diameter."""
         own = self.companions.scene.ground.brick.mean_diameter
         if self.twin is not None and not self.twin.holds(factor * own):
+            return []
+        least = self.of_given_disks * (factor if factor > 1.0 else factor**2)
+        if least > self.bound and factor not in (1.0, self.options.factors[-1]):
             return []
         if factor not in self.counted:
             self.counted.add(factor)
