@@ -224,8 +224,7 @@ class _Search:
     def know(self, given: Budget) -> None:
         """Take the errors of the given case: of its sides, which disks of other sizes hardly change, and of its disks.
 
-        That of disks, without the places of monitors, which may fit any, grows at least with the diameter, and falls at
-        most with its square.
+        That of disks, without the places of monitors, which may fit any, grows at least with the diameter.
         """
         sides = Causes([cause for cause in given.causes.found if cause.name == SIDES])
         if sides.found:
@@ -362,8 +361,7 @@ class _Search:
         own = self.companions.scene.ground.brick.mean_diameter
         if self.twin is not None and not self.twin.holds(factor * own):
             return []
-        least = self.of_given_disks * (factor if factor > 1.0 else factor**2)
-        if least > self.bound and factor not in (1.0, self.options.factors[-1]):
+        if factor > 1.0 and self.of_given_disks * factor > self.bound:
             return []
         if factor not in self.counted:
             self.counted.add(factor)
