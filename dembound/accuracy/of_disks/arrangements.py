@@ -93,9 +93,8 @@ def _boxes(
     if not may_be_boxed(case):
         return
     wanted = changed(case, accuracy)
-    around = [*rectangles(wanted, ground)]
-    small = [box for box in around if all(_is_within(load.region, box) for load in case.load if load.region)]
-    for box in dict.fromkeys([*small, *(_with_monitors(case, each) for each in around)]):
+    small = [*rectangles(wanted, ground)]
+    for box in dict.fromkeys([*small, *(_with_monitors(case, each) for each in small)]):
         tables = box_tables(case, box)
         kept = {key: value for key, value in case.packing.given().items() if key != "bricks"}
         whole = {f"ground.{key}": value for key, value in tables.pop("ground").items()}
@@ -110,13 +109,6 @@ def _if_valid(words: str, case: DiskCase, changes: Mapping[str, Any]) -> Iterato
         yield Choice(words, changes, changed(case, changes))
     except CaseError:
         return
-
-
-def _is_within(region: Box, box: Box) -> bool:
-    """Whether a rectangle is within another one."""
-    return all(a >= b for a, b in zip(region[:2], box[:2], strict=True)) and all(
-        a <= b for a, b in zip(region[2:], box[2:], strict=True)
-    )
 
 
 def _with_monitors(case: DiskCase, box: Box) -> Box:

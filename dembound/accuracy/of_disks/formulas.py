@@ -196,7 +196,7 @@ class Formulas:
 
     @cached_property
     def frequencies(self) -> Frequencies:
-        """Those of plane waves on the lattice of the ground, by direction."""
+        """Frequencies of plane waves on the lattice of the ground, by direction."""
         return frequencies_of(self.scene.ground)
 
     @cached_property

@@ -44,23 +44,23 @@ class HeldSides:
 
     @cached_property
     def names(self) -> list[str]:
-        """The sides."""
+        """All sides of the problem itself that hold disks, at rest or as a wave moves."""
         return [side for side in SIDES if self._holds(side)]
 
     @property
     def among_others(self) -> list[str]:
-        """Those that meet other waves than plane ones along their normal, and do not move themselves."""
+        """Sides at rest that hold disks and meet other waves than plane ones along their normal."""
         case = self.scene.case
         return [side for side in self.names if side not in case.driving and not self._meets_only_plane_waves(side)]
 
     @property
     def driven_under_loads(self) -> list[str]:
-        """Those that move and meet waves of loads, too, whose early return has no formula."""
+        """Sides that move their disks and meet waves of loads, too, whose early return has no formula."""
         is_loaded = any(load.wave for load in self.scene.case.load)
         return [side for side in self.names if side in self.scene.case.driving and is_loaded]
 
     def causes(self, motions: Motions) -> Iterator[Cause]:
-        """The errors of those that meet plane waves, by formula."""
+        """The errors of held sides that plane waves come back from, by formula."""
         for side in self.names:
             if self._returns_plane_waves(side):
                 parts = {name: self._of_plane_waves(own, side) for name, own in motions.items()}

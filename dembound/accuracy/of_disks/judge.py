@@ -11,13 +11,13 @@ from dembound.accuracy.choice import Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import Judge
 from dembound.accuracy.moved_sides import Extended
+from dembound.accuracy.of_disks.advice import advice_for_disks
 from dembound.accuracy.of_disks.causes import causes_of_run, quick_causes
 from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.exact.continuum import ExactContinuum
 from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.extended import extended_disks
 from dembound.accuracy.of_disks.formulas import Formulas
-from dembound.accuracy.of_disks.search import advice_for_disks
 from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.proposal import Advice
 from dembound.accuracy.reference import Exact

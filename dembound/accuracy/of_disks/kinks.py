@@ -70,9 +70,9 @@ class _Kinks:
     _signals: dict[tuple[str, float, float], Signal | None] = field(default_factory=dict)
 
     def sizes(self, own: History) -> tuple[dict[str, float], dict[str, float]]:
-        """Those of the grid and of the time step at one monitor, RMS over RMS, by quantity.
+        """Errors of the grid and of the time step at one monitor, RMS over RMS, by quantity.
 
-        Those of P and S waves by their share of the squares of the motion.
+        P and S waves count by their shares of the squares of the motion.
         """
         ways = [way for way in self.formulas.ways(own) if math.isfinite(way.path * way.speed)]
         squares = [float(np.sum((own.values["velocity"] @ way.moves) ** 2)) for way in ways]

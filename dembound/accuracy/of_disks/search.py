@@ -1,7 +1,8 @@
 """The cheapest choice of disks and sides that keeps the error of all monitors within a bound.
 
-Choices are tried in the order of their counted cost, and only those are built whose error is to be found. None of them
-is run: what their sides send back is found with companions of larger disks, the rest by formulas.
+Choices are tried in the order of their counted cost, first those whose errors formulas give, then cheaper ones with
+companions, and only those are built whose error is to be found. None of them is run: what their sides send back is
+found with companions of larger disks, the rest by formulas.
 """
 
 from __future__ import annotations
@@ -13,36 +14,30 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
 
-import numpy as np
-
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import SIDES, STEP, Causes, Truth
-from dembound.accuracy.choice import OWN, Choice, digest
+from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, entry_notes, of_ground
+from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, of_ground
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.cost import planned_cost
-from dembound.accuracy.of_disks.law import ElasticTwin, elastic_twin
+from dembound.accuracy.of_disks.law import ElasticTwin
 from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_error
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.of_disks.pair import sides_of_pair
-from dembound.accuracy.proposal import Advice, Proposal
-from dembound.accuracy.runner import BUDGET, SHORT, Runner
+from dembound.accuracy.proposal import Proposal
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
 from dembound.motion.kind import Plan
-from dembound.motion.silence import monitored
-from dembound.running import plan
 
 LONGEST, PART = 8.0, 0.2
 """CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
 that it finds the same on every machine."""
 
-PER_FACTOR, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.04, 0.12, 5e-6, 2e-8
-"""CPU seconds of counting the costs of all choices with disks of one diameter, of building a choice, of finding its
-error, of building it by disk, and of its companions by particle-step."""
+PER_FACTOR, PER_REFUSED, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.02, 0.04, 0.12, 5e-6, 2e-8
+"""CPU seconds of counting the costs of all choices with disks of one diameter, of a choice that cannot run, of building
+one that can, of finding its error, of building it by disk, and of its companions by particle-step."""
 
 HELD = 30_000
 """Disks up to which a choice remains in memory, for other bounds."""
@@ -50,89 +45,6 @@ HELD = 30_000
 COSTLIEST, AFFORDABLE = 64.0, 60.0
 """Cost up to which choices are tried: so many times that of the given case, as disks of a quarter of the diameter have,
 or so many CPU seconds if that is more."""
-
-
-def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
-    """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
-
-    of : the truth that errors are those of; where these are the disks, they remain. kept : keys that do not change.
-    Where one bound is asked for, which the case keeps in less time than a search takes, this is the choice.
-
-    Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
-    the companions.
-    """
-    _require_known(case)
-    kept = [*kept, "packing.radius"] if of == "disks" else kept
-    planned: Plan[DiskScene] = plan(case)
-    most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
-    companions = Companions(case, planned.scene, planned.time_step, most, Runner())
-    try:
-        moved = [own.values["velocity"] for own in companions.recorded(companions.scene).values()]
-    except CaseError as error:
-        what = f"advise: the same with disks of {companions.diameter:.4g} m, which it has to run, is refused"
-        raise CaseError([f"{what}: {problem}" for problem in error.problems], case.name) from error
-    if not _is_reached(planned) or not any(map(np.any, moved)):
-        raise CaseError(["advise: nothing moves at the monitors"], case.name)
-    given = _given(companions, of, planned_cost(planned).seconds)
-    if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
-        return Advice(given, {bounds[0]: given}, 1)
-    searches = [_Search(companions, planned, of, kept, given.cost)]
-    searches[0].know(given.budget)
-    if bounds and (twin := elastic_twin(case, planned, most, kept, companions.runner)) is not None:
-        own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
-        searches.insert(0, _Search(own, twin.planned, of, kept, planned_cost(twin.planned).seconds, twin))
-    best = {bound: _best(case, searches, bound) for bound in sorted(bounds, reverse=True)}
-    return Advice(given, best, sum(search.tried for search in searches))
-
-
-def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
-    """The case as it is."""
-    scene = companions.scene
-    causes = causes_of_choice(companions, scene, companions.time_step, 0.0) + Causes([], [], entry_notes(scene))
-    budget = Budget(companions.recorded(scene), causes, of)
-    return Proposal(Choice(OWN + _before_breaks(companions), {}, companions.case), cost, budget)
-
-
-def _before_breaks(companions: Companions) -> str:
-    """Words that errors are those before bonds break, where they do."""
-    breaks = companions.first_break
-    if breaks >= companions.case.run.duration:
-        return ""
-    return f"; the error is that before bonds break, after about {breaks:.3g} s"
-
-
-def _best(given: DiskCase, searches: Sequence[_Search], bound: float) -> Proposal:
-    """The best choice of several searches, the second one only where the first finds none."""
-    found = []
-    for search in searches:
-        found.append(search.proposal(given, bound))
-        if found[-1].holds(bound) or (search.twin is not None and search.twin.stress == 0.0):
-            break
-    return min(found, key=lambda each: (not each.holds(bound), each.budget.worst().share.upper))
-
-
-def _require_known(case: DiskCase) -> None:
-    """Raise CaseError where errors, or the body itself, depend on what is not known for other disks and sides."""
-    problems = []
-    if case.static is not None and case.static.from_ is not None:
-        problems.append("static.from: is the body of the given disks and sides; must be left out for advice")
-    if not case.driving and case.incident is None:
-        reason = "starts waves everywhere, so that their delay by the disks is not known; advice needs a place"
-        problems += [
-            f"load.{load.name}: {reason}" for load in case.load if load.is_everywhere and load.wave is not None
-        ]
-    if problems:
-        raise CaseError(problems, case.name)
-
-
-def _is_reached(planned: Plan[DiskScene]) -> bool:
-    """Whether the fastest waves come to any monitor within the run."""
-    scene, duration = planned.scene, planned.scene.case.run.duration
-    front, places = planned.kind.front(scene, planned.time_step), monitored(scene)
-    return any(
-        float(source.distance(places).min()) <= front.reach(duration - source.start)
-        for source in planned.kind.sources(scene)
-    )
 
 
 @dataclass(frozen=True)
@@ -173,7 +85,7 @@ class _Tried:
 
 
 @dataclass
-class _Search:
+class Search:
     """The search for a choice.
 
     planned : the case; own_cost : CPU time (s) of its steps. twin : its case, if its law is not that given. tried :
@@ -181,10 +93,9 @@ class _Search:
     whether choices were left out for that. waiting : by cost, what may come next: diameters, their choices, and those
     that are built and cost more than others may. of_sides : by arrangement and distance the largest error of its sides
     alone. of_disks : by factors of diameter and step, with a continuum and without, the smallest error of disks.
-    of_given_disks : that of the given disks.
-    known : choices whose error was found for another bound, by the digest of their case. made : those that were built,
-    or that cannot run, by the text of their case and how much farther away their sides are. counted : factors of the
-    diameter for which the time steps of continua have been found.
+    of_given_disks : that of the given disks. known : choices whose error was found for another bound, by the digest of
+    their case. made : those that were built, or that cannot run, by the text of their case and how much farther away
+    their sides are. counted : factors of the diameter for which the time steps of continua have been found.
     """
 
     companions: Companions
@@ -215,7 +126,7 @@ class _Search:
         self.spent, self.was_cut, self._options = 0.0, False, {}
         best = self.best()
         words = best.option.words if self.twin is None else f"{self.twin.words}; {best.option.words}"
-        words += (until := _before_breaks(self.companions))
+        words += (until := before_breaks(self.companions))
         if self.was_cut and best.upper > bound:
             words += "; the search ended early, as it had taken long beside the run"
         found = Proposal(Choice.of(given, best.built.case, words), best.built.cost, best.budget)
@@ -350,7 +261,7 @@ class _Search:
         if key not in self.made:
             built = self.options.build(option)
             disks = 0 if built is None else built.planned.scene.disk_count
-            self.spent += PER_CHOICE + PER_DISK * disks
+            self.spent += PER_REFUSED if built is None else PER_CHOICE + PER_DISK * disks
             if disks > HELD:
                 return built
             self.made[key] = built
@@ -408,3 +319,11 @@ def _sides(option: DiskOption) -> tuple[str, float]:
 def _disks(option: DiskOption) -> tuple[float, float, bool]:
     """The size of the disks of a choice and its time step over those given, and whether they are in a continuum."""
     return option.factor, option.shorter, bool(option.case.outside_sides)
+
+
+def before_breaks(companions: Companions) -> str:
+    """Words that errors are those before bonds break, where they do."""
+    breaks = companions.first_break
+    if breaks >= companions.case.run.duration:
+        return ""
+    return f"; the error is that before bonds break, after about {breaks:.3g} s"

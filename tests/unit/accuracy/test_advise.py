@@ -128,9 +128,9 @@ def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken()
 
 def test_without_time_for_any_the_cheapest_choice_is_tried_and_this_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(of_disks, "LONGEST", 0.0)
-    choice = advised(bar(), 0.001)
+    choice = advised(bar(), 0.1)  # larger disks alone do not err so much
     assert "the search ended early" in choice.words
-    assert choice.cost <= choice.own_cost
+    assert choice.cost < choice.own_cost
     assert choice.tried == 1
 
 

@@ -214,7 +214,9 @@ def test_the_shift_of_many_round_trips_adds_no_more_than_twice_the_motion() -> N
     (cause,) = HeldSides(build(case)).causes({"top": own})
     error = np.abs(cause.parts["top"]["velocity"]).max()
     largest = np.abs(own.values["velocity"]).max()
-    assert 1.5 * largest < error < 2.1 * largest  # the pulses are apart by then
+    # pulses of 50 ms come 250 ms too early in the end, so that both motions count, as one or as their sum; dispersion
+    # changes their height by less than a tenth
+    assert 0.9 * largest < error < 2.1 * largest
 
 
 def test_springs_of_a_driven_side_and_held_sides_without_an_estimate_are_named() -> None:
