@@ -7,7 +7,7 @@ kinetic energy where velocities change their sign within a step, as at impacts. 
 or close within a step is a column of its own. The remaining error comes from rotating normals and from rounding.
 """
 
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -201,7 +201,7 @@ class Ledger(Tracker):
     @property
     def columns(self) -> np.ndarray:
         """All entries, (k, 15), in the order of `Entry`."""
-        return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
+        return np.array([tuple(vars(entry).values()) for entry in self.entries]).reshape(-1, len(fields(Entry)))
 
     @property
     def side_columns(self) -> np.ndarray:

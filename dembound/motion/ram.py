@@ -4,6 +4,10 @@ A run needs most in its largest stage: the program, plus the arrays of the stage
 shapes. What a stage needs beyond the arrays that remain is the temporary arrays of its largest moment.
 """
 
+import time
+from collections.abc import Callable
+from functools import lru_cache
+
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.machine import Memory, memory_here
@@ -52,9 +56,15 @@ def must_fit(need: float, key: str, things: str) -> None:
 
     key : of the case, which determines the number of things; things : their number in words.
     """
-    here = memory_here()
+    here = _memory(memory_here, int(time.monotonic()))
     if here is not None and need > here.free:
         raise CaseError([f"{key}: {things} need about {in_words(need)} of memory, {has_in_words(here)}"])
+
+
+@lru_cache(maxsize=1)
+def _memory(read: Callable[[], Memory | None], second: int) -> Memory | None:
+    """The memory, read once a second: a search plans hundreds of scenes, and reading takes as long as planning one."""
+    return read()
 
 
 def has_in_words(here: Memory) -> str:

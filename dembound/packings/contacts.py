@@ -38,7 +38,7 @@ def listed(
     from dembound.kernels import pack
 
     pairs, images = near_pairs(positions, radii, box, reach)
-    first, second = pairs.T.astype(np.uint32)
+    first, second = np.ascontiguousarray(pairs.T, dtype=np.uint32)
     shift_x, shift_y = np.ascontiguousarray((images * box).T)
     return pairs, images, pack.Pairs(first, second, shift_x, shift_y, radii[first] + radii[second])
 

@@ -110,7 +110,9 @@ class Recorder:
         try:
             if kind is None:
                 self.file.attrs["complete"] = True
-            self.flush(durable=False)
+            self._write_all()
+            self.file.close()
+            self._store.commit(durable=False)
         finally:
             self._close()
 
@@ -171,11 +173,7 @@ class Recorder:
         """
         import h5py
 
-        self._append_kept()
-        self._append_energy()
-        self._append_laws()
-        self._write_peaks()
-        self.file.attrs["steps"] = self.run.state.step
+        self._write_all()
         self.file.close()  # an open file has a mark, and could not be read
         try:
             self._store.commit(durable=durable)
@@ -226,6 +224,14 @@ class Recorder:
         header = header_of(self.run)
         describe(self.file, {name: header[name] for name in ("case", "keys")})  # it may run for longer
 
+    def _write_all(self) -> None:
+        """Write everything up to now."""
+        self._append_kept()
+        self._append_energy()
+        self._append_laws()
+        self._write_peaks()
+        self.file.attrs["steps"] = self.run.state.step
+
     def _append_kept(self) -> None:
         """Write samples and cracks that are kept in memory."""
         if self._times:
@@ -261,6 +267,8 @@ class Recorder:
         if self.ledger is None:
             return
         written = len(self._energy["time"])
+        if written == len(self.ledger.columns):
+            return
         columns, sides = self.ledger.columns[written:], self.ledger.side_columns[written:]
         for field, column in zip(fields(Entry), columns.T, strict=True):
             extend(self._energy[field.name], column)

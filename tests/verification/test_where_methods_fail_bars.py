@@ -5,6 +5,8 @@ import ends
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(("horizon", "cells"), [(1, 5.9), (8, 53.2)])
 def test_cells_for_one_per_cent(horizon, cells):

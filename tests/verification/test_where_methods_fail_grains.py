@@ -7,6 +7,8 @@ import pytest
 from dembound.disks.reports.warnings import LARGEST_PULL
 from dembound.disks.stability import OPENING
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(("pattern", "delay", "loss"), [("A", 0.0056, 0.023), ("B", 0.0115, 0.14), ("C", 0.0152, 0.30)])
 def test_twenty_diameters_in_a_wavelength_disperse(pattern, delay, loss):

@@ -12,12 +12,12 @@ from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 
-SLOW = pytest.mark.slow
+pytestmark = pytest.mark.slow
 
 
 @pytest.mark.parametrize(
     ("nodes", "part"),
-    [(17.0, 2.2e-4), (8.0, 2.7e-3), pytest.param(6.0, 1.6e-2, marks=SLOW), pytest.param(4.0, 0.47, marks=SLOW)],
+    [(17.0, 2.2e-4), (8.0, 2.7e-3), (6.0, 1.6e-2), (4.0, 0.47)],
 )
 def test_coarse_elements_send_back_short_waves(nodes: float, part: float) -> None:
     """S waves at normal incidence, which layers without elements would take to 2e-6; elements are whole disks high."""

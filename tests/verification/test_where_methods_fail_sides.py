@@ -5,6 +5,8 @@ import pytest
 import sides
 from oblique import reflection
 
+pytestmark = pytest.mark.slow
+
 
 def test_lagged_dampers_halve_the_stable_step():
     """With half end masses to 1/√(1 + β²) of the limit without dashpots, 0.447 for β = 2; with whole ones to 0.799."""

@@ -41,13 +41,13 @@ def followers() -> Callable[..., tuple[Followers, np.ndarray]]:
             start=np.cumsum([0, *(len(nodes) for nodes in SIDES.values())]),
             member=members,
             twin=twins,
-            arm=np.concatenate(arms, axis=1),
+            arm=np.ascontiguousarray(np.concatenate(arms, axis=1)),
             node=NODE,
             side=SIDE,
             force=force,
             steady=rng.uniform(-1.0, 1.0, (2, len(NODE))),
             extra=np.full((2, len(NODE)), np.nan),
-            rest=DATUM[:2, members] - (DATUM[:2, twins] if twinned else 0.0),
+            rest=np.ascontiguousarray(DATUM[:2, members] - (DATUM[:2, twins] if twinned else 0.0)),
         )
         return table, places
 

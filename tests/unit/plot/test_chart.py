@@ -52,7 +52,7 @@ def test_points_are_errors_in_per_cent_at_their_cost(chart) -> None:
     assert texts(side) == ["Pareto front, the cheapest first", "coarse: 20 %, 0.5 s", "fine: 1 %, 4 s"]
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2))])
 def test_no_point_off_the_drawn_front_is_left_of_and_below_all_on_it_and_none_on_it_is_dominated(chart, seed) -> None:
     """Of the points of the figure itself; errors at both ends of those that can be drawn, and costs in ties."""
     rng = np.random.default_rng(seed)
