@@ -43,7 +43,7 @@ class Run:
     time_step, step_limit (s), steps : of the run. count : number of nodes that are stepped.
     work : in the unit of its kind of body. threads : of the steps. late : s, by which all motion is later than that of
     waves through the planes of sides, see `Kind.late`.
-    motions, findings : by name.
+    motions, findings : by name. laws : names of those used.
     cpu, wall : s, of every timed run: CPU time of all threads while stepping, and time of the whole run.
     """
 
@@ -57,6 +57,7 @@ class Run:
     late: float = 0.0
     motions: Motions = field(default_factory=dict)
     findings: Mapping[str, Finding] = field(default_factory=dict)
+    laws: tuple[str, ...] = ()
     cpu: list[float] = field(default_factory=list)
     wall: list[float] = field(default_factory=list)
 
@@ -164,6 +165,7 @@ def _run_of(planned: Plan, simulation: Simulation, records: Records, inside: Box
         late=kind.late(scene) or 0.0,
         motions=_motions(planned, records),
         findings=kind.findings(scene, simulation, inside),
+        laws=tuple(name for name, _ in simulation.state.laws),
     )
 
 

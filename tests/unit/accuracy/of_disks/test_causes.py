@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
+from dembound.accuracy.cause import STEP
 from dembound.accuracy.of_disks.causes import causes_of_run, of_ground
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.places import places_of_loads
-from dembound.accuracy.runner import measure
+from dembound.accuracy.runner import at_step, measure
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.kinds import with_changes
@@ -130,3 +132,71 @@ def test_waves_of_a_load_come_back_early_from_disks_that_are_held(side: str) -> 
         difference = (values - finer.at(own.time).values[quantity][:, :2])[:, 1]
         expected = 2.0 / 3.0 * np.asarray(found.parts["m"][quantity])[:, 1]
         assert np.linalg.norm(difference - expected) < 0.35 * np.linalg.norm(difference)
+
+
+GRAVEL = PUSHED | {
+    "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
+    "material": {"density": 2000.0, "p_wave_speed": 400.0, "law": "linearpbond", "fric": 0.3},
+    "static": {"ratio": 1e-6, "boundary": {"bottom": {"type": "fixed"}}},
+    "boundary": {
+        "bottom": {"type": "velocity", "wave_s": "shake"},
+        "left": {"type": "periodic"},
+        "right": {"type": "periodic"},
+    },
+    "wave": {"shake": {"type": "cosine", "amplitude": 0.2, "period": 0.1}},
+    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+    "monitor": [{"name": "top", "position": [5.0, 4.75]}],
+    "run": {"duration": 0.15},
+}
+"""Disks under their weight that slide as their base is shaken, from half of the run on."""
+
+
+def test_where_contacts_slide_the_time_step_is_found_with_half_of_it() -> None:
+    """Its error is 3.8 times that of the formula, which is that of elastic contacts."""
+    case = small(GRAVEL)
+    assert isinstance(case, DiskCase)
+    step = plan(case).time_step
+    run, fine = (measure(at_step(case, step / n), Progress())[0] for n in (1, 8))
+    assert run.laws == ("elastic", "linearpbond")
+    recorded = {
+        name: replace(own, values={q: v[:, :2] for q, v in own.values.items()}) for name, own in run.motions.items()
+    }
+    found = next(cause for cause in causes_of_run(case, recorded, step, run.work, 1e9).found if cause.name == STEP)
+    assert (found.how, found.is_sample) == ("companion", True)
+
+    own = recorded["top"].velocity[:, 0]
+    true = np.linalg.norm(own - fine.motions["top"].at(recorded["top"].time).velocity[:, 0]) / np.linalg.norm(own)
+    # one sample of a random error; were it all of the difference, or none of it, it would be 1.12 times or 0
+    assert found.share("top", "velocity", recorded["top"]) == pytest.approx(true, rel=0.3)
+    (formula,) = (cause for cause in Formulas(plan(case).scene, step).causes(recorded) if cause.name == STEP)  # type: ignore[arg-type]
+    assert true > 3.0 * formula.share("top", "velocity", recorded["top"])
+
+
+def test_errors_of_contacts_grow_as_the_step_over_its_limit() -> None:
+    case = small(GRAVEL)
+    assert isinstance(case, DiskCase)
+    planned = plan(case)
+    scene, step = planned.scene, planned.time_step
+    assert isinstance(scene, DiskScene)
+    for most in (1e9, 0.0):  # by the given disks, by larger ones
+        companions = Companions(case, scene, step, most)
+        whole, half = (companions.of_steps(scene, each)["top"]["velocity"] for each in (step, 0.5 * step))
+        np.testing.assert_allclose(half, 0.5 * np.asarray(whole))
+        finer = plan(with_changes(case, {"packing.radius": 0.125})).scene
+        assert isinstance(finer, DiskScene)
+        same = companions.of_steps(finer, 0.5 * step)["top"]["velocity"]  # as far below the limit
+        assert np.linalg.norm(same) == pytest.approx(np.linalg.norm(np.asarray(whole)), rel=0.2)  # at another place
+
+
+def test_contacts_that_remain_elastic_have_the_errors_of_the_formula() -> None:
+    pressed = {
+        "material": GRAVEL["material"] | {"pb_ten": 2e6, "pb_coh": 2e6},
+        "static": {"stress": [-1e6, -1e6, 0.0]},
+        "boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom", "top")},
+        "load": [{"name": "hit", "force": [0.0, 1e4], "region": [4.0, 2.0, 6.0, 3.0], "wave": "shake"}],
+    }
+    case = small(GRAVEL | pressed)
+    assert isinstance(case, DiskCase)
+    planned = plan(case)
+    assert isinstance(planned.scene, DiskScene)
+    assert Companions(case, planned.scene, planned.time_step, 1e9).of_steps(planned.scene, planned.time_step) == {}
