@@ -37,7 +37,7 @@ def load(path: Path, schemas: Sequence[Schema]) -> Case:
         raise CaseError([f"cannot be read: {error.strerror}"], str(path)) from None
     except ValueError:
         raise CaseError(["is not the path of a file"], str(path)) from None
-    return _read(text, path.parent, path.stem, str(path), schemas)
+    return of_tables(parsed(text, str(path)), text, schemas, path.parent, path.stem, str(path))
 
 
 def loads(
@@ -51,21 +51,22 @@ def loads(
 
     files : texts of files that the case refers to, by their paths in it, in place of files in the folder.
     """
-    return _read(text, folder, name, name, schemas, files)
+    return of_tables(parsed(text, name), text, schemas, folder, name, files=files)
 
 
-def _read(
+def of_tables(
+    data: Mapping[str, Any],
     text: str,
+    schemas: Sequence[Schema],
     folder: Path,
     name: str,
-    source: str,
-    schemas: Sequence[Schema],
+    source: str = "",
     files: Mapping[str, str] | None = None,
 ) -> Case:
-    """The case; source : name of the text in errors."""
+    """The case of the tables that a TOML text contains; errors as `loads`. source : name of the text in them."""
+    source = source or name
     if CONTROL.search(name):
         raise CaseError(["has a name with control characters or bytes that are not text, rename it"], source)
-    data = parsed(text, source)
     schema = next((schema for schema in schemas if not data.keys().isdisjoint(schema.marks)), None)
     known = list(dict.fromkeys(key for each in schemas for key in each.keys))  # no mapping
     if schema is None:

@@ -24,7 +24,11 @@ def parsed(text: str, source: str = "") -> dict[str, Any]:
 
     Raises CaseError for a text that is not TOML, is nested too deeply, or contains a date or time, which no key has.
     """
-    data = _parsed(text, source)
+    return allowed(_parsed(text, source), source)
+
+
+def allowed(data: dict[str, Any], source: str = "") -> dict[str, Any]:
+    """The tables of a TOML text, without values that `parsed` refuses, for which it raises CaseError."""
     if problems := list(_problems(data)):
         raise CaseError(problems, source)
     return data

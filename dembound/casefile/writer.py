@@ -1,6 +1,8 @@
 """Cases made from other cases: the same TOML with some keys changed."""
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +11,9 @@ import tomli_w
 from dembound.casefile.edit import edited
 from dembound.casefile.keys import applied
 from dembound.casefile.model import Case
-from dembound.casefile.reader import loads
+from dembound.casefile.reader import of_tables
 from dembound.casefile.schema import Schema
-from dembound.casefile.toml import parsed
+from dembound.casefile.toml import allowed, parsed
 
 
 def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schema]) -> Case:
@@ -32,8 +34,15 @@ def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schem
     CaseError
         If a key does not exist or the changed case is not valid.
     """
-    text = tomli_w.dumps(applied(parsed(case.text), changes))  # in a tenth of the time that `edited` takes
-    return loads(text, schemas, case.folder, case.name, case.files)
+    tables = applied(deepcopy(_tables(case.text)), changes)
+    text = tomli_w.dumps(tables)  # in a tenth of the time that `edited` takes
+    return of_tables(allowed(tables, case.name), text, schemas, case.folder, case.name, files=case.files)
+
+
+@lru_cache(maxsize=32)
+def _tables(text: str) -> dict[str, Any]:
+    """The tables of a text, not to be changed: a search changes one case a thousand times."""
+    return parsed(text)
 
 
 def to_toml(case: Case, folder: Path | None = None) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from dembound.accuracy.of_disks.causes import causes_of_choice, entry_notes
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.law import elastic_twin
-from dembound.accuracy.of_disks.search import LONGEST, Search, before_breaks
+from dembound.accuracy.of_disks.search import CUT, LONGEST, Search, before_breaks
 from dembound.accuracy.proposal import Advice, Proposal
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
 from dembound.casefile.disks import DiskCase
@@ -53,7 +54,7 @@ def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: S
     if bounds and (twin := elastic_twin(case, planned, most, kept, companions.runner)) is not None:
         own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
         searches.insert(0, Search(own, twin.planned, of, kept, planned_cost(twin.planned).seconds, twin))
-    best = {bound: _best(case, searches, bound) for bound in sorted(bounds, reverse=True)}
+    best = {bound: _best(given, case, searches, bound) for bound in sorted(bounds, reverse=True)}
     return Advice(given, best, sum(search.tried for search in searches))
 
 
@@ -65,14 +66,19 @@ def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
     return Proposal(Choice(OWN + before_breaks(companions), {}, companions.case), cost, budget)
 
 
-def _best(given: DiskCase, searches: Sequence[Search], bound: float) -> Proposal:
-    """The best choice of several searches, the second one only where the first finds none."""
-    found = []
+def _best(given: Proposal, case: DiskCase, searches: Sequence[Search], bound: float) -> Proposal:
+    """The best choice of several searches, the second one only where the first finds none; at least the case given."""
+    found = [given]
     for search in searches:
-        found.append(search.proposal(given, bound))
+        found.append(search.proposal(case, bound))
         if found[-1].holds(bound) or (search.twin is not None and search.twin.stress == 0.0):
             break
-    return min(found, key=lambda each: (not each.holds(bound), each.budget.worst().share.upper))
+    if kept := [each for each in found if each.holds(bound)]:
+        return min(kept, key=lambda each: each.cost)
+    least = min(found, key=lambda each: each.budget.worst().share.upper)
+    if least is given and any(search.was_cut for search in searches):
+        return replace(given, choice=replace(given.choice, name=given.choice.name + CUT))
+    return least
 
 
 def _require_known(case: DiskCase) -> None:

@@ -10,16 +10,17 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import SIDES, STEP, Causes, Truth
+from dembound.accuracy.cause import SIDES, STEP, Cause, Causes, Truth
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, of_ground
+from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, of_ground, of_sides
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.law import ElasticTwin
 from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_error
@@ -39,12 +40,20 @@ PER_FACTOR, PER_REFUSED, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.02,
 """CPU seconds of counting the costs of all choices with disks of one diameter, of a choice that cannot run, of building
 one that can, of finding its error, of building it by disk, and of its companions by particle-step."""
 
+CUT = "; the search ended early, as it had taken long beside the run"
+"""Words on a choice that does not keep a bound, where others were left out for their time."""
+
 HELD = 30_000
 """Disks up to which a choice remains in memory, for other bounds."""
 
 COSTLIEST, AFFORDABLE = 64.0, 60.0
 """Cost up to which choices are tried: so many times that of the given case, as disks of a quarter of the diameter have,
 or so many CPU seconds if that is more."""
+
+
+MORE = 1.1
+"""Cost of a choice that was built, over that of the next one, from which on it waits until that has been tried: counted
+costs, by which they are in order, are not nearer to it."""
 
 
 @dataclass(frozen=True)
@@ -80,8 +89,8 @@ class _Tried:
     """Choices with their errors, those left out as part of their error is too large, and those that take too long."""
 
     found: list[_Found] = field(default_factory=list)
-    left: list[DiskOption] = field(default_factory=list)
-    too_long: list[DiskOption] = field(default_factory=list)
+    left: list[DiskOption | Built] = field(default_factory=list)
+    too_long: list[DiskOption | Built] = field(default_factory=list)
 
 
 @dataclass
@@ -128,7 +137,7 @@ class Search:
         words = best.option.words if self.twin is None else f"{self.twin.words}; {best.option.words}"
         words += (until := before_breaks(self.companions))
         if self.was_cut and best.upper > bound:
-            words += "; the search ended early, as it had taken long beside the run"
+            words += CUT
         found = Proposal(Choice.of(given, best.built.case, words), best.built.cost, best.budget)
         return found if until else ended_earlier(found, given, bound, best.motion, self.kept)
 
@@ -164,21 +173,23 @@ class Search:
         """
         self.waiting = []
         for item in self._by_cost():
-            option = item.option if isinstance(item, Built) else item
+            option = _option(item)
             if item.cost >= most:
                 break
             if bool(sides_of_pair(option.case)) is not with_companions:
                 continue
-            if not self._affords(option):
-                tried.too_long.append(option)
+            if not self._affords(item):
+                tried.too_long.append(item)
                 continue
+            if with_companions and self._keeps(self._alone(option)) and not isinstance(item, Built):
+                self._know_sides(option)
             if not self._keeps(self._alone(option)):
-                tried.left.append(option)
+                tried.left.append(item)
                 continue
             built = item if isinstance(item, Built) else self._built(item)
             if built is None:
                 continue
-            if built is not item and self.waiting and built.cost > self.waiting[0][0]:
+            if built is not item and self.waiting and built.cost > MORE * self.waiting[0][0]:
                 self._wait(built.cost, built)
                 continue
             tried.found += self._with_error(built, tried.left)
@@ -186,34 +197,39 @@ class Search:
                 return built.cost
         return most
 
-    def _most_accurate(self, found: list[_Found], left: list[DiskOption], too_long: list[DiskOption]) -> _Found:
+    def _most_accurate(
+        self, found: list[_Found], left: list[DiskOption | Built], too_long: list[DiskOption | Built]
+    ) -> _Found:
         """The choice with the smallest error of those found and those left out, as none keeps the bound.
 
         These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
         below the smallest one found. Those that take too long come last, the cheapest first, where there is no other.
         """
         while left:
-            left.sort(key=self._alone)
-            option = left.pop(0)
-            if found and self._alone(option) >= min(each.upper for each in found):
+            left.sort(key=lambda each: self._alone(_option(each)))
+            item = left.pop(0)
+            if found and self._alone(_option(item)) >= min(each.upper for each in found):
                 break
-            if not self._affords(option):
-                too_long.append(option)
-            elif (built := self._built(option)) is not None:
+            if not self._affords(item):
+                too_long.append(item)
+            elif (built := item if isinstance(item, Built) else self._built(item)) is not None:
                 found += self._with_error(built, None)
         self.was_cut = bool(too_long)
-        for option in sorted(too_long, key=lambda each: each.cost):
-            if not found and (built := self._built(option)) is not None:
+        for item in sorted(too_long, key=lambda each: each.cost):
+            if not found and (built := item if isinstance(item, Built) else self._built(item)) is not None:
                 found += self._with_error(built, None)
         if not found:
             raise CaseError(["advise: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each.upper)
 
-    def _affords(self, option: DiskOption) -> bool:
+    def _affords(self, item: DiskOption | Built) -> bool:
         """Whether the search may go on with a choice; the work of companions leaves its time to those without any."""
+        option = _option(item)
         packing = option.case.packing
         most = max(LONGEST, PART * self.own_cost)
-        spent = self.spent + PER_CHOICE + PER_ERROR + PER_DISK * packing.about(packing.extent)
+        spent = self.spent + PER_ERROR
+        if not isinstance(item, Built):
+            spent += PER_CHOICE + PER_DISK * packing.about(packing.extent)
         if sides_of_pair(option.case):
             spent += PER_STEP * self.companions.runner.work
         return spent <= most
@@ -281,7 +297,26 @@ class Search:
             self._options[factor] = self.options.of(factor)
         return self._options[factor]
 
-    def _with_error(self, built: Built, left: list[DiskOption] | None) -> list[_Found]:
+    def _know_sides(self, option: DiskOption) -> None:
+        """Find the error of the sides of a choice with smaller disks by the given ones, which take less to build."""
+        if _sides(option) in self.of_sides or option.factor >= 1.0:
+            return
+        given = (each for each in self._of(1.0) if _sides(each) == _sides(option) and each.shorter == 1.0)
+        same = next(given, None)
+        if same is None or not self._affords(same) or (built := self._built(same)) is None:
+            return
+        scene = built.planned.scene
+        self.spent += PER_ERROR
+        with suppress(DemboundError):
+            self._note_sides(option, [of_sides(self.companions, scene, built.planned.time_step, option.wider)], scene)
+
+    def _note_sides(self, option: DiskOption, causes: Sequence[Cause], scene: DiskScene) -> None:
+        """Take the error of the sides of a choice from its causes."""
+        sides = Causes([cause for cause in causes if cause.name == SIDES])
+        alone = Budget(self.companions.recorded(scene), sides, self.of).worst().share.upper
+        self.of_sides[_sides(option)] = max(alone, self.of_sides.get(_sides(option), 0.0))
+
+    def _with_error(self, built: Built, left: list[DiskOption | Built] | None) -> list[_Found]:
         """A choice with its error; nothing if a companion of it cannot run.
 
         left : where it is left, without its companions, if the error of its disks alone is too large; None: nowhere.
@@ -296,19 +331,22 @@ class Search:
             error = Budget(motions, of_disks, self.of).worst().share.upper
             self.of_disks[_disks(option)] = min(error, self.of_disks.get(_disks(option), error))
             if left is not None and not self._keeps(error):
-                left.append(option)
+                left.append(built)
                 return []
             self.tried += 1
             self.spent += PER_ERROR
             causes = causes_of_choice(self.companions, scene, step, option.wider, ground)
         except DemboundError:
             return []
-        sides = Causes([cause for cause in causes.found if cause.name == SIDES])
-        alone = Budget(motions, sides, self.of).worst().share.upper
-        self.of_sides[_sides(option)] = max(alone, self.of_sides.get(_sides(option), 0.0))
+        self._note_sides(option, causes.found, scene)
         law = [] if self.twin is None else self.twin.causes(scene, motions)
         self.known[key] = [_Found(built, Budget(motions, causes + Causes(law), self.of))]
         return self.known[key]
+
+
+def _option(item: DiskOption | Built) -> DiskOption:
+    """A choice before it was built."""
+    return item.option if isinstance(item, Built) else item
 
 
 def _sides(option: DiskOption) -> tuple[str, float]:

@@ -126,11 +126,11 @@ def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken()
     assert of_these.best[0.6].case.packing.radius == 0.25  # type: ignore[attr-defined]
 
 
-def test_without_time_for_any_the_cheapest_choice_is_tried_and_this_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_time_for_any_one_choice_is_tried_and_none_is_worse_than_the_given_case(monkeypatch) -> None:
     monkeypatch.setattr(of_disks, "LONGEST", 0.0)
     choice = advised(bar(), 0.1)  # larger disks alone do not err so much
-    assert "the search ended early" in choice.words
-    assert choice.cost < choice.own_cost
+    assert choice.words == "as in the case; the search ended early, as it had taken long beside the run"
+    assert choice.cost == choice.own_cost
     assert choice.tried == 1
 
 
@@ -145,6 +145,24 @@ def test_a_choice_is_built_once_for_all_bounds(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(Options, "build", counting)
     advise(bar(), (0.02, 0.01), kept=["boundary"])  # of which none holds
     assert len(built) == len(set(built)) > 1
+
+
+def test_sides_that_reflect_too_much_are_left_out_before_smaller_disks_are_built(monkeypatch) -> None:
+    built: list[DiskOption] = []
+    build = Options.build
+
+    def noting(self: Options, option: DiskOption) -> Built | None:
+        built.append(option)
+        return build(self, option)
+
+    monkeypatch.setattr(Options, "build", noting)
+    case = small(BAR, changes={"boundary.right": {"type": "viscous", "beta_p": 0.5}})  # which returns a third
+    (best,) = advise(case, (0.001,), kept=["boundary"]).best.values()
+    assert best.holds(0.001)
+    assert best.case.packing.radius < 0.25  # type: ignore[attr-defined]
+    tried = [(option.factor, option.wider) for option in built if option.arrangement == "sides as given"]
+    assert [wider for factor, wider in tried if factor == 1.0] == [0.25, 0.5, 1.0]
+    assert {wider for factor, wider in tried if factor < 1.0} == {1.0}
 
 
 def test_what_cannot_be_chosen_for_is_refused() -> None:
