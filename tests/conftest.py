@@ -33,22 +33,30 @@ def one_thread():
     numba.set_num_threads(1)
 
 
-COMPILE_MOST = (
+FIRST = (
     "of_bars/test_causes.py",
     "of_disks/test_law.py",
+    "of_bars/test_search.py",
     "verification/test_resume.py",
-    "unit/test_cli.py",
+    "verification/test_gauge_records.py",
+    "gauge/test_strong_pulses.py",
+    "report/test_page.py",
+    "running/test_faults.py",
     "unit/test_mistakes.py",
+    "unit/test_cli.py",
 )
-"""Files that run first, of bars and of disks in turn: two processes do not compile the same kernels side by side."""
+"""Files that run first: two processes begin with the first two, go on with the next two, then take one after the other.
+
+So one compiles the kernels of bars, the other one those of disks, and what both need is compiled when they come to it.
+"""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the files that compile most first, the others by their number of tests."""
+    """Put `FIRST` first, the other files by their number of tests."""
     sizes = Counter(item.path for item in items)
 
     def place(item: pytest.Item) -> tuple[int, int]:
-        named = (k for k, name in enumerate(COMPILE_MOST) if item.path.as_posix().endswith(name))
-        return next(named, len(COMPILE_MOST)), -sizes[item.path]
+        named = (k for k, name in enumerate(FIRST) if item.path.as_posix().endswith(name))
+        return next(named, len(FIRST)), -sizes[item.path]
 
     items.sort(key=place)
