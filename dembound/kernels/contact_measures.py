@@ -17,7 +17,7 @@ TURN = 0.01
 def slack(u, contacts, limits, keeps_slip):
     """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
 
-    A pair leaves it where a contact opens, closes or slides, a bond reaches its strength, or, if geometry follows the
+    A pair leaves it where a contact that has a stiffness opens, closes or slides, a bond reaches its strength, or, if geometry follows the
     motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
     motion of the surfaces, which gives a lower bound for each condition. keeps_slip : contacts have slid earlier.
     """
@@ -44,7 +44,9 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
             kn = constants[k, U(5)]
             ks = constants[k, U(6)]
             overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
-            if constants[k, U(3)] >= distance:
+            if kn == 0.0:
+                pass  # without a contact beside the bond, which has no stiffness in shear either
+            elif constants[k, U(3)] >= distance:
                 room = min(room, overlap)
                 if ks > 0.0:
                     stuck = shear - slip[c] if keeps_slip else shear

@@ -76,6 +76,17 @@ def test_the_slack_of_one_pair_by_hand() -> None:
         assert slack(moved, pair, limits._replace(**changes), False) == pytest.approx(room, rel=1e-12)
 
 
+def test_without_a_stiffness_of_contacts_only_bonds_have_limits() -> None:
+    limits = UNBREAKABLE._replace(geometry=BONDED)
+    for moved, overlap in ((two(0.2), 0.1), (two(-0.2), -0.1), (two(0.0, 0.5), 0.1)):  # opens, closes, slides
+        pair = one_pair(INTACT, overlap=overlap)
+        assert slack(moved, pair, limits, False) < 0.0
+        pair.constants[:, 5:7] = 0.0
+        assert slack(moved, pair, limits, False) == np.inf
+    torn = limits._replace(tension=0.3)
+    assert slack(two(0.04, turn=-0.08), pair, torn, False) == pytest.approx((0.3 - 0.06 - 0.06) / 3.0, rel=1e-12)
+
+
 def test_a_pair_that_turns_leaves_small_displacements() -> None:
     pair = one_pair(overlap=10.0)
     limits = UNBREAKABLE._replace(friction=100.0)
