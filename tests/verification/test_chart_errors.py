@@ -44,6 +44,7 @@ def rod():
     return loads(tomli_w.dumps(tables))
 
 
+@pytest.mark.slow
 def test_the_finer_reference_of_a_bar_is_its_exact_solution(rod, tmp_path) -> None:
     """At ν = 1 it has no error but rounding, also where no exact solution is known: between a loaded and a held end.
 

@@ -41,7 +41,10 @@ def waves(folder, scale: float) -> dict:
     return {name: {"type": "file", "path": str(folder / f"{name}.txt"), "scale": scale} for name in ("push", "shake")}
 
 
-@pytest.mark.parametrize(("number", "limit"), list(enumerate(MATERIALS)))
+@pytest.mark.parametrize(
+    ("number", "limit"),
+    [pytest.param(k, each, marks=[pytest.mark.slow] if k else []) for k, each in enumerate(MATERIALS)],
+)
 def test_the_full_law_begins_at_the_load_factor(tmp_path, number, limit):
     rng = np.random.default_rng(number)
     for name in ("push", "shake"):

@@ -18,6 +18,7 @@ def missing(times: np.ndarray = TIMES, **elements: int) -> np.ndarray:
     return 1.0 - settlement(case, times) / exact_settlement(case, times)
 
 
+@pytest.mark.slow
 def test_a_continuum_follows_the_half_space() -> None:
     """Within 0.5 % up to 10 s, 2 % at 20 s, and more closely with a larger margin; what is missing follows the rule.
 

@@ -105,6 +105,7 @@ def test_a_ridge_between_two_floors_moves_as_one_of_disks_alone(lab) -> None:
     assert found[1].max() < 2.2e-3
 
 
+@pytest.mark.slow
 def test_the_floor_of_a_random_packing_has_a_skin(lab, monkeypatch) -> None:
     """Cut at any height. Without it displacements on the floor have 2.3 to 4.6 times the error, in three packings."""
     near_the_floor = monitors({"toe": (48.0, 16.8), "floor": (56.0, 16.8)}, 2)

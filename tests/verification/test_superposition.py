@@ -13,6 +13,7 @@ from dembound.studies.library import Library, build_library, read_records, write
 SPACING, COUNT = 1e-3, 27
 
 
+@pytest.mark.slow
 def test_a_record_at_an_angle_is_the_sum_of_its_triangles(tmp_path):
     tables = {key: table for key, table in SURROUNDED.items() if key != "outside"} | {
         "incident": {"type": "sv", "angle": 20.0, "wave": "quake"},

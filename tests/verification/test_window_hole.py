@@ -39,7 +39,8 @@ def part(difference: np.ndarray, of: np.ndarray) -> np.ndarray:
 # disks do beyond the mean strain, and at the surface that they are softer there (place 4), see docs/outside.md: 2.2 and
 # 3.8 %, C 2.8 %
 @pytest.mark.parametrize(
-    ("pattern", "within", "wave"), [("A", 6e-3, "wave_s"), ("B", 4.5e-2, "wave_p"), ("C", 3.5e-2, "wave_s")]
+    ("pattern", "within", "wave"),
+    [("A", 6e-3, "wave_s"), ("B", 4.5e-2, "wave_p"), pytest.param("C", 3.5e-2, "wave_s", marks=pytest.mark.slow)],
 )
 def test_it_does(lab, pattern: str, within: float, wave: str) -> None:
     expected, free = motion(lab.window(pattern, WHOLE, wave=wave, hole=True))

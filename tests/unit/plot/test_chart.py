@@ -83,6 +83,7 @@ def test_reference_others_and_failures_are_listed_and_exact_results_drawn_at_the
     assert point.get_ydata()[0] == LEAST
 
 
+@pytest.mark.slow
 def test_labels_cover_neither_each_other_nor_points_and_are_inside_the_panel(chart) -> None:
     rng = np.random.default_rng(3)
     crowd = [(f"choice {k}", error, cost) for k, (error, cost) in enumerate(np.exp(0.15 * rng.normal(size=(12, 2))))]

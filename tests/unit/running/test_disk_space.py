@@ -49,6 +49,7 @@ def _require_equal(case, results) -> None:
     assert sum(sizes.values()) - ALWAYS == pytest.approx(sum(found.values()) + found["checkpoint.npz"], rel=0.15)
 
 
+@pytest.mark.slow
 def test_the_size_of_histories_and_energies(bar, tmp_path) -> None:
     case = bar({"run.duration": 2.0, "output": {"snapshots": 0, "pictures": False, "energy_interval": 1e-3}})
     sizes = results_bytes(plan(case))
