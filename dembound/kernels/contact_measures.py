@@ -17,9 +17,10 @@ TURN = 0.01
 def slack(u, contacts, limits, keeps_slip):
     """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
 
-    A pair leaves it where a contact that has a stiffness opens, closes or slides, a bond reaches its strength, or, if geometry follows the
-    motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
-    motion of the surfaces, which gives a lower bound for each condition. keeps_slip : contacts have slid earlier.
+    A pair leaves it where a contact that has a stiffness opens, closes or slides, a bond reaches its strength, or, if
+    geometry follows the motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no
+    more than the relative motion of the surfaces, which gives a lower bound for each condition. keeps_slip : contacts
+    have slid earlier.
     """
     closest = np.empty(CHUNKS)
     _closest(u, contacts, limits, keeps_slip, closest)

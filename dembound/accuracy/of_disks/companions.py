@@ -236,15 +236,16 @@ class Companions:
             return {}
         shorter = self.runner.run(at_step(case, 0.5 * step))
         end, time = min(run.finding(BREAK_TIME), shorter.finding(BREAK_TIME)), next(iter(self.far.values())).time
-        each = [{name: own.at(time) for name, own in one.motions.items()} for one in (run, shorter)]
+        own, half = ({name: each.at(time) for name, each in one.motions.items()} for one in (run, shorter))
         if is_own:
-            own, half = ({name: {q: h.values[q][:, :2] for q in QUANTITIES} for name, h in one.items()} for one in each)
+            found = {name: {q: (own[name].values[q] - half[name].values[q])[:, :2] for q in QUANTITIES} for name in own}
         else:
-            own, half = (self._motion(motions, self._places(scene)) for motions in each)
+            with_step, with_half = (self._motion(motions, self._places(scene)) for motions in (own, half))
+            found = {name: {q: with_step[name][q] - with_half[name][q] for q in QUANTITIES} for name in with_step}
         diameter = self.scene.ground.brick.mean_diameter if is_own else self.diameter
         times = time_step / step * diameter / scene.ground.brick.mean_diameter / math.sqrt(1.25)
         known = times * (1.0 if is_own else OF_LARGER) * (time < end)[:, None]
-        return {name: {q: known * (own[name][q] - half[name][q]) for q in QUANTITIES} for name in own}
+        return {name: {q: known * each for q, each in by_quantity.items()} for name, by_quantity in found.items()}
 
     def _with_mirror_at(self, side: str) -> Motions:
         """The motion of the disks of all patches with far sides and a mirror plane at a side that stays."""

@@ -181,13 +181,12 @@ class Search:
             if not self._affords(item):
                 tried.too_long.append(item)
                 continue
-            if with_companions and self._keeps(self._alone(option)) and not isinstance(item, Built):
+            if with_companions and self._keeps(self._alone(item)):
                 self._know_sides(option)
-            if not self._keeps(self._alone(option)):
+            if not self._keeps(self._alone(item)):
                 tried.left.append(item)
                 continue
-            built = item if isinstance(item, Built) else self._built(item)
-            if built is None:
+            if (built := self._built(item)) is None:
                 continue
             if built is not item and self.waiting and built.cost > MORE * self.waiting[0][0]:
                 self._wait(built.cost, built)
@@ -206,17 +205,17 @@ class Search:
         below the smallest one found. Those that take too long come last, the cheapest first, where there is no other.
         """
         while left:
-            left.sort(key=lambda each: self._alone(_option(each)))
+            left.sort(key=self._alone)
             item = left.pop(0)
-            if found and self._alone(_option(item)) >= min(each.upper for each in found):
+            if found and self._alone(item) >= min(each.upper for each in found):
                 break
             if not self._affords(item):
                 too_long.append(item)
-            elif (built := item if isinstance(item, Built) else self._built(item)) is not None:
+            elif (built := self._built(item)) is not None:
                 found += self._with_error(built, None)
         self.was_cut = bool(too_long)
         for item in sorted(too_long, key=lambda each: each.cost):
-            if not found and (built := item if isinstance(item, Built) else self._built(item)) is not None:
+            if not found and (built := self._built(item)) is not None:
                 found += self._with_error(built, None)
         if not found:
             raise CaseError(["advise: no choice keeps the values of --keep and --set"], self.companions.case.name)
@@ -234,8 +233,9 @@ class Search:
             spent += PER_STEP * self.companions.runner.work
         return spent <= most
 
-    def _alone(self, option: DiskOption) -> float:
+    def _alone(self, item: DiskOption | Built) -> float:
         """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
+        option = _option(item)
         case = option.case
         walls = WALL_FACTOR * wall_error(case, 2.0 * case.packing.radius) if self.of == "rock" else 0.0
         return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(_disks(option), 0.0), walls)
@@ -271,8 +271,10 @@ class Search:
         """Numbers by which choices of one cost keep their order."""
         return count()
 
-    def _built(self, option: DiskOption) -> Built | None:
+    def _built(self, option: DiskOption | Built) -> Built | None:
         """A choice, built; None if it cannot run."""
+        if isinstance(option, Built):
+            return option
         key = option.case.text, option.wider
         if key not in self.made:
             built = self.options.build(option)
