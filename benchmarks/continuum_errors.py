@@ -115,10 +115,16 @@ def scenes() -> Iterator[tuple[str, Tables]]:
         yield f"hole A, {wave}", around("A", 30.0, 30.0, wave, radius=4.0)
         yield f"hole A, {wave}, 0.001", around("A", 30.0, 30.0, wave, 0.001, radius=4.0)
     yield "hole A, flat", around("A", 80.0, 16.0, "cosine 0.05 s", radius=4.0)
+    for accuracy in (0.001, 0.003, 0.03):
+        yield f"hole A, close, {accuracy:g}", around("A", 12.0, 12.0, "cosine 0.1 s", accuracy, radius=3.0)
+    for order in (3, 5, 6):
+        yield f"hole A, close, order {order}", around("A", 12.0, 12.0, "cosine 0.1 s", 0.01, order, radius=3.0)
     yield "hole B", around("B", 30.0, 30.0, "cosine 0.05 s", radius=4.0)
     yield "hole C", around("C", 30.0, 30.0, "cosine 0.1 s", radius=4.0)
     for pattern, wave, kind in (("A", "cosine 0.1 s", "s"), ("A", "cosine 0.05 s", "p"), ("C", "cosine 0.1 s", "s")):
         yield f"below {pattern} {kind}", under(pattern, 40.0, 30.0, wave, radius=5.0, kind=kind)
+    for accuracy in (0.003, 0.03):
+        yield f"below A s, close, {accuracy:g}", under("A", 16.0, 16.0, "cosine 0.1 s", accuracy, radius=5.0)
     yield "below A, 0.001", under("A", 40.0, 30.0, "ricker 20 Hz", 0.001, radius=5.0)
     for accuracy in (0.003, 0.03):
         yield (

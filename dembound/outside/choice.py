@@ -41,13 +41,6 @@ cosine pulses between 17 % and 0.02 % follow 3 to 5 nodes with any order. Ricker
 waves, need as many as are given here for an error of 0.1 %.
 """
 
-NEAR = {3: 2.0, 4: 3.0, 5: 3.5, 6: 4.0}
-"""By order: side of elements over the distance of a force from them, with errors of displacements of 0.1 %.
-
-The static field of a force or hole varies within that distance, whatever the waves. Elements with sides of 2.35 times
-the distance have errors of 0.15, 0.04, 0.013 and 0.010 %, which rise with the third power of the side.
-"""
-
 WITHIN = 0.4
 """Part of the depth of layers that counts as distance from what sends waves, where these run along the layers.
 
@@ -141,16 +134,6 @@ def shortest_wave(signals: Sequence[Signal], medium: Medium, share: float = SHAR
 def element_size(signals: Sequence[Signal], medium: Medium, order: int, accuracy: float) -> float:
     """Largest side (m) of elements that pass on all but a share accuracy² of the energy of waves."""
     return order * shortest_wave(signals, medium, accuracy**2) / NODES[order]
-
-
-def size_near(clearance: float, order: int, accuracy: float) -> float:
-    """Largest side (m) of elements beside which a force or hole is so near, m."""
-    return NEAR[order] * clearance * math.cbrt(1e3 * accuracy)
-
-
-def near_error(clearance: float, order: int, side: float) -> float:
-    """Error of displacements of elements with a side (m) so near to a force or hole, m: the reverse of `size_near`."""
-    return 1e-3 * (side / (NEAR[order] * clearance)) ** 3
 
 
 def least_size(order: int, diameter: float, *, is_random: bool) -> float:

@@ -19,6 +19,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.outside import choice
+from dembound.outside.near_field import FORCES
 from dembound.outside.ram import GridSizes
 from dembound.table import Box
 
@@ -26,7 +27,7 @@ WORTH = 0.8
 """Part of a scene's cost above which a box is no gain."""
 
 NEARER = (1.0, 0.7, 0.5, 0.35, 0.25)
-"""Parts of the distance that elements as large as waves allow need from holes and loads; nearer ones are smaller."""
+"""Parts of the distance that elements as large as waves allow need from loads; nearer ones are smaller."""
 
 BAND = 4.0
 """Least distance of holes and loads from the sides of a box, in diameters: cracks near ties are not followed."""
@@ -118,7 +119,7 @@ def rectangles(case: DiskCase, ground: PackedMaterial) -> Iterator[Box]:
     """The boxes (m) of disks of a ground in place of a case that `may_be_boxed`, with larger and smaller elements."""
     diameter, order, accuracy = ground.brick.mean_diameter, case.outside.order, case.outside.accuracy
     side = choice.element_size(signals_of(case), medium_of(ground), order, accuracy)
-    widest = max(side, least_element(case, diameter)) / choice.size_near(1.0, order, accuracy)
+    widest = max(side, least_element(case, diameter)) / (FORCES[order] * math.cbrt(1e3 * accuracy))
     for part in NEARER:
         box = _round(case, max(part * widest, BAND * diameter), diameter)
         if box[0] < box[2] and box[1] < box[3]:  # else all that makes waves is on the continuum

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from dembound.outside.choice import Signal
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
+from dembound.outside.near_field import NearField
 from dembound.table import Box
 from dembound.waves import Constant
 
@@ -256,16 +257,17 @@ def _is_in_body(case: DiskCase, hole: Hole) -> bool:
     return left < x0 and bottom < y0 and x1 < right and y1 < top
 
 
-def clearance(case: DiskCase, box: Box, sides: Sequence[str]) -> float:
-    """Smallest distance (m) of a force's middle or a hole from sides of a box; infinite without any."""
-    place = dict(zip(("left", "bottom", "right", "top"), box, strict=True))
-    distances = [
-        abs(place[side] - edge)
-        for side in sides
-        for low, high in extents(case)
-        for edge in (low[normal_axis(side)], high[normal_axis(side)])
-    ]
-    return min(distances, default=float("inf"))
+def near_fields(case: DiskCase, box: Box, sides: Sequence[str]) -> list[NearField]:
+    """The static fields of the holes and forces of a case beside sides of a box (m)."""
+    ends = dict(zip(("left", "bottom", "right", "top"), box, strict=True))
+    found = []
+    for low, high, source in _sources(case):
+        place = float(low[0]), float(low[1]), float(high[0]), float(high[1])
+        for side in sides:
+            axis = normal_axis(side)
+            gap = min(abs(ends[side] - low[axis]), abs(ends[side] - high[axis]))
+            found.append(NearField(place, float(gap), source))
+    return found
 
 
 def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -273,7 +275,14 @@ def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 
     Of a hole that leaves a floor at a side it is the part that is not level.
     """
+    for low, high, _ in _sources(case):
+        yield low, high
+
+
+def _sources(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray, Literal["force", "pressure", "waves"]]]:
+    """The `extents`, and what makes the static field of each."""
     left, _, right, _ = case.packing.box
+    loaded = {load.hole for load in case.load}
     for hole in case.hole:
         low, high = np.array(hole.box[:2]), np.array(hole.box[2:])
         for side, floor in case.floors.items():
@@ -281,13 +290,13 @@ def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
                 low[0] = min(left + floor.width, high[0])
             elif side == "right" and high[0] >= right - floor.width:
                 high[0] = max(right - floor.width, low[0])
-        yield low, high
+        yield low, high, "pressure" if hole.name in loaded else "waves"
     for load in case.load:
         if load.position is not None:
-            yield np.array(load.position), np.array(load.position)
+            yield np.array(load.position), np.array(load.position), "force"
         elif load.region is not None:
             middle = 0.5 * (np.array(load.region[:2]) + load.region[2:])
-            yield middle, middle
+            yield middle, middle, "force"
 
 
 def _why_nothing(case: DiskCase) -> str:
@@ -302,7 +311,5 @@ def _element(case: DiskCase, medium: Medium, box: Box, sides: Sequence[str]) -> 
     keys, signals = case.outside, signals_of(case)
     if not signals:
         raise CaseError([f"outside.element: is absent, but {_why_nothing(case)}; give the largest side of elements, m"])
-    return min(
-        choice.element_size(signals, medium, keys.order, keys.accuracy),
-        choice.size_near(clearance(case, box, sides), keys.order, keys.accuracy),
-    )
+    of_fields = [field.largest_side(keys.order, keys.accuracy) for field in near_fields(case, box, sides)]
+    return min([choice.element_size(signals, medium, keys.order, keys.accuracy), *of_fields])

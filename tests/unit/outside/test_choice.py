@@ -78,17 +78,6 @@ def test_elements_return_a_share_of_the_energy_that_is_the_accuracys_square(orde
     assert choice.element_error([pushed(Constant(type="constant", amplitude=1.0))], ROCK, order, size) == 1.0
 
 
-@pytest.mark.parametrize("order", [3, 6])
-def test_elements_beside_a_force_are_in_proportion_to_its_distance(order: int) -> None:
-    size = choice.size_near(8.0, order, 1e-3)
-
-    assert choice.size_near(16.0, order, 1e-3) == pytest.approx(2.0 * size)
-    assert choice.size_near(8.0, order, 8e-3) == pytest.approx(2.0 * size)
-    assert choice.near_error(8.0, order, size) == pytest.approx(1e-3)
-    assert choice.near_error(8.0, order, 2.0 * size) == pytest.approx(8e-3)
-    assert choice.size_near(math.inf, order, 1e-3) == math.inf
-
-
 def test_as_many_elements_absorb_as_the_accuracy_needs() -> None:
     assert [choice.layer_count(order, 1e-3) for order in (3, 4, 5, 6)] == [5, 3, 3, 2]
     assert [choice.layer_count(4, accuracy) for accuracy in (0.5, 2e-2, 1e-2, 2e-4, 1e-6)] == [2, 2, 3, 4, 6]

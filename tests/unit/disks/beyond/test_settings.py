@@ -9,9 +9,9 @@ from disk_systems import LAMB
 from dembound.disks.beyond.settings import (
     Buried,
     buried,
-    clearance,
     lasting_time,
     mesh_of,
+    near_fields,
     settings_of,
     signals_of,
 )
@@ -58,13 +58,17 @@ def test_elements_are_small_beside_a_load_or_a_hole_and_never_too_small(case) ->
     near = case(load={"position": [1.5, 9.5]})
     hole = {"name": "h", "type": "circle", "centre": [20.0, 5.0], "radius": 3.0}
 
-    assert clearance(near, BOX, SIDES) == 1.5
-    assert clearance(near, BOX, ("right", "bottom")) == 9.5
-    assert clearance(case(), BOX, ("top",)) == 0.5
-    assert clearance(case(hole=[hole]), BOX, SIDES) == pytest.approx(2.0)
+    def gaps(case, sides=SIDES):
+        return [(field.source, pytest.approx(field.gap)) for field in near_fields(case, BOX, sides)]
+
+    assert gaps(near) == [("force", gap) for gap in (1.5, 38.5, 9.5)]
+    assert gaps(case(), ("top",)) == [("force", 0.5)]
+    assert gaps(case(hole=[hole]), ("bottom", "right"))[:2] == [("waves", 2.0), ("waves", 17.0)]
     region = {"position": None, "region": [4.0, 18.0, 10.0, 20.0]}
-    assert clearance(case(load=region), BOX, SIDES) == pytest.approx(7.0)
-    assert chosen(case(hole=[hole]), 0.1).element == pytest.approx(6.0)
+    assert gaps(case(load=region), ("left",)) == [("force", 7.0)]
+    blast = case(hole=[hole], load={"position": None, "force": None, "hole": "h", "pressure": 1e6})
+    assert gaps(blast, ("bottom",)) == [("pressure", 2.0)]
+    assert chosen(blast, 0.1).element == pytest.approx(2.0 * 5.0 * (1e-3 / 2e-2) ** 0.2)
     assert chosen(near).element == pytest.approx(5.0)  # 1.25 diameters between nodes
     random = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
     assert chosen(case(packing=random, load={"position": [1.5, 9.5]})).element == pytest.approx(11.2)

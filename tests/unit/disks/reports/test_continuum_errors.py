@@ -87,6 +87,20 @@ def test_of_waves_that_come_through_it_a_part_leaves_through_it_again_and_places
     assert velocity(made, (1.0, 3.0)) == velocity(made)
 
 
+def test_beside_a_blast_elements_and_ties_err_in_its_static_field_where_it_is() -> None:
+    """A burst of 1 Hz in a hole of 3 m amid elements as wide as the box, and in place of it a wave from below."""
+    hole = {"name": "cave", "type": "circle", "centre": list(MIDDLE), "radius": 3.0}
+    blast = {"name": "blast", "hole": "cave", "pressure": 1e6, "wave": "w"}
+    wide = {"element": 20.0}
+    made = scene(1.0, outside=wide, hole=[hole], load=[blast])
+    largest = math.hypot(2e-2, 0.2 / 10.0**2)
+    for x in (14.0, 17.0):
+        assert velocity(made, (x, 10.0)) == pytest.approx(largest * ((x - 10.0) / 10.0) ** 2, rel=0.01)
+    below = {side: {"type": "outside"} for side in SIDES[:2]} | {"bottom": {"type": "outside", "wave_s": "w"}}
+    passed = scene(1.0, outside=wide, hole=[hole], load=[], boundary=below)
+    assert velocity(passed) == pytest.approx(2e-2 / 3.0 * 0.3**2, rel=0.01)
+
+
 def test_on_a_free_surface_beside_a_load_on_it_there_is_more() -> None:
     """Down to an eighth of the waves' length, 4.4 m of 35 m, of places and loads; elsewhere the ways alone count."""
     above = {"boundary": {side: {"type": "outside"} for side in SIDES[:3]}}
