@@ -131,6 +131,21 @@ def shortest_wave(signals: Sequence[Signal], medium: Medium, share: float = SHAR
     return slowest(medium) / max(cutoff(signal, share) for signal in signals)
 
 
+@lru_cache(maxsize=256)
+def mean_frequency(signal: Signal, lowest: float = math.inf) -> float:
+    """RMS frequency (Hz) of velocities, infinite for a wave that jumps; lowest : of displacements, see `energies`."""
+    if jumps(signal):
+        return math.inf
+    frequency, energy = energies(signal, lowest)
+    return math.sqrt(float(frequency**2 @ energy / energy.sum()))
+
+
+def wave_number(signals: Sequence[Signal], medium: Medium, lowest: float = math.inf) -> float:
+    """The largest RMS wave number (1/m) of the slowest waves of signals, 0 without any; lowest : see `energies`."""
+    frequencies = [mean_frequency(signal, lowest) for signal in signals]
+    return 2.0 * math.pi * max(frequencies, default=0.0) / slowest(medium)
+
+
 def element_size(signals: Sequence[Signal], medium: Medium, order: int, accuracy: float) -> float:
     """Largest side (m) of elements that pass on all but a share accuracy² of the energy of waves."""
     return order * shortest_wave(signals, medium, accuracy**2) / NODES[order]

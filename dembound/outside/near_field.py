@@ -29,8 +29,11 @@ times round squares. That with two elements a side is smaller by 2 to the power 
 WIDER = 2.5
 """Power of the side with which it grows where elements are wider than that: 10 and 22 % with two and three times."""
 
-PASSED = 1.0 / 3.0
-"""Part of that beside a hole which waves pass, over the part of their motion that comes from the hole."""
+PASSED = 1.5
+"""That beside a hole which waves pass, over k L²/(gap + L), the motion that the hole adds: the wave number k times half
+the length L of the hole, times how much of it reaches the elements. It falls with a power of the side that is smaller
+by two. Largest errors round holes that S waves pass, with kL of 0.1 to 0.4 and L/(gap + L) of 0.2 to 0.8, are 0.5 to
+1.5 times that with one element a side (90 %), 0.4 to 1.1 times with two."""
 
 TIES = 0.2
 """What ties return of the field of a hole under a pressure at its distance d from them, over (D/d)²."""
@@ -44,12 +47,13 @@ class NearField(NamedTuple):
     """The field of one force or hole beside elements on one side of a box.
 
     place : the rectangle (m) of the hole, or a force's middle twice. gap : m, from there to the elements. source :
-    what makes the field, a pressure in a hole, waves that pass a hole, or a force.
+    what makes the field, a pressure in a hole, waves that pass a hole, with an RMS wave number (1/m), or a force.
     """
 
     place: Box
     gap: float
     source: Literal["force", "pressure", "waves"]
+    wave_number: float = 0.0
 
     @property
     def distance(self) -> float:
@@ -62,11 +66,12 @@ class NearField(NamedTuple):
         left, bottom, right, top = self.place
         return right - left, top - bottom
 
-    @property
-    def _strength(self) -> float:
-        """The field at the elements over all motion there, with the part of it that `HOLES` does not have."""
+    def _widest(self, order: int) -> tuple[float, int]:
+        """Error with elements as wide as a box round a hole, and the power of the side with which it falls."""
+        if self.source == "pressure":
+            return HOLES[order], order + 1
         half = 0.5 * max(self._sides)
-        return 1.0 if self.source == "pressure" else PASSED * (half / (self.gap + half)) ** 2
+        return HOLES[order] * min(PASSED * self.wave_number * half * half / (self.gap + half), 1.0), order - 1
 
     def error(self, order: int, side: float) -> float:
         """Error of the motion beside elements of a side (m), where it is largest; 0 for a force on them."""
@@ -74,15 +79,16 @@ class NearField(NamedTuple):
             return 0.0
         if self.source == "force":
             return 1e-3 * (side / (FORCES[order] * self.distance)) ** 3
-        width = 0.5 * side / self.distance
-        return self._strength * HOLES[order] * width ** (order + 1 if width < 1.0 else WIDER)
+        (largest, steep), width = self._widest(order), 0.5 * side / self.distance
+        return largest * width ** (steep if width < 1.0 else WIDER)
 
     def largest_side(self, order: int, accuracy: float) -> float:
-        """Largest side (m) of elements with this error: the reverse of `error`."""
+        """Largest side (m) of elements with this error, infinite for waves that do not vary: the reverse of `error`."""
         if self.source == "force":
             return FORCES[order] * self.distance * math.cbrt(1e3 * accuracy)
-        more = accuracy / (self._strength * HOLES[order])
-        return 2.0 * self.distance * more ** (1.0 / (order + 1 if more < 1.0 else WIDER))
+        largest, steep = self._widest(order)
+        more = accuracy / largest if largest > 0.0 else math.inf
+        return 2.0 * self.distance * more ** (1.0 / (steep if more < 1.0 else WIDER))
 
     def of_ties(self, diameter: float) -> float:
         """Error of the motion beside ties to disks of a mean diameter (m), where it is largest."""

@@ -257,8 +257,15 @@ def _is_in_body(case: DiskCase, hole: Hole) -> bool:
     return left < x0 and bottom < y0 and x1 < right and y1 < top
 
 
-def near_fields(case: DiskCase, box: Box, sides: Sequence[str]) -> list[NearField]:
-    """The static fields of the holes and forces of a case beside sides of a box (m)."""
+def near_fields(
+    case: DiskCase, medium: Medium, box: Box, sides: Sequence[str], lowest: float = math.inf
+) -> list[NearField]:
+    """The static fields of the holes and forces of a case beside sides of a box (m).
+
+    lowest : Hz, from which on the wave numbers of waves that pass holes are those of displacements, see
+    `choice.energies`.
+    """
+    number = choice.wave_number(signals_of(case), medium, lowest)
     ends = dict(zip(("left", "bottom", "right", "top"), box, strict=True))
     found = []
     for low, high, source in _sources(case):
@@ -266,7 +273,7 @@ def near_fields(case: DiskCase, box: Box, sides: Sequence[str]) -> list[NearFiel
         for side in sides:
             axis = normal_axis(side)
             gap = min(abs(ends[side] - low[axis]), abs(ends[side] - high[axis]))
-            found.append(NearField(place, float(gap), source))
+            found.append(NearField(place, float(gap), source, number))
     return found
 
 
@@ -311,5 +318,5 @@ def _element(case: DiskCase, medium: Medium, box: Box, sides: Sequence[str]) -> 
     keys, signals = case.outside, signals_of(case)
     if not signals:
         raise CaseError([f"outside.element: is absent, but {_why_nothing(case)}; give the largest side of elements, m"])
-    of_fields = [field.largest_side(keys.order, keys.accuracy) for field in near_fields(case, box, sides)]
+    of_fields = [field.largest_side(keys.order, keys.accuracy) for field in near_fields(case, medium, box, sides)]
     return min([choice.element_size(signals, medium, keys.order, keys.accuracy), *of_fields])

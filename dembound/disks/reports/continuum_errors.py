@@ -68,10 +68,10 @@ UNEVEN = 0.002
 """Error of displacements round a load in a random packing, whose stiffness varies from place to place."""
 
 CONTINUUM_FACTOR = 2.2
-"""95 % of the true errors are at most so many times as large as those here (benchmarks/continuum_errors.py): 2.1 times
-those of 455 rows with 0.01 % and more, and of the 296 with 0.1 % and more. The largest are 4.4 times as large, below a
-hole that S waves pass near the elements, and 3.4 beside one in pattern C. Small errors of displacements under waves are
-overestimated, up to twenty times."""
+"""95 % of the true errors are at most so many times as large as those here (benchmarks/continuum_errors.py): 2.0 times
+those of 455 rows with 0.01 % and more, 2.1 times those of the 296 with 0.1 % and more. The largest are 3.4 times as
+large, beside a hole in pattern C, else 2.6. Errors of displacements below 0.01 % under waves are overestimated, up to a
+hundred times."""
 
 
 def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[str, tuple[float, float]] | None:
@@ -89,17 +89,15 @@ def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[
         parts[1] = parts[1]._replace(alike=math.hypot(parts[1].alike, UNEVEN))
     bricks = [BRICKS * unevenness(scene, signals, lowest) for lowest in lowests]
     leaving, depth = 1.0 if scene.case.load else SCATTERED, _shallow(outside, signals)
-    found = {}
+    fields, found = [_near_errors(scene, outside, places, lowest) for lowest in lowests], {}
     for name, place in places.items():
         source = _source(scene, place)
         spread = 1.0 if source is None else _spread(scene, outside, source, place)
         more = SURFACE if source is not None and _both_shallow(scene, outside, depth, source, place) else 1.0
-        near = _near_error(scene, outside, place)
+        returned = (math.hypot(each.alike, more * each.elements, more * spread * each.ties) for each in parts)
         velocity, displacement = (
-            math.hypot(
-                leaving * math.hypot(each.alike, more * each.elements, more * spread * each.ties), more * uneven, near
-            )
-            for each, uneven in zip(parts, bricks, strict=True)
+            math.hypot(leaving * part, more * uneven, near[name])
+            for part, uneven, near in zip(returned, bricks, fields, strict=True)
         )
         found[name] = velocity, displacement
     return found
@@ -112,16 +110,21 @@ def largest_element(outside: Surroundings) -> float:
 
 def near_error(scene: DiskScene, outside: Surroundings) -> float:
     """Error of elements beside forces and holes, where it is largest."""
-    fields = near_fields(scene.case, outside.box, outside.sides)
+    fields = near_fields(scene.case, outside.body.medium, outside.box, outside.sides)
     return max((field.error(outside.settings.order, largest_element(outside)) for field in fields), default=0.0)
 
 
-def _near_error(scene: DiskScene, outside: Surroundings, place: np.ndarray) -> float:
-    """That and the error of ties there, at a place (2,) m."""
+def _near_errors(
+    scene: DiskScene, outside: Surroundings, places: Mapping[str, np.ndarray], lowest: float
+) -> dict[str, float]:
+    """Errors of elements and ties beside forces and holes at places (2,) m by name; lowest : see `choice.energies`."""
     order, side, diameter = outside.settings.order, largest_element(outside), scene.ground.brick.mean_diameter
-    fields = near_fields(scene.case, outside.box, outside.sides)
-    errors = (field.part_at(place) * math.hypot(field.error(order, side), field.of_ties(diameter)) for field in fields)
-    return max(errors, default=0.0)
+    fields = near_fields(scene.case, outside.body.medium, outside.box, outside.sides, lowest)
+    largest = [(field, math.hypot(field.error(order, side), field.of_ties(diameter))) for field in fields]
+    return {
+        name: max((field.part_at(place) * error for field, error in largest), default=0.0)
+        for name, place in places.items()
+    }
 
 
 class _Parts(NamedTuple):

@@ -39,9 +39,12 @@ def test_elements_as_wide_as_the_box_round_a_blast_have_the_measured_error_and_n
 
 
 def test_beside_a_hole_that_waves_pass_it_is_the_part_of_the_motion_that_the_hole_makes() -> None:
-    passed = blast()._replace(source="waves")
-    assert passed.error(4, 6.0) == pytest.approx(PASSED * (3.0 / 6.0) ** 2 * blast().error(4, 6.0))
+    passed = blast()._replace(source="waves", wave_number=0.1)
+    assert passed.error(4, 8.0) == pytest.approx(PASSED * 0.1 * 3.0 * (3.0 / 6.0) * HOLES[4])
+    assert passed.error(4, 4.0) == pytest.approx(passed.error(4, 8.0) / 8.0)
     assert passed.error(4, passed.largest_side(4, 1e-3)) == pytest.approx(1e-3)
+    assert passed._replace(wave_number=math.inf).error(4, 8.0) == HOLES[4]
+    assert passed._replace(wave_number=0.0).largest_side(4, 1e-3) == math.inf
     assert passed.of_ties(1.0) == 0.0 == passed._replace(source="force").of_ties(1.0)
     assert blast().of_ties(0.5) == pytest.approx(TIES / 64.0)
 

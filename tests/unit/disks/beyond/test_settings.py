@@ -59,7 +59,7 @@ def test_elements_are_small_beside_a_load_or_a_hole_and_never_too_small(case) ->
     hole = {"name": "h", "type": "circle", "centre": [20.0, 5.0], "radius": 3.0}
 
     def gaps(case, sides=SIDES):
-        return [(field.source, pytest.approx(field.gap)) for field in near_fields(case, BOX, sides)]
+        return [(field.source, pytest.approx(field.gap)) for field in near_fields(case, ROCK, BOX, sides)]
 
     assert gaps(near) == [("force", gap) for gap in (1.5, 38.5, 9.5)]
     assert gaps(case(), ("top",)) == [("force", 0.5)]
