@@ -8,7 +8,8 @@ import pytest
 from scene_tables import grains, lattice
 from walls import QUANTITIES, RADII, exact, key, motions, row, scene
 
-from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_error
+from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_errors
+from dembound.disks.scene import build
 
 
 @pytest.mark.parametrize(
@@ -27,5 +28,5 @@ def test_motion_beside_a_hole_is_as_wrong_as_expected(packing: dict, along: floa
     found = row("hole", own, exact(case, own, along, middle, is_pressed=True), along)
     for quantity in QUANTITIES:
         for radius in RADII:
-            ratio = found[key(quantity, radius)] / (along * wall_error(case, 1.0))
+            ratio = found[key(quantity, radius)] / (along * wall_errors(case, build(case).ground, 1.0)[quantity])
             assert 1.0 / WALL_FACTOR < ratio < WALL_FACTOR, (quantity, radius)

@@ -14,7 +14,7 @@ from dembound.accuracy.delays import error_of_delay, error_of_steps
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
-from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_error
+from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_errors
 from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, Frequencies, delay_of, frequencies_of
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
@@ -100,8 +100,8 @@ class Formulas:
         case = self.scene.case
         if not case.hole:
             return
-        size = wall_error(case, self.scene.ground.brick.mean_diameter)
-        parts = {name: dict.fromkeys(MOTIONS, size) for name in names}
+        sizes = wall_errors(case, self.scene.ground, self.scene.ground.brick.mean_diameter)
+        parts = {name: dict(sizes) for name in names}
         words = "by the disks along the radius of the smallest hole"
         yield Cause(WALLS, words, parts, of_disks=True, factor=WALL_FACTOR)
 

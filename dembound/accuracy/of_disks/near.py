@@ -8,14 +8,19 @@ much. Walls of holes consist of disks, so that their shape is known to a diamete
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.places import middle_of_forces
 from dembound.casefile.disks import DiskCase
+from dembound.disks.beyond.settings import signals_of
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene
 from dembound.holes import Hole
+from dembound.outside.choice import mean_frequency
 
 NEAR, CURVED = 0.1, 0.6
 """Error of motion along the ray over (κD)² (r/(r + b))², κ = k + CURVED/r, with the RMS wave number k of S waves."""
@@ -31,12 +36,18 @@ RANDOM = 0.75
 smaller half: beside exact solutions 0.41 to 2.1, the median 0.74, of five seeds each of patterns B and C with 4, 6 and
 10 disks along a radius, at 1 to 2.5 radii (benchmarks/walls.py). Walls there are never between disks."""
 
-OF_WAVES = 0.45
-"""The same of waves that pass a hole over that of a pressure in it: of velocities 0.7 in the median, of displacements
-0.33, less farther away, as what a hole scatters is a part of the motion (benchmarks/walls.py)."""
+OF_WAVES = {"velocity": 1.7, "displacement": 1.0}
+"""The same of waves that pass a hole over that of a pressure in it, by kL, the RMS wave number of the slowest waves in
+the quantity times the smaller half of the hole: what a hole scatters, and its error, is that part of the motion.
+Circles of 5 and 8 disks along the radius in lattices under SV waves, at 1.5 radii: of velocities 1.3 to 2.4 with kL of
+0.09 to 1.25, of displacements 0.8 to 1.25 with kL of 0.08 to 0.8; 1.2 times that at the wall (1.4 times with kL of
+1.25), 0.7 at 2.5 radii (benchmarks/walls.py)."""
+
+LONGEST = 1.5
+"""Largest kL that counts, as of waves that jump: shorter waves were not measured."""
 
 WALL_FACTOR = 2.0
-"""95 % of true errors beside holes are at most so many times as large as `wall_error`: of means over 12 directions 1.4
+"""95 % of true errors beside holes are at most so many times as large as `wall_errors`: of means over 12 directions 1.4
 times in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), 1.6 times in
 lattices under waves (80, at most 2.1), and 1.1 times in random packings under waves (80, at most 1.7;
 benchmarks/walls.py). Single directions scatter more."""
@@ -89,15 +100,33 @@ def _norm(values: np.ndarray) -> float:
     return float(np.linalg.norm(values))
 
 
-def wall_error(case: DiskCase, diameter: float) -> float:
-    """Error of the motion beside the holes of a case, RMS over RMS, with disks of a diameter (m); 0 without holes."""
-    return max((_wall_error(case, hole, diameter) for hole in case.hole), default=0.0)
+def wall_errors(case: DiskCase, ground: PackedMaterial, diameter: float) -> dict[str, float]:
+    """Errors of the motion beside the holes of a case by quantity, RMS over RMS, with disks of a diameter (m).
+
+    ground : what waves run in, with disks of any diameter. 0 without holes.
+    """
+    if not case.hole:
+        return dict.fromkeys(OF_WAVES, 0.0)
+    signals, speed = signals_of(case), slowest_speed(ground)
+    found = {}
+    for (quantity, part), lowest in zip(OF_WAVES.items(), (np.inf, 1.0 / case.run.duration), strict=True):
+        frequency = max((mean_frequency(signal, lowest) for signal in signals), default=0.0)
+        number = 2.0 * np.pi * frequency / speed
+        found[quantity] = max(
+            _wall_error(case, hole, diameter) * (1.0 if pressed else part * min(number * hole.smaller_half, LONGEST))
+            for hole, pressed in _holes(case)
+        )
+    return found
+
+
+def _holes(case: DiskCase) -> Iterator[tuple[Hole, bool]]:
+    """The holes of a case, and whether there is a pressure in them."""
+    for hole in case.hole:
+        yield hole, any(load.pressure is not None and case.hole_of(load) is hole for load in case.load)
 
 
 def _wall_error(case: DiskCase, hole: Hole, diameter: float) -> float:
-    """Error of the motion beside the wall of one hole."""
-    is_pressed = any(load.pressure is not None and case.hole_of(load) is hole for load in case.load)
-    part = 1.0 if is_pressed else OF_WAVES
+    """Error of the motion that a pressure makes beside the wall of one hole."""
     if case.packing.is_lattice:
-        return part * hole.wall_error(diameter, case.packing.apart)
-    return part * RANDOM / (hole.smaller_half / diameter)
+        return hole.wall_error(diameter, case.packing.apart)
+    return RANDOM / (hole.smaller_half / diameter)

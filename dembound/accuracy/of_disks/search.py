@@ -23,7 +23,7 @@ from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, of_ground, of_sides
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.law import ElasticTwin
-from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_error
+from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_errors
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.accuracy.proposal import Proposal
@@ -237,7 +237,11 @@ class Search:
         """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
         option = _option(item)
         case = option.case
-        walls = WALL_FACTOR * wall_error(case, 2.0 * case.packing.radius) if self.of == "rock" else 0.0
+        walls = 0.0
+        if self.of == "rock":
+            walls = WALL_FACTOR * max(
+                wall_errors(case, self.companions.scene.ground, 2.0 * case.packing.radius).values()
+            )
         return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(_disks(option), 0.0), walls)
 
     def _keeps(self, error: float) -> bool:

@@ -25,7 +25,7 @@ from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
-from dembound.accuracy.of_disks.near import wall_error
+from dembound.accuracy.of_disks.near import wall_errors
 from dembound.accuracy.of_disks.options import Options
 from dembound.accuracy.runner import Runner, at_step
 from dembound.boundaries.words import side_in_words
@@ -247,7 +247,7 @@ json.dump(
         "unsaid": estimated(unsaid),
         "larger": [larger(each) for each in (hexagons, unsaid, case(**STRIP, **{"material.law": "graded"}))],
         "walls": [
-            wall_error(kinds.with_changes(made, {"hole": [hole]}), 0.5)
+            wall_errors(kinds.with_changes(made, {"hole": [hole]}), build(made).ground, 0.5)["velocity"]
             for made, hole in ((hexagons, CAVE), (unsaid, CAVE), (hexagons, SHAFT))
         ],
         "plane": [ExactPlaneWave.of(each) is not None for each in rows],

@@ -5,11 +5,15 @@ import pytest
 from small_cases import GRAINS, PUSHED, small
 
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.near import CURVED, NEAR, OF_WAVES, RANDOM, errors_near_loads, wall_error
+from dembound.accuracy.of_disks.near import CURVED, LONGEST, NEAR, OF_WAVES, RANDOM, errors_near_loads, wall_errors
 from dembound.casefile.disks import DiskCase
+from dembound.disks.beyond.settings import signals_of
+from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene, build
 from dembound.holes import Circle, Rectangle
 from dembound.holes.rectangle import STRAIGHT
+from dembound.kinds import with_changes
+from dembound.outside.choice import mean_frequency
 from dembound.packings import Square
 
 RATE = 2.0 * np.pi * 20.0
@@ -114,18 +118,32 @@ def test_walls_that_are_not_between_disks_change_the_size_of_a_hole() -> None:
 CAVE = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.5, 6.1, 2.0]}
 
 
-def test_waves_have_a_part_of_the_error_beside_a_hole_that_a_pressure_makes() -> None:
+def of_waves(case: DiskCase, quantity: str, lowest: float = np.inf) -> float:
+    """The part of the error of a pressure that waves have round a hole with a smaller half of 0.75 m."""
+    frequency = mean_frequency(signals_of(case)[0], lowest)
+    return OF_WAVES[quantity] * 2.0 * np.pi * frequency / slowest_speed(build(case).ground) * 0.75
+
+
+def test_waves_have_the_part_of_the_error_of_a_pressure_that_a_hole_scatters() -> None:
     """A smaller half of 0.75 m, three half disks, with one wall 0.1 m off."""
     case = small(PUSHED, changes={"hole": [CAVE], "packing.size": [10.0, 3.0]})
     assert isinstance(case, DiskCase)
-    of_waves = wall_error(case, 0.5)
-    assert of_waves == pytest.approx(OF_WAVES * np.hypot(STRAIGHT / 1.5, 0.05 / 0.75))
+    ground = build(case).ground
+    pressed = np.hypot(STRAIGHT / 1.5, 0.05 / 0.75)
+    found = wall_errors(case, ground, 0.5)
+    assert found["velocity"] == pytest.approx(pressed * min(of_waves(case, "velocity"), 1.7 * LONGEST))
+    assert found["displacement"] == pytest.approx(pressed * of_waves(case, "displacement", 1.0 / case.run.duration))
+    slow = with_changes(case, {"wave.push.period": 1.0, "wave.shake.period": 1.0, "run.duration": 2.0})
+    assert wall_errors(slow, ground, 0.5)["velocity"] == pytest.approx(pressed * of_waves(slow, "velocity"))
     burst = {"name": "burst", "hole": "cave", "pressure": 1e5, "wave": "push"}
-    pressed = small(PUSHED, changes={"hole": [CAVE], "packing.size": [10.0, 3.0], "load": [burst]})
-    assert wall_error(pressed, 0.5) == pytest.approx(of_waves / OF_WAVES)  # type: ignore[arg-type]
-    assert wall_error(small(PUSHED), 0.5) == 0.0  # type: ignore[arg-type]
+    blast = small(PUSHED, changes={"hole": [CAVE], "packing.size": [10.0, 3.0], "load": [burst]})
+    assert wall_errors(blast, ground, 0.5) == pytest.approx(dict.fromkeys(OF_WAVES, pressed))  # type: ignore[arg-type]
+    assert wall_errors(small(PUSHED), ground, 0.5) == dict.fromkeys(OF_WAVES, 0.0)  # type: ignore[arg-type]
 
 
 def test_no_wall_in_a_random_packing_is_between_disks() -> None:
-    random = small(GRAINS, changes={"hole": [{**CAVE, "corners": [3.0, 1.0, 6.0, 3.0]}], "monitor": []})
-    assert wall_error(random, 0.5) == pytest.approx(OF_WAVES * RANDOM / 2.0)  # type: ignore[arg-type]
+    burst = {"name": "burst", "hole": "cave", "pressure": 1e5, "wave": "pulse"}
+    hole = {**CAVE, "corners": [3.0, 1.0, 6.0, 3.0]}
+    random = small(GRAINS, changes={"hole": [hole], "monitor": [], "load": [burst]})
+    assert isinstance(random, DiskCase)
+    assert wall_errors(random, build(random).ground, 0.5)["velocity"] == pytest.approx(RANDOM / 2.0)
