@@ -19,7 +19,7 @@ from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene
-from dembound.holes import Hole
+from dembound.holes import Hole, Rectangle
 from dembound.outside.choice import mean_frequency
 
 NEAR, CURVED = 0.1, 0.6
@@ -42,6 +42,11 @@ the quantity times the smaller half of the hole: what a hole scatters, and its e
 Circles of 5 and 8 disks along the radius in lattices under SV waves, at 1.5 radii: of velocities 1.3 to 2.4 with kL of
 0.09 to 1.25, of displacements 0.8 to 1.25 with kL of 0.08 to 0.8; 1.2 times that at the wall (1.4 times with kL of
 1.25), 0.7 at 2.5 radii (benchmarks/walls.py)."""
+
+BETWEEN = 0.65
+"""That of rectangles in lattices, whose walls are between disks, over that of others, and its largest size: with kL of
+0.09 to 1.9 beside disks three times smaller, at 1.5 radii, of velocities 0.10 to 0.7, or 0.9 to 1.3 of kL where that is
+below 0.4, of displacements 0.5 to 0.7 of kL."""
 
 LONGEST = 1.5
 """Largest kL that counts, as of waves that jump: shorter waves were not measured."""
@@ -109,14 +114,20 @@ def wall_errors(case: DiskCase, ground: PackedMaterial, diameter: float) -> dict
         return dict.fromkeys(OF_WAVES, 0.0)
     signals, speed = signals_of(case), slowest_speed(ground)
     found = {}
-    for (quantity, part), lowest in zip(OF_WAVES.items(), (np.inf, 1.0 / case.run.duration), strict=True):
-        frequency = max((mean_frequency(signal, lowest) for signal in signals), default=0.0)
-        number = 2.0 * np.pi * frequency / speed
+    for quantity, lowest in zip(OF_WAVES, (np.inf, 1.0 / case.run.duration), strict=True):
+        number = 2.0 * np.pi * max((mean_frequency(signal, lowest) for signal in signals), default=0.0) / speed
         found[quantity] = max(
-            _wall_error(case, hole, diameter) * (1.0 if pressed else part * min(number * hole.smaller_half, LONGEST))
+            _wall_error(case, hole, diameter) * (1.0 if pressed else _scattered(case, hole, quantity, number))
             for hole, pressed in _holes(case)
         )
     return found
+
+
+def _scattered(case: DiskCase, hole: Hole, quantity: str, number: float) -> float:
+    """The part of a pressure's error that waves with a wave number (1/m) have round a hole."""
+    part = OF_WAVES[quantity] * min(number * hole.smaller_half, LONGEST)
+    is_between = isinstance(hole, Rectangle) and case.packing.is_lattice
+    return BETWEEN * min(part, 1.0) if is_between else part
 
 
 def _holes(case: DiskCase) -> Iterator[tuple[Hole, bool]]:

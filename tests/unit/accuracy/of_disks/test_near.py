@@ -5,14 +5,22 @@ import pytest
 from small_cases import GRAINS, PUSHED, small
 
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.near import CURVED, LONGEST, NEAR, OF_WAVES, RANDOM, errors_near_loads, wall_errors
+from dembound.accuracy.of_disks.near import (
+    BETWEEN,
+    CURVED,
+    LONGEST,
+    NEAR,
+    OF_WAVES,
+    RANDOM,
+    errors_near_loads,
+    wall_errors,
+)
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene, build
 from dembound.holes import Circle, Rectangle
 from dembound.holes.rectangle import STRAIGHT
-from dembound.kinds import with_changes
 from dembound.outside.choice import mean_frequency
 from dembound.packings import Square
 
@@ -118,27 +126,36 @@ def test_walls_that_are_not_between_disks_change_the_size_of_a_hole() -> None:
 CAVE = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.5, 6.1, 2.0]}
 
 
-def of_waves(case: DiskCase, quantity: str, lowest: float = np.inf) -> float:
+def scattered(case: DiskCase, quantity: str, lowest: float = np.inf) -> float:
     """The part of the error of a pressure that waves have round a hole with a smaller half of 0.75 m."""
     frequency = mean_frequency(signals_of(case)[0], lowest)
     return OF_WAVES[quantity] * 2.0 * np.pi * frequency / slowest_speed(build(case).ground) * 0.75
 
 
 def test_waves_have_the_part_of_the_error_of_a_pressure_that_a_hole_scatters() -> None:
-    """A smaller half of 0.75 m, three half disks, with one wall 0.1 m off."""
-    case = small(PUSHED, changes={"hole": [CAVE], "packing.size": [10.0, 3.0]})
-    assert isinstance(case, DiskCase)
-    ground = build(case).ground
-    pressed = np.hypot(STRAIGHT / 1.5, 0.05 / 0.75)
-    found = wall_errors(case, ground, 0.5)
-    assert found["velocity"] == pytest.approx(pressed * min(of_waves(case, "velocity"), 1.7 * LONGEST))
-    assert found["displacement"] == pytest.approx(pressed * of_waves(case, "displacement", 1.0 / case.run.duration))
-    slow = with_changes(case, {"wave.push.period": 1.0, "wave.shake.period": 1.0, "run.duration": 2.0})
-    assert wall_errors(slow, ground, 0.5)["velocity"] == pytest.approx(pressed * of_waves(slow, "velocity"))
+    """A smaller half of 0.75 m, three half disks, with one wall of a rectangle 0.1 m off."""
+
+    def errors(hole: dict, period: float = 0.01, **changes: object) -> tuple[DiskCase, dict[str, float]]:
+        of_wave = {"wave.push.period": period, "wave.shake.period": period, "run.duration": 2.0 * period}
+        case = small(PUSHED, changes={"hole": [hole], "packing.size": [10.0, 3.0]} | of_wave | changes)
+        assert isinstance(case, DiskCase)
+        return case, wall_errors(case, build(case).ground, 0.5)
+
     burst = {"name": "burst", "hole": "cave", "pressure": 1e5, "wave": "push"}
-    blast = small(PUSHED, changes={"hole": [CAVE], "packing.size": [10.0, 3.0], "load": [burst]})
-    assert wall_errors(blast, ground, 0.5) == pytest.approx(dict.fromkeys(OF_WAVES, pressed))  # type: ignore[arg-type]
-    assert wall_errors(small(PUSHED), ground, 0.5) == dict.fromkeys(OF_WAVES, 0.0)  # type: ignore[arg-type]
+    bore = {"name": "cave", "type": "circle", "centre": [5.0, 1.5], "radius": 0.75}
+    for hole, pressed, part, most in (
+        (CAVE, np.hypot(STRAIGHT / 1.5, 0.05 / 0.75), BETWEEN, BETWEEN),
+        (bore, 0.4 / 1.5, 1.0, np.inf),
+    ):
+        case, slow = errors(hole, 0.1)
+        assert slow["velocity"] == pytest.approx(pressed * part * scattered(case, "velocity"))
+        of_displacement = scattered(case, "displacement", 1.0 / case.run.duration)
+        assert slow["displacement"] == pytest.approx(pressed * part * of_displacement)
+        fast = errors(hole, 0.0001)[1]
+        assert fast["velocity"] == pytest.approx(pressed * min(OF_WAVES["velocity"] * LONGEST, most))
+        assert errors(hole, load=[burst])[1] == pytest.approx(dict.fromkeys(OF_WAVES, pressed))
+    without = small(PUSHED)
+    assert wall_errors(without, build(without).ground, 0.5) == dict.fromkeys(OF_WAVES, 0.0)  # type: ignore[arg-type]
 
 
 def test_no_wall_in_a_random_packing_is_between_disks() -> None:
