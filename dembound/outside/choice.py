@@ -133,11 +133,23 @@ def shortest_wave(signals: Sequence[Signal], medium: Medium, share: float = SHAR
 
 @lru_cache(maxsize=256)
 def mean_frequency(signal: Signal, lowest: float = math.inf) -> float:
-    """RMS frequency (Hz) of velocities, infinite for a wave that jumps; lowest : of displacements, see `energies`."""
+    """RMS frequency (Hz) of velocities, infinite for a wave that jumps.
+
+    lowest : of displacements in a run as long as 1/lowest, as the velocity over 2π times the displacement, RMS; of a
+    force see `energies`.
+    """
     if jumps(signal):
         return math.inf
-    frequency, energy = energies(signal, lowest)
-    return math.sqrt(float(frequency**2 @ energy / energy.sum()))
+    if signal.is_force or math.isinf(lowest):
+        frequency, energy = energies(signal, lowest)
+        return math.sqrt(float(frequency**2 @ energy / energy.sum()))
+    wave, end = signal.wave, 1.0 / lowest
+    count = math.ceil(POINTS_IN_TIME * end * wave.highest_frequency())
+    time = np.linspace(min(wave.start, 0.0), end, min(max(count, 2**10), 2**18))
+    velocity = wave.velocity(time)
+    displacement = np.cumsum(velocity) * (time[1] - time[0])
+    size = float(np.linalg.norm(displacement))
+    return float(np.linalg.norm(velocity)) / (2.0 * math.pi * size) if size > 0.0 else 0.0
 
 
 def wave_number(signals: Sequence[Signal], medium: Medium, lowest: float = math.inf) -> float:

@@ -22,6 +22,8 @@ from dembound.disks.scene import DiskScene
 from dembound.holes import Hole, Rectangle
 from dembound.outside.choice import mean_frequency
 
+MOTION = ("velocity", "displacement")
+
 NEAR, CURVED = 0.1, 0.6
 """Error of motion along the ray over (κD)² (r/(r + b))², κ = k + CURVED/r, with the RMS wave number k of S waves."""
 
@@ -36,17 +38,17 @@ RANDOM = 0.75
 smaller half: beside exact solutions 0.41 to 2.1, the median 0.74, of five seeds each of patterns B and C with 4, 6 and
 10 disks along a radius, at 1 to 2.5 radii (benchmarks/walls.py). Walls there are never between disks."""
 
-OF_WAVES = {"velocity": 1.7, "displacement": 1.0}
+OF_WAVES = 1.7
 """The same of waves that pass a hole over that of a pressure in it, by kL, the RMS wave number of the slowest waves in
-the quantity times the smaller half of the hole: what a hole scatters, and its error, is that part of the motion.
-Circles of 5 and 8 disks along the radius in lattices under SV waves, at 1.5 radii: of velocities 1.3 to 2.4 with kL of
-0.09 to 1.25, of displacements 0.8 to 1.25 with kL of 0.08 to 0.8; 1.2 times that at the wall (1.4 times with kL of
-1.25), 0.7 at 2.5 radii (benchmarks/walls.py)."""
+velocity or displacement times the smaller half of the hole: what a hole scatters, and its error, is that part of the
+motion. Circles of 5 and 8 disks along the radius in lattices under SV waves, at 1.5 radii: 1.3 to 2.4 of velocities
+with kL of 0.09 to 1.25, 1.6 to 2.6 of displacements with kL of 0.04 to 0.26; 1.2 times that at the wall (1.4 times with
+kL of 1.25), 0.7 at 2.5 radii."""
 
 BETWEEN = 0.65
-"""That of rectangles in lattices, whose walls are between disks, over that of others, and its largest size: with kL of
-0.09 to 1.9 beside disks three times smaller, at 1.5 radii, of velocities 0.10 to 0.7, or 0.9 to 1.3 of kL where that is
-below 0.4, of displacements 0.5 to 0.7 of kL."""
+"""That of rectangles in lattices, whose walls are between disks, over that of others, and its largest size: beside
+disks three times smaller, at 1.5 radii, velocities have 0.9 to 1.3 of kL where that is below 0.4, at most 0.7 up to
+1.9, displacements 1.2 to 1.7 of kL from 0.04 to 0.33."""
 
 LONGEST = 1.5
 """Largest kL that counts, as of waves that jump: shorter waves were not measured."""
@@ -111,21 +113,21 @@ def wall_errors(case: DiskCase, ground: PackedMaterial, diameter: float) -> dict
     ground : what waves run in, with disks of any diameter. 0 without holes.
     """
     if not case.hole:
-        return dict.fromkeys(OF_WAVES, 0.0)
+        return dict.fromkeys(MOTION, 0.0)
     signals, speed = signals_of(case), slowest_speed(ground)
     found = {}
-    for quantity, lowest in zip(OF_WAVES, (np.inf, 1.0 / case.run.duration), strict=True):
+    for quantity, lowest in zip(MOTION, (np.inf, 1.0 / case.run.duration), strict=True):
         number = 2.0 * np.pi * max((mean_frequency(signal, lowest) for signal in signals), default=0.0) / speed
         found[quantity] = max(
-            _wall_error(case, hole, diameter) * (1.0 if pressed else _scattered(case, hole, quantity, number))
+            _wall_error(case, hole, diameter) * (1.0 if pressed else _scattered(case, hole, number))
             for hole, pressed in _holes(case)
         )
     return found
 
 
-def _scattered(case: DiskCase, hole: Hole, quantity: str, number: float) -> float:
+def _scattered(case: DiskCase, hole: Hole, number: float) -> float:
     """The part of a pressure's error that waves with a wave number (1/m) have round a hole."""
-    part = OF_WAVES[quantity] * min(number * hole.smaller_half, LONGEST)
+    part = OF_WAVES * min(number * hole.smaller_half, LONGEST)
     is_between = isinstance(hole, Rectangle) and case.packing.is_lattice
     return BETWEEN * min(part, 1.0) if is_between else part
 

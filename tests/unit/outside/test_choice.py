@@ -54,6 +54,20 @@ def test_of_a_force_that_stays_the_rise_counts() -> None:
     assert choice.cutoff(pushed(Constant(type="constant", amplitude=2.0))) == math.inf
 
 
+def test_mean_frequencies_are_those_of_the_motion() -> None:
+    """½(1 − cos 2πt/T), whose rate is sin(2πt/T) π/T; its displacement is ½(t − sin(2πt/T) T/2π), then ½T."""
+    square = 0.25 * (1.0 / 3.0 + 2.5 / (2.0 * math.pi) ** 2)
+    for times, stays in ((1.0, 0.0), (3.0, 0.5)):
+        found = choice.mean_frequency(moved(pulse(0.5)), 1.0 / (times * 0.5))
+        assert found == pytest.approx(math.sqrt(0.375 / (square + stays)) / (2.0 * math.pi * 0.5), rel=2e-3)
+    assert choice.mean_frequency(moved(pulse(0.5))) == pytest.approx(1.0 / (0.5 * math.sqrt(3.0)), rel=1e-2)
+    assert choice.wave_number([moved(pulse(0.5)), moved(pulse(0.1))], ROCK) == pytest.approx(
+        2.0 * math.pi / (0.1 * math.sqrt(3.0)) / 500.0, rel=1e-2
+    )
+    assert choice.mean_frequency(moved(Constant(type="constant", amplitude=2.0)), 1.0) == math.inf
+    assert choice.wave_number([], ROCK) == 0.0
+
+
 def test_the_slowest_wave_at_the_highest_cut_off_counts() -> None:
     both = [moved(pulse(1.0)), moved(pulse(0.1))]
     assert choice.shortest_wave(both, ROCK) == pytest.approx(500.0 / choice.cutoff(both[1]), rel=1e-9)

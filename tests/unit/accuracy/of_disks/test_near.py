@@ -9,6 +9,7 @@ from dembound.accuracy.of_disks.near import (
     BETWEEN,
     CURVED,
     LONGEST,
+    MOTION,
     NEAR,
     OF_WAVES,
     RANDOM,
@@ -126,10 +127,10 @@ def test_walls_that_are_not_between_disks_change_the_size_of_a_hole() -> None:
 CAVE = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.5, 6.1, 2.0]}
 
 
-def scattered(case: DiskCase, quantity: str, lowest: float = np.inf) -> float:
+def scattered(case: DiskCase, lowest: float = np.inf) -> float:
     """The part of the error of a pressure that waves have round a hole with a smaller half of 0.75 m."""
     frequency = mean_frequency(signals_of(case)[0], lowest)
-    return OF_WAVES[quantity] * 2.0 * np.pi * frequency / slowest_speed(build(case).ground) * 0.75
+    return OF_WAVES * 2.0 * np.pi * frequency / slowest_speed(build(case).ground) * 0.75
 
 
 def test_waves_have_the_part_of_the_error_of_a_pressure_that_a_hole_scatters() -> None:
@@ -148,14 +149,14 @@ def test_waves_have_the_part_of_the_error_of_a_pressure_that_a_hole_scatters() -
         (bore, 0.4 / 1.5, 1.0, np.inf),
     ):
         case, slow = errors(hole, 0.1)
-        assert slow["velocity"] == pytest.approx(pressed * part * scattered(case, "velocity"))
-        of_displacement = scattered(case, "displacement", 1.0 / case.run.duration)
+        assert slow["velocity"] == pytest.approx(pressed * part * scattered(case))
+        of_displacement = scattered(case, 1.0 / case.run.duration)
         assert slow["displacement"] == pytest.approx(pressed * part * of_displacement)
         fast = errors(hole, 0.0001)[1]
-        assert fast["velocity"] == pytest.approx(pressed * min(OF_WAVES["velocity"] * LONGEST, most))
-        assert errors(hole, load=[burst])[1] == pytest.approx(dict.fromkeys(OF_WAVES, pressed))
+        assert fast["velocity"] == pytest.approx(pressed * min(OF_WAVES * LONGEST, most))
+        assert errors(hole, load=[burst])[1] == pytest.approx(dict.fromkeys(MOTION, pressed))
     without = small(PUSHED)
-    assert wall_errors(without, build(without).ground, 0.5) == dict.fromkeys(OF_WAVES, 0.0)  # type: ignore[arg-type]
+    assert wall_errors(without, build(without).ground, 0.5) == dict.fromkeys(MOTION, 0.0)  # type: ignore[arg-type]
 
 
 def test_no_wall_in_a_random_packing_is_between_disks() -> None:
