@@ -140,16 +140,18 @@ def mean_frequency(signal: Signal, lowest: float = math.inf) -> float:
     """
     if jumps(signal):
         return math.inf
-    if signal.is_force or math.isinf(lowest):
+    wave, of_velocity = signal.wave, math.isinf(lowest)
+    if signal.is_force or (of_velocity and wave.stays):
         frequency, energy = energies(signal, lowest)
         return math.sqrt(float(frequency**2 @ energy / energy.sum()))
-    wave, end = signal.wave, 1.0 / lowest
-    count = math.ceil(POINTS_IN_TIME * end * wave.highest_frequency())
-    time = np.linspace(min(wave.start, 0.0), end, min(max(count, 2**10), 2**18))
-    velocity = wave.velocity(time)
-    displacement = np.cumsum(velocity) * (time[1] - time[0])
-    size = float(np.linalg.norm(displacement))
-    return float(np.linalg.norm(velocity)) / (2.0 * math.pi * size) if size > 0.0 else 0.0
+    end = wave.start + wave.duration() if of_velocity else 1.0 / lowest
+    begin = min(wave.start, end)
+    count = math.ceil(POINTS_IN_TIME * (end - begin) * wave.highest_frequency())
+    time = np.linspace(begin, end, min(max(count, 2**10), 2**18))
+    velocity, step = wave.velocity(time), time[1] - time[0]
+    rate, values = (np.diff(velocity) / step, velocity) if of_velocity else (velocity, np.cumsum(velocity) * step)
+    size = float(np.linalg.norm(values))
+    return float(np.linalg.norm(rate)) / (2.0 * math.pi * size) if size > 0.0 else 0.0
 
 
 def wave_number(signals: Sequence[Signal], medium: Medium, lowest: float = math.inf) -> float:
