@@ -20,7 +20,7 @@ PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED, POWER = range(7)
 """Kinds of elements, see `tables.Sides`."""
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _dashpots(c, lines, constants, old, new, incident):
     """Sums of `_of_batch` of dashpots, through which a wave of the velocity `incident` (m/s) enters.
 
@@ -41,7 +41,7 @@ def _dashpots(c, lines, constants, old, new, incident):
     return force, constant * incident * incident - absorbed, before, absorbed
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _following(c, lines, constants, follow, old, new, followed, incident):
     """Sums of `_of_batch` of dashpots on velocities relative to those of twins, followed (k, 3) m/s."""
     force = 0.0
@@ -60,7 +60,7 @@ def _following(c, lines, constants, follow, old, new, followed, incident):
     return force, power, before, absorbed
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _springs(c, lines, constants, nodes, u):
     """Sums of `_of_batch` of springs at displacements u (3, n): the force alone, from which their energy follows."""
     force = 0.0
@@ -69,7 +69,7 @@ def _springs(c, lines, constants, nodes, u):
     return force, 0.0, 0.0, 0.0
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _exerted(kind, c, lines, constants, moved, across, signals, columns):
     """Sums of `_of_batch` of prescribed motion (the force needed, without ties), drives (constants·signal), seams."""
     force = 0.0
@@ -97,7 +97,7 @@ def _mean(u, members, weights):
     return total
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _steady(c, sides, o, load):
     """Steady force (N) on side o: its offset, and shares of the load (3, n) N."""
     force = sides.offset[o, c]
@@ -106,7 +106,7 @@ def _steady(c, sides, o, load):
     return force
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides):
     """Force (N) of batch b on component c, its power (W), that with velocities before the step, and absorbed power.
 
@@ -127,7 +127,7 @@ def _of_batch(b, c, step, signal, lines, constants, u, supports, across, followe
     return _exerted(kind, c, lines, constants, moved, across, sides.signals[step], columns)
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _of_side(b, step, u, supports, across, followed, moved, sides):
     """`_of_batch` of batch b in this step."""
     first, last = U(sides.start[b]), U(sides.start[b + 1])
@@ -137,7 +137,7 @@ def _of_side(b, step, u, supports, across, followed, moved, sides):
     return _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides)
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _note_motion(row, u, body, sides, sums):
     """Write displacements and forces of all sides in this step to a row of sides.record."""
     record = sides.record
@@ -154,7 +154,7 @@ def _note_motion(row, u, body, sides, sums):
             record[row, sides.side[b], 3 + sides.component[b]] += sums[b, 0]
 
 
-@njit(**FAST, forceinline=True)
+@njit(**FAST, inline="always")
 def _note_halves(body, sides, sums):
     """Fill sides.work[1], the work up to the beginning of this step, from that before it."""
     work = sides.work

@@ -43,7 +43,7 @@ OF_WAVES = 1.7
 velocity or displacement times the smaller half of the hole: what a hole scatters, and its error, is that part of the
 motion. Circles of 5 and 8 disks along the radius in lattices under SV waves, at 1.5 radii: 1.3 to 2.4 of velocities
 with kL of 0.09 to 1.25, 1.6 to 2.6 of displacements with kL of 0.04 to 0.26; 1.2 times that at the wall (1.4 times with
-kL of 1.25), 0.7 at 2.5 radii."""
+kL of 1.25), 0.7 at 2.5 radii (benchmarks/walls.py)."""
 
 BETWEEN = 0.65
 """That of rectangles in lattices, whose walls are between disks, over that of others, and its largest size: beside
@@ -55,9 +55,9 @@ LONGEST = 1.5
 
 WALL_FACTOR = 2.0
 """95 % of true errors beside holes are at most so many times as large as `wall_errors`: of means over 12 directions 1.4
-times in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), 1.6 times in
-lattices under waves (80, at most 2.1), and 1.1 times in random packings under waves (80, at most 1.7;
-benchmarks/walls.py). Single directions scatter more."""
+times in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), under waves
+2.0 times beside circles (137, at most 2.7) and 1.8 beside squares in lattices (89, at most 2.3), and 1.3 times in
+random packings (203, at most 2.0; benchmarks/walls.py). Single directions scatter more."""
 
 
 def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
