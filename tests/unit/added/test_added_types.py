@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dembound.accuracy.of_disks.near import BETWEEN, LONGEST, OF_WAVES
+
 HERE = Path(__file__).parent
 REGISTERED = {
     "laws": ["Linear", "Namesake", "Brittle", "Rubber", "Cork", "Forgetful", "Graded"],
@@ -228,9 +230,11 @@ def test_a_lattice_only_stands_for_the_ground_and_other_packings_are_the_ground(
 def test_walls_in_a_lattice_without_planes_between_disks_are_half_a_disk_off(asked) -> None:
     """One disk along the smaller half of a rectangle: 0.2 by its corners, half of half a disk of one; random: 0.75.
 
-    A hole of another shape is as a round one, 0.4 of a disk in the half of its box, here of two; waves do 0.45 of it.
+    A hole of another shape is as a round one, 0.4 of a disk in the half of its box, here of two. The waves are short.
     """
-    assert asked["walls"] == pytest.approx([0.45 * np.hypot(0.2, 0.25), 0.45 * 0.75, 0.45 * 0.4 / 2.0])
+    assert asked["walls"] == pytest.approx(
+        [BETWEEN * np.hypot(0.2, 0.25), OF_WAVES * LONGEST * 0.75, OF_WAVES * LONGEST * 0.4 / 2.0]
+    )
 
 
 def test_only_rows_and_columns_of_disks_keep_waves_plane_between_free_sides(asked) -> None:
