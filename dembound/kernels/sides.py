@@ -21,7 +21,7 @@ PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED, POWER = range(7)
 
 
 @njit(**FAST, inline="always")
-def _dashpots(c, lines, constants, old, new, incident):
+def _dashpots(c, first, last, sides, old, new, incident):
     """Sums of `_of_batch` of dashpots, through which a wave of the velocity `incident` (m/s) enters.
 
     Of a mean velocity v they absorb C(v − v_i)², the power of the outgoing wave, and C v_i² comes in.
@@ -30,58 +30,57 @@ def _dashpots(c, lines, constants, old, new, incident):
     before = 0.0
     absorbed = 0.0
     constant = 0.0
-    for e in range(lines.size):
-        s = U(lines[e])
+    for e in range(first, last):
+        s = U(sides.line[U(e)])
         out = 0.5 * (old[c, s] + new[c, s]) - incident
-        f = constants[e] * (incident - out)
+        f = sides.constant[U(e)] * (incident - out)
         force += f
         before += f * old[c, s]
-        absorbed += constants[e] * out * out
-        constant += constants[e]
+        absorbed += sides.constant[U(e)] * out * out
+        constant += sides.constant[U(e)]
     return force, constant * incident * incident - absorbed, before, absorbed
 
 
 @njit(**FAST, inline="always")
-def _following(c, lines, constants, follow, old, new, followed, incident):
+def _following(c, first, last, sides, old, new, followed, incident):
     """Sums of `_of_batch` of dashpots on velocities relative to those of twins, followed (k, 3) m/s."""
     force = 0.0
     power = 0.0
     before = 0.0
     absorbed = 0.0
-    for e in range(lines.size):
-        s = U(lines[e])
+    for e in range(first, last):
+        s = U(sides.line[U(e)])
         mean = 0.5 * (old[c, s] + new[c, s])
-        f = constants[e] * (2.0 * incident - mean) + follow[e] * followed[s, c]
+        f = sides.constant[U(e)] * (2.0 * incident - mean) + sides.follow[U(e)] * followed[s, c]
         out = mean - followed[s, c] - incident
         force += f
         power += f * mean
         before += f * old[c, s]
-        absorbed += constants[e] * out * out
+        absorbed += sides.constant[U(e)] * out * out
     return force, power, before, absorbed
 
 
 @njit(**FAST, inline="always")
-def _springs(c, lines, constants, nodes, u):
+def _springs(c, first, last, sides, nodes, u):
     """Sums of `_of_batch` of springs at displacements u (3, n): the force alone, from which their energy follows."""
     force = 0.0
-    for e in range(lines.size):
-        force -= constants[e] * u[c, U(nodes[U(lines[e])])]
+    for e in range(first, last):
+        force -= sides.constant[U(e)] * u[c, U(nodes[U(sides.line[U(e)])])]
     return force, 0.0, 0.0, 0.0
 
 
 @njit(**FAST, inline="always")
-def _exerted(kind, c, lines, constants, moved, across, signals, columns):
+def _exerted(kind, c, first, last, sides, old, new, push, across, step):
     """Sums of `_of_batch` of prescribed motion (the force needed, without ties), drives (constants·signal), seams."""
     force = 0.0
     power = 0.0
     before = 0.0
-    old, new, push = moved[0], moved[1], moved[2]
-    for e in range(lines.size):
-        s = U(lines[e])
+    for e in range(first, last):
+        s = U(sides.line[U(e)])
         if kind == DRIVE:
-            f = constants[e] * signals[U(columns[e])]
+            f = sides.constant[U(e)] * sides.signals[step, U(sides.column[U(e)])]
         else:
-            f = constants[e] * (push[c, s] - across[s, c] if kind == PRESCRIBED else across[s, c])
+            f = sides.constant[U(e)] * (push[c, s] - across[s, c] if kind == PRESCRIBED else across[s, c])
         force += f
         power += f * 0.5 * (old[c, s] + new[c, s])
         before += f * old[c, s]
@@ -89,11 +88,14 @@ def _exerted(kind, c, lines, constants, moved, across, signals, columns):
 
 
 @njit(**_REORDERED)
-def _mean(u, members, weights):
-    """Sum of displacements u (n,) of members (m,) with weights (m,), in an order that depends on m alone."""
+def _mean(u, c, first, last, members, weights):
+    """Sum of component c of displacements u (3, n) of members first to last − 1 of (m,) with weights (m,).
+
+    Its order depends on their number alone.
+    """
     total = 0.0
-    for m in range(members.size):
-        total += weights[m] * u[U(members[m])]
+    for m in range(first, last):
+        total += weights[U(m)] * u[c, U(members[U(m)])]
     return total
 
 
@@ -107,34 +109,25 @@ def _steady(c, sides, o, load):
 
 
 @njit(**FAST, inline="always")
-def _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides):
-    """Force (N) of batch b on component c, its power (W), that with velocities before the step, and absorbed power.
+def _of_batch(b, step, u, supports, across, followed, moved, sides):
+    """Force (N) of batch b in this step, its power (W), that with velocities before the step, and absorbed power.
 
     The power of incident waves adds to no force; it comes in once what leaves by forces is added to what is absorbed.
     """
-    kind = sides.kind[b]
-    if kind == POWER:
-        return 0.0, 0.0, 0.0, signal
-    old, new = moved[0], moved[1]
-    if kind == DASHPOT:
-        return _dashpots(c, lines, constants, old, new, signal)
-    if kind == FOLLOWING:
-        follow = sides.follow[sides.start[b] : sides.start[b + 1]]
-        return _following(c, lines, constants, follow, old, new, followed, signal)
-    if kind == SPRING:
-        return _springs(c, lines, constants, supports.nodes, u)
-    columns = sides.column[sides.start[b] : sides.start[b + 1]]
-    return _exerted(kind, c, lines, constants, moved, across, sides.signals[step], columns)
-
-
-@njit(**FAST, inline="always")
-def _of_side(b, step, u, supports, across, followed, moved, sides):
-    """`_of_batch` of batch b in this step."""
-    first, last = U(sides.start[b]), U(sides.start[b + 1])
+    kind, c, first, last = sides.kind[b], U(sides.component[b]), sides.start[b], sides.start[b + 1]
     signal = sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
-    lines, constants = sides.line[first:last], sides.constant[first:last]
-    c = U(sides.component[b])
-    return _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides)
+    old, new, push = moved[0], moved[1], moved[2]
+    if kind == POWER:
+        found = 0.0, 0.0, 0.0, signal
+    elif kind == DASHPOT:
+        found = _dashpots(c, first, last, sides, old, new, signal)
+    elif kind == FOLLOWING:
+        found = _following(c, first, last, sides, old, new, followed, signal)
+    elif kind == SPRING:
+        found = _springs(c, first, last, sides, supports.nodes, u)
+    else:
+        found = _exerted(kind, c, first, last, sides, old, new, push, across, step)
+    return found
 
 
 @njit(**FAST, inline="always")
@@ -142,11 +135,10 @@ def _note_motion(row, u, body, sides, sums):
     """Write displacements and forces of all sides in this step to a row of sides.record."""
     record = sides.record
     for o in range(record.shape[1]):
-        first, last = U(sides.member_start[o]), U(sides.member_start[o + 1])
-        members = sides.member[first:last]
+        first, last = sides.member_start[o], sides.member_start[o + 1]
         for c in range(3):
             moves = body.free[c] != 0.0
-            record[row, o, c] = _mean(u[c], members, sides.weight[first:last]) if moves else 0.0
+            record[row, o, c] = _mean(u, U(c), first, last, sides.member, sides.weight) if moves else 0.0
         for c in range(2):
             record[row, o, 3 + c] = _steady(c, sides, o, body.load)
     for b in range(sides.kind.size):
@@ -185,7 +177,7 @@ def note_sides(step, row, is_last, motion, given):
     sides = log.sides
     for b in range(sides.kind.size):
         if sides.kind[b] != SPRING or row >= 0:
-            force, power, before, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
+            force, power, before, absorbed = _of_batch(b, step, u, supports, across, followed, moved, sides)
             sums[b, 0], sums[b, 1], sums[b, 2], sums[b, 3] = force, power, before, absorbed
     if row >= 0:
         _note_motion(row, u, body, sides, sums)
