@@ -4,7 +4,7 @@
 calls these by `caller`, with the address of the data; a kernel reads them by `contents`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from llvmlite import ir  # type: ignore[import-untyped]
@@ -85,11 +85,11 @@ def reader(bundle: Any) -> Callable[..., Any]:
     return _known(lambda _: signature(bundle, types.int64), _read)
 
 
-def writer(roles: Sequence[Role] = (), only: Any = None) -> Callable[..., Any]:
-    """A function (bundle, row, space): writes the bundle's data to space (`SPACE`,), and to row (1 + roles,) addresses.
+def writer(roles: Mapping[int, Role] | None = None, only: Any = None) -> Callable[..., Any]:
+    """A function (bundle, row, space): writes the bundle's data to space (`SPACE`,), and addresses to a row.
 
-    They are that of the data, then those of the kernels of all roles in which the bundle has one. only : the type that
-    a bundle must have.
+    They are that of the data, in column 0, and those of the kernels of the roles in which the bundle has one, by
+    column. only : the type that a bundle must have.
     """
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -104,7 +104,7 @@ def writer(roles: Sequence[Role] = (), only: Any = None) -> Callable[..., Any]:
         for k, number in enumerate(packer.as_arguments(builder, [args[0]])):
             builder.store(number, cgutils.gep_inbounds(builder, place, 0, k))
         found = {0: place}
-        for k, role in enumerate(roles, start=1):
+        for k, role in (roles or {}).items():
             if role.generic.kernels[bundle.instance_class] is not None:
                 arguments = types.CPointer(bundle), *[types.int64] * (role.kernel.py_func.__code__.co_argcount - 1)
                 found[k] = address(context, builder, role.kernel, arguments, role.returned)

@@ -15,7 +15,7 @@ from numba.extending import overload
 from dembound.kernels import tables
 from dembound.kernels.bundles import SPACE, Role, caller, contents, reader, writer
 from dembound.kernels.common import FAST
-from dembound.kernels.law import Kernel, across, begin, check, finish, move, note, push, turn, turning_work
+from dembound.kernels.law import across, begin, check, finish, move, note, push, turn, turning_work
 
 Bundles = tuple[Any, ...]
 
@@ -117,17 +117,20 @@ def _turning_work(turning, motion, step, number, given):
     return turning_work(contents(turning), motion_at(motion).v, given_at(given).body.step)
 
 
-LAW = (
-    Role(begin, _begin),
-    Role(check, _check, types.int64),
-    Role(push, _push, types.int64),
-    Role(note, _note),
-    Role(move, _move),
-    Role(finish, _finish),
-)
-TIE = (Role(across, _across),)
-TURNING = Role(turn, _turn, types.float64), Role(turning_work, _turning_work, types.float64)
-"""What is called for laws, for ties, and for forces that rotate, by columns of tables of them after the first."""
+BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH, ACROSS, TURN, TURNING_WORK = range(1, 10)
+"""Columns of the tables of bundles, see `entered`: what is called for laws, for ties, and for forces that rotate."""
+
+ROLES = {
+    BEGIN: Role(begin, _begin),
+    CHECK: Role(check, _check, types.int64),
+    PUSH: Role(push, _push, types.int64),
+    NOTE: Role(note, _note),
+    MOVE: Role(move, _move),
+    FINISH: Role(finish, _finish),
+    ACROSS: Role(across, _across),
+    TURN: Role(turn, _turn, types.float64),
+    TURNING_WORK: Role(turning_work, _turning_work, types.float64),
+}
 
 _call, _count, _measure = caller(types.none), caller(types.int64), caller(types.float64)
 
@@ -136,50 +139,72 @@ _INLINED: Any = {name: value for name, value in FAST.items() if name != "cache"}
 """Compiler options of functions that are copied into the loop."""
 
 
-def _of_all(role: Role, column: int) -> Kernel:
-    """The function (bundles, motion, step, number, given) that calls a kernel of all bundles in turn.
+def _found(bundles: Any, column: int, *others: Any) -> list[Any]:
+    """What the kernels of bundles return, without compiling."""
+    role = ROLES[column]
+    return [role.kernel(each, *others) for each in bundles if role.generic.kernels[type(each)] is not None]
 
-    It returns the largest whole number, or the sum, of what they return. A bundle without such a kernel costs nothing,
-    neither time nor compiling. Compiled code takes a table of addresses, see `entered`, others the bundles.
+
+def call_all(bundles: Any, column: int, *others: Any) -> None:
+    """Call a kernel, by its column, of all bundles in turn, with (motion, step, number, given).
+
+    A bundle without such a kernel costs nothing, neither time nor compiling. Compiled code takes a table of addresses,
+    see `entered`, others the bundles.
     """
+    _found(bundles, column, *others)
 
-    def call(bundles: Any, *others: Any) -> Any:
-        """Replaced by one of the functions below in compiled code; this one runs without compiling."""
-        kernels = role.generic.kernels
-        found = [role.kernel(bundle, *others) for bundle in bundles if kernels[type(bundle)] is not None]
-        if role.returned == types.none:
-            return None
-        return max(found, default=0) if role.returned == types.int64 else sum(found)
 
-    def none(bundles, motion, step, number, given):  # type: ignore[no-untyped-def]
+def count_all(bundles: Any, column: int, *others: Any) -> Any:
+    """The largest of the whole numbers that the kernels return, at least 0; see `call_all`."""
+    return max(_found(bundles, column, *others), default=0)
+
+
+def measure_all(bundles: Any, column: int, *others: Any) -> Any:
+    """The sum of the numbers that the kernels return; see `call_all`."""
+    return sum(_found(bundles, column, *others))
+
+
+@overload(call_all, jit_options=_INLINED, strict=False)
+def _call_all(bundles, column, motion, step, number, given):  # type: ignore[no-untyped-def]
+    def none(bundles, column, motion, step, number, given):  # type: ignore[no-untyped-def]
         for k in range(bundles.shape[0]):
             if bundles[k, column] != 0:
                 _call(bundles[k, column], bundles[k, 0], motion, step, number, given)
 
-    def largest(bundles, motion, step, number, given):  # type: ignore[no-untyped-def]
+    return none
+
+
+@overload(count_all, jit_options=_INLINED, strict=False)
+def _count_all(bundles, column, motion, step, number, given):  # type: ignore[no-untyped-def]
+    def largest(bundles, column, motion, step, number, given):  # type: ignore[no-untyped-def]
         found = 0
         for k in range(bundles.shape[0]):
             if bundles[k, column] != 0:
                 found = max(found, _count(bundles[k, column], bundles[k, 0], motion, step, number, given))
         return found
 
-    def total(bundles, motion, step, number, given):  # type: ignore[no-untyped-def]
+    return largest
+
+
+@overload(measure_all, jit_options=_INLINED, strict=False)
+def _measure_all(bundles, column, motion, step, number, given):  # type: ignore[no-untyped-def]
+    def total(bundles, column, motion, step, number, given):  # type: ignore[no-untyped-def]
         found = 0.0
         for k in range(bundles.shape[0]):
             if bundles[k, column] != 0:
                 found += _measure(bundles[k, column], bundles[k, 0], motion, step, number, given)
         return found
 
-    choice = {types.none: none, types.int64: largest, types.float64: total}[role.returned]
-    overload(call, jit_options=_INLINED, strict=False)(lambda bundles, motion, step, number, given: choice)
-    return call
+    return total
 
 
-begin_all, check_all, push_all, note_all, move_all, finish_all = (_of_all(each, 1 + k) for k, each in enumerate(LAW))
-across_all = _of_all(*TIE, 1)
-turn_all, turning_work_all = (_of_all(each, 1 + k) for k, each in enumerate(TURNING))
+def _of(*columns: int) -> dict[int, Role]:
+    """The roles of these columns."""
+    return {column: ROLES[column] for column in columns}
 
-_write_law, _write_tie, _write_turning = writer(LAW), writer(TIE), writer(TURNING)
+
+_write_law = writer(_of(BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH))
+_write_tie, _write_turning = writer(_of(ACROSS)), writer(_of(TURN, TURNING_WORK))
 _write_motion, _write_given = writer(only=_MOTION), writer(only=_GIVEN)
 
 
@@ -224,7 +249,7 @@ def entered(
         yield laws, ties, turnings, motions, given
         return
     kinds: list[Bundles] = [laws, ties, turnings, motions, (given,)]
-    tables_of = [np.zeros((len(bundles), 1 + max(len(LAW), len(TURNING))), dtype=np.int64) for bundles in kinds]
+    tables_of = [np.zeros((len(bundles), 1 + len(ROLES)), dtype=np.int64) for bundles in kinds]
     spaces = [np.empty((len(bundles), SPACE), dtype=np.int64) for bundles in kinds]
     for enter, bundles, table, space in zip(_ENTER, kinds, tables_of, spaces, strict=True):
         for k, bundle in enumerate(bundles):

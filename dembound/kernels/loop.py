@@ -7,20 +7,23 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.calls import (
+    ACROSS,
+    BEGIN,
+    CHECK,
+    FINISH,
+    MOVE,
+    NOTE,
+    PUSH,
+    TURN,
+    TURNING_WORK,
     Given,
     Motion,
-    across_all,
-    begin_all,
-    check_all,
+    call_all,
+    count_all,
     entered,
-    finish_all,
     given_at,
+    measure_all,
     motion_at,
-    move_all,
-    note_all,
-    push_all,
-    turn_all,
-    turning_work_all,
 )
 from dembound.kernels.common import BROKE, DONE, FAST
 from dembound.kernels.sides import note_sides
@@ -57,21 +60,21 @@ def _advance(number, laws, ties, turning, motions, given):
     work = log.work
     done = steps
     why = np.int64(DONE)
-    begin_all(laws, motions[0], 0, number, given)
+    call_all(laws, BEGIN, motions[0], 0, number, given)
     for step in range(steps):
         motion = motions[step % 2]
-        why = check_all(laws, motion, step, number + step, given)
+        why = count_all(laws, CHECK, motion, step, number + step, given)
         if why != DONE:
             done = step
             break
-        turned = turn_all(turning, motion, step, number + step, given)
-        breaks = push_all(laws, motion, step, number + step, given)
+        turned = measure_all(turning, TURN, motion, step, number + step, given)
+        breaks = count_all(laws, PUSH, motion, step, number + step, given)
         if len(ties) > 0:
             clear(pulled)
-            across_all(ties, motion, step, number + step, given)
+            call_all(ties, ACROSS, motion, step, number + step, given)
         note_before(step, here, v, log.probes, log.record, supports.twin, followed)
-        note_all(laws, motion, step, number + step, given)
-        move_all(laws, motion, step, number + step, given)
+        call_all(laws, NOTE, motion, step, number + step, given)
+        call_all(laws, MOVE, motion, step, number + step, given)
         move_supported(step, here, v, there, pulled, followed, supports, body, work, moved)
         if log.sides.every > 0:
             sides = log.sides  # the ledger is written after the last step only
@@ -80,9 +83,9 @@ def _advance(number, laws, ties, turning, motions, given):
         note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
         if log.top_speed.size > 0:
             note_top_speeds(v, log.top_speed)
-        finish_all(laws, motion, step, number + step, given)
+        call_all(laws, FINISH, motion, step, number + step, given)
         work[1, 5] = work[0, 5] + turned
-        work[0, 5] += turned + turning_work_all(turning, motion, step, number + step, given)
+        work[0, 5] += turned + measure_all(turning, TURNING_WORK, motion, step, number + step, given)
         log.supplied[0] = max(log.supplied[0], work[1, 0])
         here, there = there, here
         if breaks > 0:
