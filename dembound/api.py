@@ -148,6 +148,7 @@ def advise(
     of: Truth | None = None,
     keep: Sequence[str] = (),
     seeds: int = 1,
+    longest: float | None = None,
     threads: int | None = None,
 ) -> Advice:
     """How wrong a case is, and the cheapest choices for errors, as ``dembound advise`` does; see docs/errors.md.
@@ -155,12 +156,13 @@ def advise(
     Parameters
     ----------
     case : with monitors. bounds : errors, RMS over RMS. of : "disks" or "rock". keep : keys that are not changed.
-    seeds : random packings with which the case is run. threads : as for `run`.
+    seeds : random packings with which the case is run. longest : CPU seconds that the steps of a choice may take.
+    threads : as for `run`.
 
     Raises CaseError for cases without monitors, whose errors are not known, and for a bound or a key that is none.
     """
     with _threads(threads):
-        return find_advice(case, bounds, of, keep, seeds)
+        return find_advice(case, bounds, of, keep, seeds, longest)
 
 
 def resume(

@@ -19,7 +19,12 @@ BOUNDS = (0.1, 0.03, 0.01, 0.003)
 
 
 def advise(
-    case: Case, bounds: Sequence[float] = BOUNDS, of: Truth | None = None, kept: Sequence[str] = (), seeds: int = 1
+    case: Case,
+    bounds: Sequence[float] = BOUNDS,
+    of: Truth | None = None,
+    kept: Sequence[str] = (),
+    seeds: int = 1,
+    longest: float | None = None,
 ) -> Advice:
     """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
@@ -27,6 +32,7 @@ def advise(
     not quiet. of : whether the disks are the material, or a grid of the rock; None: the material where packings are
     random or bonds may break. kept : dotted keys whose values remain as given, such as ``packing.radius`` or
     ``boundary``. seeds : number of random packings with which the case is run to see how much depends on them.
+    longest : CPU seconds that the steps of a choice may take; by default 60 of disks, or 64 times those of the case.
 
     Raises CaseError for cases without monitors, without motion at them, or whose errors are not known, for a bound that
     is none and for unknown keys; the errors of building a scene and of running companions.
@@ -41,7 +47,7 @@ def advise(
     judge = judge_of(case)
     clock = Clock(time.process_time)
     with clock.with_compiling(), clock.of("advise"):
-        found = judge.advise(case, bounds, of or judge.truth(case), kept)
+        found = judge.advise(case, bounds, of or judge.truth(case), kept, longest)
         if seeds > 1:
             budget = found.given.budget
             packing = judge.of_other_seeds(case, budget.motions, seeds)

@@ -65,6 +65,16 @@ Seeds = Annotated[
         min=1, help="Random packings with which the case is run, to see how much depends on them.", metavar="N"
     ),
 ]
+Longest = Annotated[
+    float | None,
+    typer.Option(
+        "--longest",
+        min=0.0,
+        metavar="SECONDS",
+        help="CPU seconds that the steps of a choice may take: by default 60, or 64 times those of the case if that is "
+        "more. The search may take a fifth of it.",
+    ),
+]
 
 
 @app.command("advise", rich_help_panel="Cases")
@@ -74,6 +84,7 @@ def advise_cases(
     of: Of = None,
     keep: Keep = None,
     seeds: Seeds = 1,
+    longest: Longest = None,
     changes: Settings = None,
     threads: Threads = None,
 ) -> None:
@@ -97,7 +108,7 @@ def advise_cases(
     missed = []
     for number, path in enumerate(cases):
         case = load_case(path, changes)
-        found = advise(case, bounds, None if of is None else of.value, kept, seeds)
+        found = advise(case, bounds, None if of is None else of.value, kept, seeds, longest)
         for line in lines_of(case, found):
             out.print(line, markup=False, soft_wrap=True)
         if bound is None:
@@ -132,16 +143,18 @@ def name_within(name: str, bound: float) -> str:
     return f"{name}_{number.replace('.', '_')}pct"
 
 
-def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequence[str] | None) -> Case:
+def chosen(
+    case: Case, bound: float, keep: Sequence[str] | None, changes: Sequence[str] | None, longest: float | None = None
+) -> Case:
     """The case with the cheapest choice that keeps an error bound, which is printed.
 
-    keep : as of the option; changes : those of ``--set``, whose keys are kept, too.
+    keep, longest : as of the options; changes : those of ``--set``, whose keys are kept, too.
 
     Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `advise`.
     """
     from dembound.accuracy.advise import advise
 
-    found = advise(case, (bound,), kept=_kept(keep, changes))
+    found = advise(case, (bound,), kept=_kept(keep, changes), longest=longest)
     best = found.best[bound]
     if not best.holds(bound):
         raise NotAccurateError(_missed(case, found, bound))
@@ -189,7 +202,7 @@ def _missed(case: Case, found: Advice, bound: float) -> str:
     """A message that no choice keeps a bound, with the best one."""
     best = found.best[bound]
     said = f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_lines(best)[0]}"
-    return "\n".join([said, *best.choice.toml])
+    return "\n".join([f"{said}; --longest SECONDS tries choices that take longer", *best.choice.toml])
 
 
 def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.advise import Error, Keep, bound_of, chosen, name_within
+from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within
 from dembound.cli.app import (
     Cases,
     Name,
@@ -64,6 +64,7 @@ def run(
     estimate: Annotated[bool, typer.Option("--estimate", help="Estimate the errors of each run afterwards.")] = False,
     error: Error = None,
     keep: Keep = None,
+    longest: Longest = None,
 ) -> None:
     """Run cases one after another; each writes its folder of results.
 
@@ -79,8 +80,8 @@ def run(
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
     bound = bound_of(error)
-    if keep and bound is None:
-        raise CaseError(["--keep: needs --error, without which nothing is changed"])
+    for option in [name for name, given in (("--keep", keep), ("--longest", longest)) if given and bound is None]:
+        raise CaseError([f"{option}: needs --error, without which nothing is changed"])
     prepare_computing(threads)
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
@@ -98,7 +99,7 @@ def run(
         folder.check()
         require_replaceable(folder, case)
     if bound is not None:
-        loaded = [chosen(case, bound, keep, changes) for case in loaded]
+        loaded = [chosen(case, bound, keep, changes, longest) for case in loaded]
     for case in loaded[1:]:  # the first is planned below, before anything is written
         preflight(case)
     for number, case in enumerate(loaded):

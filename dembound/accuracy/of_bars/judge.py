@@ -35,9 +35,11 @@ class BarJudge(Judge[BarCase, BarScene]):
         """Ends, nodes and steps, from the waves of the linear bar."""
         return causes_of_bar(case, recorded, time_step)
 
-    def advise(self, case: BarCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
+    def advise(
+        self, case: BarCase, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None
+    ) -> Advice:
         """The cheapest nodes, steps and absorbing ends."""
-        return advice_for_bar(case, bounds, kept)
+        return advice_for_bar(case, bounds, kept, longest)
 
     def extended(self, case: BarCase, most: int) -> Extended:
         """The bar with more spacings beyond ends that are neither loaded nor driven."""

@@ -44,10 +44,12 @@ ALONG = "; its nodes and method remain, as it may break, and the error is that b
 """What is said of a bar that may break."""
 
 
-def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str]) -> Advice:
+def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str], longest: float | None = None) -> Advice:
     """The errors of a bar, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
-    kept : keys that do not change. Raises CaseError for a bar whose errors are not known, one that does not move at its
+    kept : keys that do not change. longest : CPU seconds that the steps of a choice may take, if more than by default.
+
+    Raises CaseError for a bar whose errors are not known, one that does not move at its
     monitors, and where no choice keeps those values; the errors of building a scene.
     """
     if refused := not_linear(case):
@@ -55,7 +57,7 @@ def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str]) 
     own = given_motion(case)
     if not own.moves:
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
-    motions = affordable(own, bar_options(case, kept))
+    motions = affordable(own, bar_options(case, kept), longest)
     if bounds and not motions:
         raise CaseError(["advise: no choice keeps the values of --keep and --set"], case.name)
     best, tried = {}, 0
@@ -64,7 +66,7 @@ def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str]) 
         tried += count
         words = motion.choice.words
         if may_break(case):
-            words += ALONG + (_otherwise(own, bound, kept) if not motion.holds(bound) else "")
+            words += ALONG + (_otherwise(own, bound, kept, longest) if not motion.holds(bound) else "")
         found = Proposal(Choice.of(case, motion.choice.case(case), words), motion.choice.cost, motion.budget)
         best[bound] = found if may_break(case) else ended_earlier(found, case, bound, motion.recorded, kept)
     return Advice(Proposal(Choice("the case as it is", {}, case), own.choice.cost, own.budget), best, tried)
@@ -76,15 +78,16 @@ def given_motion(case: BarCase) -> Motion:
     return Motion(next(each for each in bar_options(case, ()) if not each.changes), exact)
 
 
-def affordable(own: Motion, options: Iterable[BarOption]) -> list[Motion]:
-    """Motions of choices for a case that cost at most `COSTLIEST` times as much as it does, the cheapest first."""
+def affordable(own: Motion, options: Iterable[BarOption], longest: float | None = None) -> list[Motion]:
+    """Motions of choices that cost at most `COSTLIEST` times as much as a case, or `longest` s; the cheapest first."""
     choices = sorted(options, key=lambda each: each.cost)
-    return [Motion(each, own.exact) for each in choices if each.cost <= COSTLIEST * own.choice.cost]
+    most = max(COSTLIEST * own.choice.cost, longest or 0.0)
+    return [Motion(each, own.exact) for each in choices if each.cost <= most]
 
 
-def _otherwise(own: Motion, bound: float, kept: Sequence[str]) -> str:
+def _otherwise(own: Motion, bound: float, kept: Sequence[str], longest: float | None) -> str:
     """The cheapest choice of finite differences that keeps a bound, for a bar that may break; empty without one."""
-    motions = affordable(own, other_options(own.choice.scene.case, kept))
+    motions = affordable(own, other_options(own.choice.scene.case, kept), longest)
     best = cheapest(motions, bound)[0] if motions else None
     if best is None or not best.holds(bound):
         return ""

@@ -25,10 +25,13 @@ from dembound.motion.silence import monitored
 from dembound.running import plan
 
 
-def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
+def advice_for_disks(
+    case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None = None
+) -> Advice:
     """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
     of : the truth that errors are those of; where these are the disks, they remain. kept : keys that do not change.
+    longest : CPU seconds that the steps of a choice may take, if more than by default.
     Where one bound is asked for, which the case keeps in less time than a search takes, this is the choice.
 
     Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
@@ -49,11 +52,12 @@ def advice_for_disks(case: DiskCase, bounds: Sequence[float], of: Truth, kept: S
     given = _given(companions, of, planned_cost(planned).seconds)
     if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
         return Advice(given, {bounds[0]: given}, 1)
-    searches = [Search(companions, planned, of, kept, given.cost)]
+    searches = [Search(companions, planned, of, kept, given.cost, longest=longest)]
     searches[0].know(given.budget)
     if bounds and (twin := elastic_twin(case, planned, most, kept, companions.runner)) is not None:
         own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
-        searches.insert(0, Search(own, twin.planned, of, kept, planned_cost(twin.planned).seconds, twin))
+        cost = planned_cost(twin.planned).seconds
+        searches.insert(0, Search(own, twin.planned, of, kept, cost, twin, longest))
     best = {bound: _best(given, case, searches, bound) for bound in sorted(bounds, reverse=True)}
     return Advice(given, best, sum(search.tried for search in searches))
 

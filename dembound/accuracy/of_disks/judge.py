@@ -63,10 +63,12 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         else:
             yield f"the elastic law holds up to {limit['factor']:.3g} times these waves, then {limit['limit']}"
 
-    def advise(self, case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str]) -> Advice:
+    def advise(
+        self, case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None
+    ) -> Advice:
         """The cheapest disks, sides and boxes in a continuum."""
         require_linear(case.material.law)
-        return advice_for_disks(case, bounds, of, kept)
+        return advice_for_disks(case, bounds, of, kept, longest)
 
     def extended(self, case: DiskCase, most: int) -> Extended:
         """The scene with more bricks beyond its sides."""

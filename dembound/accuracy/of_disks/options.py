@@ -28,7 +28,7 @@ from dembound.running import plan
 
 FACTORS = (
     *(5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25, 1.0),
-    *(0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125, 0.1, 1 / 12, 1 / 15, 0.05),
+    *(0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125, 0.1, 1 / 12, 1 / 15, 0.05, 1 / 30, 0.025),
 )
 """Diameters of a lattice over the given one that are tried, if the scene is made of whole cells of this size."""
 

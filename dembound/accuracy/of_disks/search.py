@@ -97,7 +97,8 @@ class _Tried:
 class Search:
     """The search for a choice.
 
-    planned : the case; own_cost : CPU time (s) of its steps. twin : its case, if its law is not that given. tried :
+    planned : the case; own_cost : CPU time (s) of its steps. twin : its case, if its law is not that given. longest :
+    CPU time (s) of steps that a choice may have, if more than by default. tried :
     number of choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut :
     whether choices were left out for that. waiting : by cost, what may come next: diameters, their choices, and those
     that are built and cost more than others may. of_sides : by arrangement and distance the largest error of its sides
@@ -113,6 +114,7 @@ class Search:
     kept: Sequence[str]
     own_cost: float
     twin: ElasticTwin | None = None
+    longest: float | None = None
     bound: float = 0.0
     tried: int = 0
     spent: float = 0.0
@@ -225,7 +227,7 @@ class Search:
         """Whether the search may go on with a choice; the work of companions leaves its time to those without any."""
         option = _option(item)
         packing = option.case.packing
-        most = max(LONGEST, PART * self.own_cost)
+        most = max(LONGEST, PART * max(self.own_cost, self.longest or 0.0))
         spent = self.spent + PER_ERROR
         if not isinstance(item, Built):
             spent += PER_CHOICE + PER_DISK * packing.about(packing.extent)
@@ -254,7 +256,7 @@ class Search:
         self._wait(least, factors.pop(0))
         while self.waiting:
             cost, _, item = heapq.heappop(self.waiting)
-            if cost > max(COSTLIEST * self.own_cost, AFFORDABLE):
+            if cost > max(COSTLIEST * self.own_cost, self.longest or AFFORDABLE):
                 return
             if not isinstance(item, float):
                 yield item

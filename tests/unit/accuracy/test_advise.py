@@ -87,6 +87,14 @@ def test_the_best_may_have_sides_that_only_larger_disks_can_afford(monkeypatch: 
     assert choice.error < 0.002
 
 
+def test_choices_that_take_longer_are_tried_where_they_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(of_disks, "AFFORDABLE", 0.0)
+    monkeypatch.setattr(of_disks, "COSTLIEST", 1.5)
+    kept = ["boundary"]
+    assert not advise(bar(), (0.005,), kept=kept).best[0.005].holds(0.005)
+    assert advise(bar(), (0.005,), kept=kept, longest=60.0).best[0.005].holds(0.005)
+
+
 def test_what_whole_cells_at_a_side_reflect_is_counted() -> None:
     """Half a cell too much at matched dashpots reflects kD/4 or so of a wave, 2 % of one of 20 disks."""
     sides = {"left": BAR["boundary"]["left"], "right": {"type": "viscous", "beta_p": 1.0}}
