@@ -18,7 +18,10 @@ SIDES, GRID, STEP, CONTINUUM, ENTRY, WALLS, NEAR = (
 USUAL = 1.4
 """Factor of formulas whose errors were at most 1.39 times as large in 100 scenes (docs/errors.md)."""
 
-QUANTITIES = ("velocity", "displacement", "stress")
+MOTIONS = ("velocity", "displacement")
+"""Quantities of disks."""
+
+QUANTITIES = (*MOTIONS, "stress")
 """Quantities whose errors are estimated; stress of bars only."""
 
 How = Literal["measured", "companion", "formula", "bound", "unknown"]

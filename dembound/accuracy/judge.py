@@ -64,7 +64,7 @@ class Judge(ABC, Generic[C, S]):
     def advise(self, case: C, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None) -> Advice:
         """The errors of a case, and the cheapest choices for several bounds; kept : keys not changed.
 
-        longest : CPU seconds that the steps of a choice may take, if that is more than by default.
+        longest : CPU seconds that the steps of a choice may take; None: as many as by default.
 
         Raises CaseError for cases whose errors are not known, that do not move at their monitors, and where no choice
         keeps those values; the errors of building a scene and of runs.

@@ -202,7 +202,9 @@ def _missed(case: Case, found: Advice, bound: float) -> str:
     """A message that no choice keeps a bound, with the best one."""
     best = found.best[bound]
     said = f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_lines(best)[0]}"
-    return "\n".join([f"{said}; --longest SECONDS tries choices that take longer", *best.choice.toml])
+    if not best.budget.worst().share.at_least:  # else no choice would do
+        said += "; --longest SECONDS tries choices that take longer"
+    return "\n".join([said, *best.choice.toml])
 
 
 def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> None:

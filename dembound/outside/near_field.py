@@ -92,11 +92,12 @@ class NearField(NamedTuple):
 
     def of_ties(self, diameter: float) -> float:
         """Error of the motion beside ties to disks of a mean diameter (m), where it is largest."""
-        return TIES * (diameter / self.distance) ** 2 if self.source == "pressure" else 0.0
+        is_known = self.source == "pressure" and self.distance > 0.0
+        return TIES * (diameter / self.distance) ** 2 if is_known else 0.0
 
     def part_at(self, place: np.ndarray) -> float:
         """The error at a place (2,) m over the largest."""
-        if self.source != "pressure":
+        if self.source != "pressure" or self.distance == 0.0:
             return 1.0
         low, high = np.array(self.place[:2]), np.array(self.place[2:])
         away = float(np.maximum(low - place, place - high).max())

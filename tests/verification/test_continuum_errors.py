@@ -19,6 +19,7 @@ OTHERS = {
     "surface": around("A", 40.0, 20.0, "cosine 0.05 s", above=True),
     "random": around("C", 30.0, 30.0, "cosine 0.1 s"),
     "hole": around("A", 30.0, 30.0, "ricker 20 Hz", radius=4.0),
+    "close": around("A", 12.0, 12.0, "cosine 0.1 s", 0.003, radius=3.0),
 }
 
 

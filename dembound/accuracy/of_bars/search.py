@@ -47,10 +47,10 @@ ALONG = "; its nodes and method remain, as it may break, and the error is that b
 def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str], longest: float | None = None) -> Advice:
     """The errors of a bar, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
-    kept : keys that do not change. longest : CPU seconds that the steps of a choice may take, if more than by default.
+    kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: `COSTLIEST`.
 
-    Raises CaseError for a bar whose errors are not known, one that does not move at its
-    monitors, and where no choice keeps those values; the errors of building a scene.
+    Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
+    keeps those values; the errors of building a scene.
     """
     if refused := not_linear(case):
         raise CaseError([f"advise: nothing is known of {line}" for line in refused], case.name)
@@ -59,7 +59,7 @@ def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str], 
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
     motions = affordable(own, bar_options(case, kept), longest)
     if bounds and not motions:
-        raise CaseError(["advise: no choice keeps the values of --keep and --set"], case.name)
+        raise CaseError(["advise: no choice keeps the values of --keep, --set and --longest"], case.name)
     best, tried = {}, 0
     for bound in bounds:
         motion, count = cheapest(motions, bound)
@@ -79,9 +79,9 @@ def given_motion(case: BarCase) -> Motion:
 
 
 def affordable(own: Motion, options: Iterable[BarOption], longest: float | None = None) -> list[Motion]:
-    """Motions of choices that cost at most `COSTLIEST` times as much as a case, or `longest` s; the cheapest first."""
+    """Motions of choices that take at most `longest` s, or `COSTLIEST` times as long as a case; the cheapest first."""
     choices = sorted(options, key=lambda each: each.cost)
-    most = max(COSTLIEST * own.choice.cost, longest or 0.0)
+    most = COSTLIEST * own.choice.cost if longest is None else longest
     return [Motion(each, own.exact) for each in choices if each.cost <= most]
 
 

@@ -31,7 +31,7 @@ def advice_for_disks(
     """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
 
     of : the truth that errors are those of; where these are the disks, they remain. kept : keys that do not change.
-    longest : CPU seconds that the steps of a choice may take, if more than by default.
+    longest : CPU seconds that the steps of a choice may take; None: as many as by default.
     Where one bound is asked for, which the case keeps in less time than a search takes, this is the choice.
 
     Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running

@@ -19,7 +19,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.outside import choice
-from dembound.outside.near_field import FORCES
+from dembound.outside.near_field import NearField
 from dembound.outside.ram import GridSizes
 from dembound.table import Box
 
@@ -119,7 +119,8 @@ def rectangles(case: DiskCase, ground: PackedMaterial) -> Iterator[Box]:
     """The boxes (m) of disks of a ground in place of a case that `may_be_boxed`, with larger and smaller elements."""
     diameter, order, accuracy = ground.brick.mean_diameter, case.outside.order, case.outside.accuracy
     side = choice.element_size(signals_of(case), medium_of(ground), order, accuracy)
-    widest = max(side, least_element(case, diameter)) / (FORCES[order] * math.cbrt(1e3 * accuracy))
+    beside_a_force = NearField((0.0, 0.0, 0.0, 0.0), 1.0, "force").largest_side(order, accuracy)
+    widest = max(side, least_element(case, diameter)) / beside_a_force
     for part in NEARER:
         box = _round(case, max(part * widest, BAND * diameter), diameter)
         if box[0] < box[2] and box[1] < box[3]:  # else all that makes waves is on the continuum

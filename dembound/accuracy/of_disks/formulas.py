@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.cause import CONTINUUM, GRID, NEAR, STEP, USUAL, WALLS, Cause
+from dembound.accuracy.cause import CONTINUUM, GRID, MOTIONS, NEAR, STEP, USUAL, WALLS, Cause
 from dembound.accuracy.delays import error_of_delay, error_of_steps
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.held_sides import HeldSides
@@ -22,9 +22,6 @@ from dembound.disks.reports.continuum_errors import CONTINUUM_FACTOR, expected_e
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import sources_of
 from dembound.motion.paths import Source
-
-MOTIONS = ("velocity", "displacement")
-"""Quantities of disks."""
 
 
 @dataclass(frozen=True)

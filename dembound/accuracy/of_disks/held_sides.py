@@ -25,15 +25,12 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.cause import USUAL, Cause
+from dembound.accuracy.cause import MOTIONS, USUAL, Cause
 from dembound.accuracy.history import History, Motions
 from dembound.boundaries import SIDES, Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE, plane_of
 from dembound.disks.entry import Entry, depths_held, entries_of
 from dembound.disks.scene import DiskScene
-
-MOTIONS = ("velocity", "displacement")
-"""Quantities of disks."""
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dembound.accuracy.cause import GRID, STEP, Cause
+from dembound.accuracy.cause import GRID, MOTIONS, STEP, Cause
 from dembound.accuracy.delays import error_of_delay, error_of_steps, part_above
 from dembound.accuracy.history import History, Motions
-from dembound.accuracy.of_disks.formulas import MOTIONS, Formulas, Way
+from dembound.accuracy.of_disks.formulas import Formulas, Way
 from dembound.accuracy.of_disks.waves import delay_of
 from dembound.casefile.disks import DiskCase
 from dembound.table import Box

@@ -8,10 +8,9 @@ much. Walls of holes consist of disks, so that their shape is known to a diamete
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
+from dembound.accuracy.cause import MOTIONS
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.places import middle_of_forces
 from dembound.casefile.disks import DiskCase
@@ -21,8 +20,6 @@ from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene
 from dembound.holes import Hole, Rectangle
 from dembound.outside.choice import mean_frequency
-
-MOTION = ("velocity", "displacement")
 
 NEAR, CURVED = 0.1, 0.6
 """Error of motion along the ray over (κD)² (r/(r + b))², κ = k + CURVED/r, with the RMS wave number k of S waves."""
@@ -113,14 +110,14 @@ def wall_errors(case: DiskCase, ground: PackedMaterial, diameter: float) -> dict
     ground : what waves run in, with disks of any diameter. 0 without holes.
     """
     if not case.hole:
-        return dict.fromkeys(MOTION, 0.0)
+        return dict.fromkeys(MOTIONS, 0.0)
     signals, speed = signals_of(case), slowest_speed(ground)
     found = {}
-    for quantity, lowest in zip(MOTION, (np.inf, 1.0 / case.run.duration), strict=True):
+    for quantity, lowest in zip(MOTIONS, (np.inf, 1.0 / case.run.duration), strict=True):
         number = 2.0 * np.pi * max((mean_frequency(signal, lowest) for signal in signals), default=0.0) / speed
         found[quantity] = max(
-            _wall_error(case, hole, diameter) * (1.0 if pressed else _scattered(case, hole, number))
-            for hole, pressed in _holes(case)
+            _wall_error(case, hole, diameter) * (1.0 if hole.name in case.pressed else _scattered(case, hole, number))
+            for hole in case.hole
         )
     return found
 
@@ -130,12 +127,6 @@ def _scattered(case: DiskCase, hole: Hole, number: float) -> float:
     part = OF_WAVES * min(number * hole.smaller_half, LONGEST)
     is_between = isinstance(hole, Rectangle) and case.packing.is_lattice
     return BETWEEN * min(part, 1.0) if is_between else part
-
-
-def _holes(case: DiskCase) -> Iterator[tuple[Hole, bool]]:
-    """The holes of a case, and whether there is a pressure in them."""
-    for hole in case.hole:
-        yield hole, any(load.pressure is not None and case.hole_of(load) is hole for load in case.load)
 
 
 def _wall_error(case: DiskCase, hole: Hole, diameter: float) -> float:

@@ -98,7 +98,7 @@ class Search:
     """The search for a choice.
 
     planned : the case; own_cost : CPU time (s) of its steps. twin : its case, if its law is not that given. longest :
-    CPU time (s) of steps that a choice may have, if more than by default. tried :
+    CPU time (s) of steps that a choice may have; None: by `COSTLIEST` and `AFFORDABLE`. tried :
     number of choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut :
     whether choices were left out for that. waiting : by cost, what may come next: diameters, their choices, and those
     that are built and cost more than others may. of_sides : by arrangement and distance the largest error of its sides
@@ -220,7 +220,9 @@ class Search:
             if not found and (built := self._built(item)) is not None:
                 found += self._with_error(built, None)
         if not found:
-            raise CaseError(["advise: no choice keeps the values of --keep and --set"], self.companions.case.name)
+            raise CaseError(
+                ["advise: no choice keeps the values of --keep, --set and --longest"], self.companions.case.name
+            )
         return min(found, key=lambda each: each.upper)
 
     def _affords(self, item: DiskOption | Built) -> bool:
@@ -253,10 +255,11 @@ class Search:
     def _by_cost(self) -> Iterator[DiskOption | Built]:
         """Choices by cost; those with the next smaller disks are only counted when their cost has been reached."""
         factors, least = self.options.factors, 0.0
+        most = max(COSTLIEST * self.own_cost, AFFORDABLE) if self.longest is None else self.longest
         self._wait(least, factors.pop(0))
         while self.waiting:
             cost, _, item = heapq.heappop(self.waiting)
-            if cost > max(COSTLIEST * self.own_cost, self.longest or AFFORDABLE):
+            if cost > most:
                 return
             if not isinstance(item, float):
                 yield item

@@ -63,6 +63,11 @@ class DiskCase(Case):
         """The hole on whose wall a pressure acts."""
         return next(hole for hole in self.hole if hole.name == load.hole)
 
+    @property
+    def pressed(self) -> set[str]:
+        """The names of the holes on whose walls a pressure acts."""
+        return {load.hole for load in self.load if load.pressure is not None and load.hole is not None}
+
     @cached_property
     def floors(self) -> dict[str, Floor]:
         """The floors that all holes together leave at the left and right side, by side."""

@@ -289,7 +289,7 @@ def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 def _sources(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray, Literal["force", "pressure", "waves"]]]:
     """The `extents`, and what makes the static field of each."""
     left, _, right, _ = case.packing.box
-    loaded = {load.hole for load in case.load}
+    pressed = case.pressed
     for hole in case.hole:
         low, high = np.array(hole.box[:2]), np.array(hole.box[2:])
         for side, floor in case.floors.items():
@@ -297,7 +297,7 @@ def _sources(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray, Literal["
                 low[0] = min(left + floor.width, high[0])
             elif side == "right" and high[0] >= right - floor.width:
                 high[0] = max(right - floor.width, low[0])
-        yield low, high, "pressure" if hole.name in loaded else "waves"
+        yield low, high, "pressure" if hole.name in pressed else "waves"
     for load in case.load:
         if load.position is not None:
             yield np.array(load.position), np.array(load.position), "force"

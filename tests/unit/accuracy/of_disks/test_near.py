@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, PUSHED, small
 
+from dembound.accuracy.cause import MOTIONS
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.near import (
     BETWEEN,
     CURVED,
     LONGEST,
-    MOTION,
     NEAR,
     OF_WAVES,
     RANDOM,
@@ -154,9 +154,9 @@ def test_waves_have_the_part_of_the_error_of_a_pressure_that_a_hole_scatters() -
         assert slow["displacement"] == pytest.approx(pressed * part * of_displacement)
         fast = errors(hole, 0.0001)[1]
         assert fast["velocity"] == pytest.approx(pressed * min(OF_WAVES * LONGEST, most))
-        assert errors(hole, load=[burst])[1] == pytest.approx(dict.fromkeys(MOTION, pressed))
+        assert errors(hole, load=[burst])[1] == pytest.approx(dict.fromkeys(MOTIONS, pressed))
     without = small(PUSHED)
-    assert wall_errors(without, build(without).ground, 0.5) == dict.fromkeys(MOTION, 0.0)  # type: ignore[arg-type]
+    assert wall_errors(without, build(without).ground, 0.5) == dict.fromkeys(MOTIONS, 0.0)  # type: ignore[arg-type]
 
 
 def test_no_wall_in_a_random_packing_is_between_disks() -> None:
