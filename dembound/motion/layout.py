@@ -17,6 +17,15 @@ def aligned_zeros(*shape: int) -> np.ndarray:
     return room[first : first + count].reshape(shape)
 
 
+def aligned(values: np.ndarray) -> np.ndarray:
+    """A copy of values, aligned in memory (`ALIGNMENT`)."""
+    room = np.zeros(values.nbytes + ALIGNMENT, dtype=np.uint8)
+    first = -room.ctypes.data % ALIGNMENT
+    copy = room[first : first + values.nbytes].view(values.dtype).reshape(values.shape)
+    copy[...] = values
+    return copy
+
+
 @dataclass(frozen=True, eq=False)
 class Layout:
     """Which slot holds which of n nodes.

@@ -9,7 +9,9 @@ from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import INTACT, NONE
+from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import Contacts
+from dembound.motion.layout import aligned, aligned_zeros
 from dembound.packings.tiling import Assembly
 
 NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
@@ -69,6 +71,8 @@ def in_places(
     shared = int(np.count_nonzero(in_rows >= 0))
     live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
     count, begin, stop = places + len(order) - shared, int(slot.min()), int(slot.max()) + 1
+    if plan is not None:
+        count = -(-count // LANES) * LANES  # each row of forces is aligned
     owner = np.concatenate([first, second])
     end = np.concatenate([2 * live, 2 * live + 1]).astype(np.uint32)
     start = np.zeros(stop + 1, dtype=np.uint32)
@@ -76,7 +80,7 @@ def in_places(
 
     def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
         """Values of the pairs in their places."""
-        column = np.full((count, *values.shape[1:]), empty, dtype=values.dtype)
+        column = aligned(np.full((count, *values.shape[1:]), empty, dtype=values.dtype))
         column[live] = values
         return column
 
@@ -92,7 +96,7 @@ def in_places(
         closed=placed(history.closed[order]),
         cracked=placed(history.cracked[order], -1),
         place=np.zeros((count, 2)) if history.place is None else placed(history.place[order]),
-        force=np.zeros((4, count)),
+        force=aligned_zeros(4, count),
         start=start,
         end=end[np.lexsort((end, owner))],
     )

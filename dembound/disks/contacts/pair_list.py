@@ -6,7 +6,7 @@ from dembound.disks.contacts.arrays import ContactHistory, Pairs, in_places
 from dembound.disks.contacts.neighbours import cells_of, pair_keys
 from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.kernels.tables import PairRows
-from dembound.motion.layout import Layout
+from dembound.motion.layout import Layout, aligned_zeros
 from dembound.packings.tiling import Assembly
 
 
@@ -101,4 +101,4 @@ class PairList:
         if self._plan is not None:
             assert placed.strays is not None
             self.rows, self.strays = self._plan.rows(placed.in_rows, self.bonds), placed.strays
-            self.extra = np.zeros((3, self.layout.count))
+            self.extra = aligned_zeros(3, self.layout.count)
