@@ -6,7 +6,7 @@ from numba.core import event
 
 from dembound.cli.console import err
 
-MESSAGE = "compiling the solver: some 20 to 60 s, once after an installation, less for each further law"
+MESSAGE = "compiling the solver: some 10 to 40 s, once after an installation, less for each further law"
 
 
 class FirstCompilation(event.Listener):

@@ -32,17 +32,22 @@ _INDEX = ir.IntType(64)
 _RESOLVE = "dembound_compiled_kernel"
 
 
-def _compiled(needed: bytes) -> int:
-    """Address of the kernel with the module, name and types of arguments that `address` wrote; compiled, or loaded."""
-    module, name, arguments, returned = pickle.loads(base64.b64decode(needed))
-    kernel: Any = getattr(import_module(module), name)
-    kernel = kernel if isinstance(kernel, Dispatcher) else kernel.__wrapped__
-    with put_off():
-        kernel.compile(arguments)
+def compiled(kernel: Any, arguments: tuple[Any, ...], returned: Any) -> int:
+    """Address of a kernel for arguments of these types, compiled, or loaded; raises TypeError if it returns another."""
+    if arguments not in kernel.overloads:
+        with put_off():
+            kernel.compile(arguments)
     found: Any = kernel.overloads[arguments]
     if found.signature.return_type != returned:
-        raise TypeError(f"{module}.{name} returns {found.signature.return_type}, not {returned}")
+        raise TypeError(f"{kernel.py_func.__qualname__} returns {found.signature.return_type}, not {returned}")
     return int(found.library.get_pointer_to_function(found.fndesc.llvm_func_name))
+
+
+def _compiled(needed: bytes) -> int:
+    """Address of the kernel with the module, name and types of arguments that `address` wrote."""
+    module, name, arguments, returned = pickle.loads(base64.b64decode(needed))
+    kernel: Any = getattr(import_module(module), name)
+    return compiled(kernel if isinstance(kernel, Dispatcher) else kernel.__wrapped__, arguments, returned)
 
 
 @ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_char_p)

@@ -1,22 +1,26 @@
-"""Bundles, named tuples of arrays (tables/), behind addresses: the loop is the same for all types of them.
+"""Bundles, named tuples of arrays (tables/), by their addresses: the loop is the same for all types of them.
 
-`writer` makes what writes the data of a bundle to memory and the addresses of its kernels to a row of a table. The loop
-calls these by `caller`, with the address of the data; a kernel reads them by `contents`.
+`Written` has the numbers of a bundle in memory. Compiled code takes the address, of type `At`, in place of the
+bundle: what it reads of it, by attribute, is loaded where it is used. Passed as named tuples all arrays would be taken
+apart and put together again in each function that passes them on, which takes a third of the time of compiling it.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
+import numpy as np
 from llvmlite import ir  # type: ignore[import-untyped]
-from numba import types
+from numba import typeof, types
 from numba.core import cgutils
 from numba.core.imputils import lower_builtin
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
+from numba.extending import NativeValue, lower_getattr_generic, models, register_model, typeof_impl, unbox
+from numba.np.arrayobj import populate_array
 
-from dembound.kernels.apart import address, call_at
+from dembound.kernels import tables
+from dembound.kernels.apart import call_at
 
-SPACE = 1024
-"""Most numbers in the data of a bundle: of an array seven and two more for each direction after the first."""
+_NUMBER = ir.IntType(64)
 
 
 class Role(NamedTuple):
@@ -25,6 +29,176 @@ class Role(NamedTuple):
     generic: Any
     kernel: Any
     returned: Any = types.none
+
+
+class At(types.Type):
+    """The address of a bundle of numba type `bundle`; compiled code reads its fields as attributes."""
+
+    def __init__(self, bundle: Any) -> None:
+        self.bundle = bundle
+        super().__init__(f"at({bundle})")
+
+    @property
+    def mangling_args(self) -> tuple[str, tuple[Any, ...]]:
+        """A short name in those of compiled functions, which have a number as well."""
+        return f"at{self.instance_class.__name__}", ()
+
+    @property
+    def instance_class(self) -> type:
+        """The class of the bundle, by which kernels are chosen (law.py)."""
+        found: type = self.bundle.instance_class
+        return found
+
+
+@register_model(At)
+class _AddressModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, cgutils.voidptr_t)
+
+
+@infer_getattr
+class _Fields(AttributeTemplate):
+    key = At
+
+    def generic_resolve(self, at: Any, name: str) -> Any:  # type: ignore[override]  # declared as not implemented
+        bundle = at.bundle
+        kind = bundle.types[bundle.fields.index(name)] if name in bundle.fields else None
+        return At(kind) if isinstance(kind, types.BaseNamedTuple) else kind
+
+
+def kind_of(value: Any) -> Any:
+    """The numba type of a bundle with all it contains, or of another value."""
+    if not hasattr(value, "_fields"):
+        return typeof(value)
+    return types.BaseTuple.from_types(tuple(map(kind_of, value)), type(value))
+
+
+def _parts_of(kind: Any) -> list[Any] | None:
+    """The types in a tuple; None for other types."""
+    is_tuple = isinstance(kind, types.BaseTuple)
+    return list(kind.types) if is_tuple else None
+
+
+def _count(kind: Any) -> int:
+    """How many numbers a value of this type takes in memory: of an array its address, shape and strides."""
+    if isinstance(kind, types.Array):
+        return 1 + 2 * int(kind.ndim)
+    parts = _parts_of(kind)
+    return 1 if parts is None else sum(map(_count, parts))
+
+
+def _numbers(value: Any) -> list[int]:
+    """The numbers of an array or a number, see `_count`; those of floats by their bits."""
+    if isinstance(value, np.ndarray):
+        return [value.__array_interface__["data"][0], *value.shape, *value.strides]
+    return [int(np.float64(value).view(np.int64)) if isinstance(value, float | np.floating) else int(value)]
+
+
+def _parts(value: Any) -> Iterator[Any]:
+    """The arrays and numbers of a bundle in order, each named tuple's class before them."""
+    if isinstance(value, tuple):
+        yield type(value)
+        for each in value:
+            yield from _parts(each)
+    else:
+        yield value
+
+
+def _alike(part: Any, other: Any) -> bool:
+    """Whether two parts have the same numba type."""
+    if isinstance(part, np.ndarray) and isinstance(other, np.ndarray):
+        return typeof(part) == typeof(other)
+    return type(part) is type(other)
+
+
+class Written:
+    """The numbers of a bundle in memory, to whose address `At` refers, and its arrays, which have to be kept.
+
+    Attributes
+    ----------
+    numbers : (k,) int64. address : of these.
+    """
+
+    def __init__(self, bundle: NamedTuple) -> None:
+        self._parts = list(_parts(bundle))
+        numbers = [[] if isinstance(part, type) else _numbers(part) for part in self._parts]
+        self._first = np.cumsum([0, *map(len, numbers)]).tolist()
+        self.numbers = np.array([number for each in numbers for number in each], dtype=np.int64)
+        self.address = int(self.numbers.ctypes.data)
+
+    def takes(self, bundle: NamedTuple) -> bool:
+        """Write what is new in another bundle over this one; False if it has another type, and nothing is written."""
+        parts = list(_parts(bundle))
+        if len(parts) != len(self._parts):
+            return False
+        changed = [k for k, (part, other) in enumerate(zip(parts, self._parts, strict=True)) if part is not other]
+        if not all(not isinstance(parts[k], type) and _alike(parts[k], self._parts[k]) for k in changed):
+            return False
+        for k in changed:
+            self.numbers[self._first[k] : self._first[k + 1]] = _numbers(parts[k])
+        self._parts = parts
+        return True
+
+
+@unbox(At)
+def _unboxed(kind: Any, bundle: Any, c: Any) -> Any:
+    """Write a bundle with which a kernel is called from Python, for as long as the call lasts."""
+    write = c.pyapi.unserialize(c.pyapi.serialize_object(Written))
+    written = c.pyapi.call_function_objargs(write, (bundle,))
+    c.pyapi.decref(write)
+    address = cgutils.alloca_once_value(c.builder, cgutils.voidptr_t(None))
+    failed = cgutils.is_null(c.builder, written)
+    with cgutils.if_likely(c.builder, c.builder.not_(failed)):
+        number = c.pyapi.object_getattr_string(written, "address")
+        c.builder.store(c.builder.inttoptr(c.pyapi.long_as_longlong(number), cgutils.voidptr_t), address)
+        c.pyapi.decref(number)
+    return NativeValue(c.builder.load(address), is_error=failed, cleanup=lambda: c.pyapi.decref(written))
+
+
+for _class in vars(tables).values():
+    if isinstance(_class, type) and issubclass(_class, tuple):
+        typeof_impl.register(_class)(lambda bundle, _: At(kind_of(bundle)))
+
+
+def _loaded(context: Any, builder: Any, kind: Any, place: Any) -> Any:
+    """The value of this type whose numbers begin at a place; it does not change while compiled code runs."""
+    if isinstance(kind, types.Array):
+        data, *others = (_load(builder, builder.gep(place, [_NUMBER(k)])) for k in range(_count(kind)))
+        shape, strides = others[: kind.ndim], others[kind.ndim :]
+        array = context.make_array(kind)(context, builder)
+        pointer = builder.inttoptr(data, array.data.type)
+        item = context.get_constant(types.intp, context.get_abi_sizeof(context.get_data_type(kind.dtype)))
+        populate_array(array, data=pointer, shape=shape, strides=strides, itemsize=item, meminfo=None)
+        return array._getvalue()
+    parts = _parts_of(kind)
+    if parts is not None:
+        values, first = [], 0
+        for each in parts:
+            values.append(_loaded(context, builder, each, builder.gep(place, [_NUMBER(first)])))
+            first += _count(each)
+        return context.make_tuple(builder, kind, values)
+    wanted, number = context.get_value_type(kind), _load(builder, place)
+    if isinstance(wanted, ir.DoubleType):
+        return builder.bitcast(number, wanted)
+    return number if wanted.width == _NUMBER.width else builder.trunc(number, wanted)
+
+
+def _load(builder: Any, place: Any) -> Any:
+    number = builder.load(place)
+    number.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return number
+
+
+@lower_getattr_generic(At)
+def _field(context: Any, builder: Any, at: Any, address: Any, name: str) -> Any:
+    bundle = at.bundle
+    index = bundle.fields.index(name)
+    first = sum(_count(each) for each in bundle.types[:index])
+    place = builder.gep(builder.bitcast(address, _NUMBER.as_pointer()), [_NUMBER(first)])
+    kind = bundle.types[index]
+    if isinstance(kind, types.BaseNamedTuple):
+        return builder.bitcast(place, cgutils.voidptr_t)
+    return _loaded(context, builder, kind, place)
 
 
 def _known(typed: Callable[..., Any], lower: Callable[..., Any]) -> Callable[..., Any]:
@@ -62,55 +236,10 @@ def caller(returned: Any) -> Callable[..., Any]:
     return _known(typed, lower)
 
 
-def _data(context: Any, bundle: Any) -> tuple[Any, Any]:
-    """What takes a bundle apart into numbers, and the type of these in memory."""
-    packer = context.call_conv._get_arg_packer((bundle,))
-    return packer, ir.LiteralStructType(list(packer.argument_types))
-
-
-def _read(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    packer, data = _data(context, sig.return_type)
-    change = builder.inttoptr if isinstance(args[0].type, ir.IntType) else builder.bitcast
-    place = change(args[0], data.as_pointer())
-    numbers = [builder.load(cgutils.gep_inbounds(builder, place, 0, k)) for k in range(len(data))]
-    return packer.from_arguments(builder, tuple(numbers))[0]
-
-
-contents = _known(lambda pointer: signature(pointer.dtype, pointer), _read)
-"""The bundle at an address of this type; without compiling the bundle itself."""
-
-
 def reader(bundle: Any) -> Callable[..., Any]:
-    """A function that returns the bundle, of this type, at an address, a whole number; see `contents`."""
-    return _known(lambda _: signature(bundle, types.int64), _read)
-
-
-def writer(roles: Mapping[int, Role] | None = None, only: Any = None) -> Callable[..., Any]:
-    """A function (bundle, row, space): writes the bundle's data to space (`SPACE`,), and addresses to a row.
-
-    They are that of the data, in column 0, and those of the kernels of the roles in which the bundle has one, by
-    column. only : the type that a bundle must have.
-    """
+    """A function that turns an address, a whole number, into one of a bundle of this type, see `At`."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        bundle = sig.args[0]
-        packer, data = _data(context, bundle)
-        if len(data) > SPACE:
-            raise ValueError(f"{bundle.instance_class.__name__} has {len(data)} numbers, must have at most {SPACE}")
-        row, space = (
-            context.make_array(kind)(context, builder, each) for kind, each in zip(sig.args[1:], args[1:], strict=True)
-        )
-        place = builder.bitcast(space.data, data.as_pointer())
-        for k, number in enumerate(packer.as_arguments(builder, [args[0]])):
-            builder.store(number, cgutils.gep_inbounds(builder, place, 0, k))
-        found = {0: place}
-        for k, role in (roles or {}).items():
-            if role.generic.kernels[bundle.instance_class] is not None:
-                arguments = types.CPointer(bundle), *[types.int64] * (role.kernel.py_func.__code__.co_argcount - 1)
-                found[k] = address(context, builder, role.kernel, arguments, role.returned)
-        for k, pointer in found.items():
-            slot = cgutils.gep(builder, row.data, k)
-            builder.store(builder.ptrtoint(pointer, slot.type.pointee), slot)
-        return context.get_dummy_value()
+        return builder.inttoptr(args[0], cgutils.voidptr_t)
 
-    return _known(lambda *args: signature(types.none, *args) if only in (None, args[0]) else None, lower)
+    return _known(lambda _: signature(At(bundle), types.int64), lower)

@@ -4,16 +4,15 @@ Each kernel is called with the addresses of its bundle, of the motion at the ste
 (bundles.py), so that it and the loop are compiled by themselves.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any, NamedTuple, Self
 
 import numpy as np
-from numba import config, njit, typeof, types
+from numba import config, njit, types
 from numba.extending import overload
 
 from dembound.kernels import tables
-from dembound.kernels.bundles import SPACE, Role, caller, contents, reader, writer
+from dembound.kernels.apart import compiled
+from dembound.kernels.bundles import At, Role, Written, caller, kind_of, reader
 from dembound.kernels.common import FAST
 from dembound.kernels.law import across, begin, check, finish, move, note, push, turn, turning_work
 
@@ -58,63 +57,60 @@ def _examples() -> tuple[Motion, Given]:
     return Motion(row, row, row), Given.by(body, supports, tables.Log(number, layer, number, layer, value, row, value))
 
 
-_MOTION, _GIVEN = map(typeof, _examples())
+_MOTION, _GIVEN = map(kind_of, _examples())
 motion_at, given_at = reader(_MOTION), reader(_GIVEN)
 """Functions of an address that the loop has of a `Motion`, and of what is `Given`."""
 
 
 @njit(**FAST)
 def _begin(law, motion, step, number, given):
-    begin(contents(law))
+    begin(law)
 
 
 @njit(**FAST)
 def _check(law, motion, step, number, given):
-    u, u_next, v = motion_at(motion)
-    return np.int64(check(contents(law), u, u_next, v))
+    its = motion_at(motion)
+    return np.int64(check(law, its.u, its.u_next, its.v))
 
 
 @njit(**FAST)
 def _push(law, motion, step, number, given):
-    u, u_next, v = motion_at(motion)
-    its = given_at(given)
-    return np.int64(push(contents(law), u, u_next, v, number, its.body.step, its.log.work))
+    moved, its = motion_at(motion), given_at(given)
+    return np.int64(push(law, moved.u, moved.u_next, moved.v, number, its.body.step, its.log.work))
 
 
 @njit(**FAST)
 def _note(law, motion, step, number, given):
-    note(contents(law), step, motion_at(motion).u, given_at(given).log)
+    note(law, step, motion_at(motion).u, given_at(given).log)
 
 
 @njit(**FAST)
 def _move(law, motion, step, number, given):
-    u, u_next, v = motion_at(motion)
-    its = given_at(given)
-    move(contents(law), u, u_next, v, its.body, its.supports.nodes)
+    moved, its = motion_at(motion), given_at(given)
+    move(law, moved.u, moved.u_next, moved.v, its.body, its.supports.nodes)
 
 
 @njit(**FAST)
 def _finish(law, motion, step, number, given):
     its = given_at(given)
-    finish(contents(law), motion_at(motion).v, its.body, its.supports.nodes, its.log.work)
+    finish(law, motion_at(motion).v, its.body, its.supports.nodes, its.log.work)
 
 
 @njit(**FAST)
 def _across(tie, motion, step, number, given):
-    u, _, v = motion_at(motion)
-    across(contents(tie), u, v, given_at(given).pulled)
+    its = motion_at(motion)
+    across(tie, its.u, its.v, given_at(given).pulled)
 
 
 @njit(**FAST)
 def _turn(turning, motion, step, number, given):
-    u, _, v = motion_at(motion)
-    its = given_at(given)
-    return turn(contents(turning), u, v, its.body.load, its.body.step)
+    moved, its = motion_at(motion), given_at(given)
+    return turn(turning, moved.u, moved.v, its.body.load, its.body.step)
 
 
 @njit(**FAST)
 def _turning_work(turning, motion, step, number, given):
-    return turning_work(contents(turning), motion_at(motion).v, given_at(given).body.step)
+    return turning_work(turning, motion_at(motion).v, given_at(given).body.step)
 
 
 BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH, ACROSS, TURN, TURNING_WORK = range(1, 10)
@@ -198,61 +194,45 @@ def _measure_all(bundles, column, motion, step, number, given):  # type: ignore[
     return total
 
 
-def _of(*columns: int) -> dict[int, Role]:
-    """The roles of these columns."""
-    return {column: ROLES[column] for column in columns}
+_CALLED = (BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH), (ACROSS,), (TURN, TURNING_WORK), (), ()
+"""Columns of the kernels of laws, ties, forces that rotate, motions and what is given."""
+
+Kept = dict[tuple[int, int], tuple[Written, list[int]]]
+"""Bundles as they were last entered, with their rows of addresses, by table and place: what has not changed is kept."""
 
 
-_write_law = writer(_of(BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH))
-_write_tie, _write_turning = writer(_of(ACROSS)), writer(_of(TURN, TURNING_WORK))
-_write_motion, _write_given = writer(only=_MOTION), writer(only=_GIVEN)
+def _row(bundle: Any, table: int, place: int, kept: Kept) -> list[int]:
+    """The row of a bundle in a table of addresses, see `entered`; its kernels are compiled, or loaded."""
+    known = kept.get((table, place))
+    if known is not None and known[0].takes(bundle):
+        return known[1]
+    data, kind = Written(bundle), kind_of(bundle)
+    wanted = {Motion: _MOTION, Given: _GIVEN}.get(type(bundle), kind)
+    if kind != wanted:
+        raise TypeError(f"the loop takes {wanted}, not {kind}")
+    row = [data.address] + [0] * len(ROLES)
+    for column in _CALLED[table]:
+        role = ROLES[column]
+        if role.generic.kernels[type(bundle)] is not None:
+            arguments = At(kind), *[types.int64] * (role.kernel.py_func.__code__.co_argcount - 1)
+            row[column] = compiled(role.kernel, arguments, role.returned)
+    kept[table, place] = data, row
+    return row
 
 
-@njit(**FAST)
-def _enter_law(law, row, space):
-    _write_law(law, row, space)
-
-
-@njit(**FAST)
-def _enter_tie(tie, row, space):
-    _write_tie(tie, row, space)
-
-
-@njit(**FAST)
-def _enter_turning(turning, row, space):
-    _write_turning(turning, row, space)
-
-
-@njit(**FAST)
-def _enter_motion(motion, row, space):
-    _write_motion(motion, row, space)
-
-
-@njit(**FAST)
-def _enter_given(given, row, space):
-    _write_given(given, row, space)
-
-
-_ENTER = _enter_law, _enter_tie, _enter_turning, _enter_motion, _enter_given
-
-
-@contextmanager
 def entered(
-    laws: Bundles, ties: Bundles, turnings: Bundles, motions: tuple[Motion, ...], given: Given
-) -> Iterator[tuple[Any, ...]]:
-    """What the loop takes, valid inside: tables of addresses, those of motions (k,), the one of what is given.
+    laws: Bundles, ties: Bundles, turnings: Bundles, motions: tuple[Motion, ...], given: Given, kept: Kept
+) -> tuple[Any, ...]:
+    """What the loop takes: tables of addresses, those of motions (k,), the one of what is given; valid as long as kept.
 
-    A row of a table has the address of a bundle's data, then of its kernels by role, 0 for none. Without compiling the
-    loop takes the bundles themselves.
+    A row of a table has the address of a bundle's numbers, then of its kernels by role, 0 for none. Without compiling
+    the loop takes the bundles themselves. Raises TypeError for motions or what is given of other types than all have.
     """
     if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
-        yield laws, ties, turnings, motions, given
-        return
-    kinds: list[Bundles] = [laws, ties, turnings, motions, (given,)]
-    tables_of = [np.zeros((len(bundles), 1 + len(ROLES)), dtype=np.int64) for bundles in kinds]
-    spaces = [np.empty((len(bundles), SPACE), dtype=np.int64) for bundles in kinds]
-    for enter, bundles, table, space in zip(_ENTER, kinds, tables_of, spaces, strict=True):
-        for k, bundle in enumerate(bundles):
-            enter(bundle, table[k], space[k])
-    *of_bundles, of_motions, of_given = tables_of
-    yield *of_bundles, of_motions[:, 0].copy(), int(of_given[0, 0])
+        return laws, ties, turnings, motions, given
+    rows = [
+        [_row(bundle, table, place, kept) for place, bundle in enumerate(bundles)]
+        for table, bundles in enumerate((laws, ties, turnings, motions, (given,)))
+    ]
+    *tables_of, of_motions, of_given = (np.array(each, dtype=np.int64).reshape(-1, 1 + len(ROLES)) for each in rows)
+    return *tables_of, of_motions[:, 0].copy(), int(of_given[0, 0])

@@ -31,8 +31,10 @@ def slack(u, contacts, limits, keeps_slip):
 @njit(**FAST)
 def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
     """Fill closest (chunks,) with the least `slack` of each chunk of pairs, negative."""
-    _, first, second, contact_type, constants, state, _, slip, _, _, _, _, _, _ = contacts
-    friction, tension, cohesion, tan_fa, geometry = limits
+    first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
+    constants, state, slip = contacts.constants, contacts.state, contacts.slip
+    friction, tension, cohesion = limits.friction, limits.tension, limits.cohesion
+    tan_fa, geometry = limits.tan_fa, limits.geometry
     b = first.size
     for chunk in range(begin, end):
         room = np.inf
@@ -83,7 +85,8 @@ def strain_energy(u, contacts, geometry):
 @njit(**FAST)
 def _strain_energies(begin, end, u, contacts, geometry, stored):
     """Fill stored (chunks, 2) with the `strain_energy` of contacts and of bonds in each chunk of pairs."""
-    _, first, second, contact_type, constants, state, all_shear, slip, _, _, _, _, _, _ = contacts
+    first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
+    constants, state, all_shear, slip = contacts.constants, contacts.state, contacts.shear, contacts.slip
     b = first.size
     for chunk in range(begin, end):
         in_contacts = 0.0

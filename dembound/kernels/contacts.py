@@ -73,7 +73,9 @@ def closing_work(stiffness, before, now, had_closed, push):
 @njit(**FAST, forceinline=True)  # by LLVM: numba's own inlining would drop writes to arrays that nothing reads
 def push_pair(c, u, v, step, number, contacts, limits, lost):
     """Force of pair c, see `push`; returns the energy (J) taken by friction, and enters the rest in lost (4,)."""
-    _, first, second, contact_type, constants, state, all_shear, all_slip, closed, cracked, _, force, _, _ = contacts
+    first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
+    constants, state, force = contacts.constants, contacts.state, contacts.force
+    all_shear, all_slip, closed, cracked = contacts.shear, contacts.slip, contacts.closed, contacts.cracked
     geometry = limits.geometry
     rubbed = 0.0
     i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
@@ -218,7 +220,8 @@ def start_from_displacements(u, contacts, keeps_slip=False):
 
     keeps_slip : contacts that are closed at the start keep theirs.
     """
-    _, first, second, contact_type, constants, _, shear, slip, _, _, _, _, _, _ = contacts
+    first, second, contact_type, constants = contacts.first, contacts.second, contacts.contact_type, contacts.constants
+    shear, slip = contacts.shear, contacts.slip
     for p in range(first.size):
         c = U(p)
         i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)

@@ -69,7 +69,8 @@ def move_rows(rows, u, v, body, u_next, fastest, arms, damped):
 @in_chunks
 @njit(**FAST)
 def _fill(first_chunk, last_chunk, rows, u, force):
-    begin, start, neighbour, contact_type, constants = rows
+    begin, start = rows.begin, rows.start
+    neighbour, contact_type, constants = rows.neighbour, rows.contact_type, rows.constants
     n = start.size - 1 - begin
     for chunk in range(first_chunk, last_chunk):
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
@@ -82,7 +83,8 @@ def _fill(first_chunk, last_chunk, rows, u, force):
 @njit(**FAST)
 def seam_forces(seam, u, v, force):
     """Add to force (k, 3) of the supported nodes the forces on their twins across the seam."""
-    twin, start, neighbour, contact_type, constants = seam
+    twin, start = seam.twin, seam.start
+    neighbour, contact_type, constants = seam.neighbour, seam.contact_type, seam.constants
     for s in range(twin.size):
         if start[s + 1] > start[s]:
             fx, fy, moment = row_force(U(s), U(twin[s]), u, start, neighbour, contact_type, constants)
@@ -94,7 +96,8 @@ def seam_forces(seam, u, v, force):
 @in_chunks
 @njit(**FAST)
 def _move(first_chunk, last_chunk, rows, u, v, body, u_next, fastest, arms, damped):
-    begin, start, neighbour, contact_type, constants = rows
+    begin, start = rows.begin, rows.start
+    neighbour, contact_type, constants = rows.neighbour, rows.contact_type, rows.constants
     n = start.size - 1 - begin
     watched = arms.size > 0
     for chunk in range(first_chunk, last_chunk):
@@ -163,12 +166,12 @@ def check_watch(watched, u, u_next, v):
 
     The least distance of all pairs from their limits is computed again when surfaces have moved by half of it.
     """
-    _, contacts, limits, origin, skin, cells, _, way, keeps_slip = watched
+    way, contacts = watched.way, watched.contacts
     if 2.0 * way[0] < way[1]:
         return DONE
-    listed = skin - approach(u, contacts.begin, origin, cells)
+    listed = watched.skin - approach(u, contacts.begin, watched.origin, watched.cells)
     way[0] = 0.0
-    way[1] = min(slack(u, contacts, limits, keeps_slip), listed)
+    way[1] = min(slack(u, contacts, watched.limits, watched.keeps_slip), listed)
     if way[1] >= 0.0:
         return DONE
     return LIST_ENDS if listed < 0.0 else LAW_ENDS

@@ -183,8 +183,10 @@ def _move_all_shared(begin, end, blocks, force, taken, u, v, body, u_next):
 @njit(**FAST)
 def move(grid, u, u_next, v, body, nodes):
     """One step of all nodes, see law.move."""
-    points, elements, blocks, absorber, force, space, taken = grid
-    _move_all_blocks(points, elements, blocks, absorber, force, space, taken, u, v, body, u_next)
+    blocks, force, taken = grid.blocks, grid.force, grid.taken
+    _move_all_blocks(
+        grid.points, grid.elements, blocks, grid.absorber, force, grid.space, taken, u, v, body, u_next
+    )  # fmt: skip
     _move_all_shared(blocks, force, taken, u, v, body, u_next)
 
 

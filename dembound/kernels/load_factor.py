@@ -22,7 +22,7 @@ def least_factors(u, rest, contacts, slopes, allowed, least, where):
 @in_chunks
 @njit(**FAST)
 def _least_factors(begin, end, u, rest, contacts, slopes, allowed, least, where):
-    _, first, second, contact_type, constants, _, _, _, _, _, _, _, _, _ = contacts
+    first, second, contact_type, constants = contacts.first, contacts.second, contacts.contact_type, contacts.constants
     b = first.size
     limits = allowed.shape[1]
     for chunk in range(begin, end):

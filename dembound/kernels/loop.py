@@ -30,22 +30,22 @@ from dembound.kernels.sides import note_sides
 from dembound.kernels.step import clear, move_supported, note_after, note_before, note_top_speeds
 
 
-def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
+def advance(u, u_next, v, number, laws, ties, turning, body, supports, log, kept=None):
     """Advance by up to supports.drive.shape[0] steps, the first being that of `number`.
 
     Returns the number of steps done and the reason for returning.
 
     u, u_next, v : (3, n) displacement now, work space for the next one, velocity half a step earlier; u contains the
     result. laws, ties : tuples of bundles, a law for every part. turning : tables.Followers, or None. The other bundles
-    are explained in tables/.
+    are explained in tables/. kept : what an earlier call has entered, of which only what has changed is entered anew.
     """
     for c in range(3):
         if body.free[c] == 0.0:
             u_next[c] = u[c]
     turnings = () if turning is None else (turning,)
     motions, given = (Motion(u, u_next, v), Motion(u_next, u, v)), Given.by(body, supports, log)
-    with entered(laws, ties, turnings, motions, given) as entries:
-        done, why = _advance(number, *entries)
+    kept = {} if kept is None else kept
+    done, why = _advance(number, *entered(laws, ties, turnings, motions, given, kept))
     if done % 2 == 1:
         u[:] = u_next
     return done, why
@@ -54,8 +54,11 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
 @njit(**FAST)
 def _advance(number, laws, ties, turning, motions, given):
     """The steps themselves; the last displacements may be in u_next. For the arguments see `calls.entered`."""
-    here, there, v = motion_at(motions[0])
-    body, supports, log, pulled, followed, moved, _ = given_at(given)
+    first, its = motion_at(motions[0]), given_at(given)
+    here, there, v = first.u, first.u_next, first.v
+    body, supports, log, pulled, followed, moved = (
+        its.body, its.supports, its.log, its.pulled, its.followed, its.moved,
+    )  # fmt: skip
     steps = supports.drive.shape[0]
     work = log.work
     done = steps

@@ -29,16 +29,17 @@ def _dashpots(c, first, last, sides, old, new, incident):
     force = 0.0
     before = 0.0
     absorbed = 0.0
-    constant = 0.0
+    total = 0.0
+    line, constant = sides.line, sides.constant
     for e in range(first, last):
-        s = U(sides.line[U(e)])
+        s = U(line[U(e)])
         out = 0.5 * (old[c, s] + new[c, s]) - incident
-        f = sides.constant[U(e)] * (incident - out)
+        f = constant[U(e)] * (incident - out)
         force += f
         before += f * old[c, s]
-        absorbed += sides.constant[U(e)] * out * out
-        constant += sides.constant[U(e)]
-    return force, constant * incident * incident - absorbed, before, absorbed
+        absorbed += constant[U(e)] * out * out
+        total += constant[U(e)]
+    return force, total * incident * incident - absorbed, before, absorbed
 
 
 @njit(**FAST, inline="always")
@@ -48,15 +49,16 @@ def _following(c, first, last, sides, old, new, followed, incident):
     power = 0.0
     before = 0.0
     absorbed = 0.0
+    line, constant, follow = sides.line, sides.constant, sides.follow
     for e in range(first, last):
-        s = U(sides.line[U(e)])
+        s = U(line[U(e)])
         mean = 0.5 * (old[c, s] + new[c, s])
-        f = sides.constant[U(e)] * (2.0 * incident - mean) + sides.follow[U(e)] * followed[s, c]
+        f = constant[U(e)] * (2.0 * incident - mean) + follow[U(e)] * followed[s, c]
         out = mean - followed[s, c] - incident
         force += f
         power += f * mean
         before += f * old[c, s]
-        absorbed += sides.constant[U(e)] * out * out
+        absorbed += constant[U(e)] * out * out
     return force, power, before, absorbed
 
 
@@ -173,8 +175,9 @@ def note_sides(step, row, is_last, motion, given):
     addresses of a calls.Motion before the step, and of calls.Given after it.
     """
     u = motion_at(motion).u
-    body, supports, log, across, followed, moved, sums = given_at(given)
-    sides = log.sides
+    its = given_at(given)
+    body, supports, sides, sums = its.body, its.supports, its.log.sides, its.sums
+    across, followed, moved = its.pulled, its.followed, its.moved
     for b in range(sides.kind.size):
         if sides.kind[b] != SPRING or row >= 0:
             force, power, before, absorbed = _of_batch(b, step, u, supports, across, followed, moved, sides)

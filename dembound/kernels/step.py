@@ -99,8 +99,9 @@ def move_supported(step, u, v, u_next, across, followed, supports, body, work, m
     twins before the step and receives the mean of that before and after it. work (2, 7) is advanced; moved (3, 3, k)
     receives the velocities before and after the step, and the forces from outside.
     """
-    nodes, inertia, keep, mobility, stiffness, prescribed, drives, twin, follow = supports
-    drive = drives[step]
+    nodes, inertia, keep, mobility = supports.nodes, supports.inertia, supports.keep, supports.mobility
+    stiffness, prescribed, twin, follow = supports.stiffness, supports.prescribed, supports.twin, supports.follow
+    drive = supports.drive[step]
     done = 0.0
     half = 0.0
     damped = 0.0

@@ -7,6 +7,7 @@ import numpy as np
 
 from dembound.interrupts import Stopped, look, put_off
 from dembound.kernels import loop, tables
+from dembound.kernels.calls import Kept
 from dembound.motion.clock import Clock
 from dembound.motion.layout import aligned_zeros
 from dembound.motion.part import System
@@ -80,6 +81,7 @@ class Simulation:
         self.track(Watch(scene.block))
         self.stopped = False
         self._u_next = aligned_zeros(3, layout.count)
+        self._entered: Kept = {}
         self._damp = scene.damp if damp is None else damp
         self._supports = NodeSupports(scene, self.system.ties, time_step)
         self.sides = NodeSides(scene, self._supports) if side_stride > 0 else None
@@ -203,6 +205,7 @@ class Simulation:
             body,
             supports,
             log,
+            self._entered,
         )
         if turning is not None and system.turning is not None and not state.layout.is_plain:
             system.steady[:2, system.turning.node] = load[:2, turning.node]
