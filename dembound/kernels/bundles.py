@@ -6,6 +6,7 @@ apart and put together again in each function that passes them on, which takes a
 """
 
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +22,9 @@ from dembound.kernels import tables
 from dembound.kernels.apart import call_at
 
 _NUMBER = ir.IntType(64)
+
+_HEAD = 4
+"""Numbers of an array, as numba writes it, before its address: owners, count and size of its numbers."""
 
 
 class Role(NamedTuple):
@@ -50,6 +54,9 @@ class At(types.Type):
         return found
 
 
+_at = cache(At)
+
+
 @register_model(At)
 class _AddressModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
@@ -66,11 +73,29 @@ class _Fields(AttributeTemplate):
         return At(kind) if isinstance(kind, types.BaseNamedTuple) else kind
 
 
-def kind_of(value: Any) -> Any:
-    """The numba type of a bundle with all it contains, or of another value."""
+def kind_of(bundle: Any) -> Any:
+    """The numba type of a bundle with all it contains."""
+    parts = tuple(map(_kind_of_part, _parts(bundle)))
+    if parts not in _kinds:
+        _kinds[parts] = _kind_of(bundle)
+    return _kinds[parts]
+
+
+_kinds: dict[tuple[Any, ...], Any] = {}
+"""Types of bundles by those of their parts: to find a type takes as long as to compute with the bundle of a bar."""
+
+
+def _kind_of(value: Any) -> Any:
     if not hasattr(value, "_fields"):
         return typeof(value)
-    return types.BaseTuple.from_types(tuple(map(kind_of, value)), type(value))
+    return types.BaseTuple.from_types(tuple(map(_kind_of, value)), type(value))
+
+
+def _kind_of_part(part: Any) -> Any:
+    """What determines the numba type of a part of a bundle, see `_parts`."""
+    if not isinstance(part, np.ndarray):
+        return part if isinstance(part, type) else type(part)
+    return part.dtype, part.ndim, part.flags.c_contiguous, part.flags.f_contiguous, part.flags.writeable
 
 
 def _parts_of(kind: Any) -> list[Any] | None:
@@ -80,17 +105,17 @@ def _parts_of(kind: Any) -> list[Any] | None:
 
 
 def _count(kind: Any) -> int:
-    """How many numbers a value of this type takes in memory: of an array its address, shape and strides."""
+    """How many numbers a value of this type takes in memory, see `_numbers`."""
     if isinstance(kind, types.Array):
-        return 1 + 2 * int(kind.ndim)
+        return _HEAD + 1 + 2 * int(kind.ndim)
     parts = _parts_of(kind)
     return 1 if parts is None else sum(map(_count, parts))
 
 
 def _numbers(value: Any) -> list[int]:
-    """The numbers of an array or a number, see `_count`; those of floats by their bits."""
+    """Address, shape and strides of an array, as numba writes them, after four zeros; of floats their bits."""
     if isinstance(value, np.ndarray):
-        return [value.__array_interface__["data"][0], *value.shape, *value.strides]
+        return [*[0] * _HEAD, value.__array_interface__["data"][0], *value.shape, *value.strides]
     return [int(np.float64(value).view(np.int64)) if isinstance(value, float | np.floating) else int(value)]
 
 
@@ -102,13 +127,6 @@ def _parts(value: Any) -> Iterator[Any]:
             yield from _parts(each)
     else:
         yield value
-
-
-def _alike(part: Any, other: Any) -> bool:
-    """Whether two parts have the same numba type."""
-    if isinstance(part, np.ndarray) and isinstance(other, np.ndarray):
-        return typeof(part) == typeof(other)
-    return type(part) is type(other)
 
 
 class Written:
@@ -132,7 +150,7 @@ class Written:
         if len(parts) != len(self._parts):
             return False
         changed = [k for k, (part, other) in enumerate(zip(parts, self._parts, strict=True)) if part is not other]
-        if not all(not isinstance(parts[k], type) and _alike(parts[k], self._parts[k]) for k in changed):
+        if any(isinstance(parts[k], type) or _kind_of_part(parts[k]) != _kind_of_part(self._parts[k]) for k in changed):
             return False
         for k in changed:
             self.numbers[self._first[k] : self._first[k + 1]] = _numbers(parts[k])
@@ -143,27 +161,38 @@ class Written:
 @unbox(At)
 def _unboxed(kind: Any, bundle: Any, c: Any) -> Any:
     """Write a bundle with which a kernel is called from Python, for as long as the call lasts."""
-    write = c.pyapi.unserialize(c.pyapi.serialize_object(Written))
-    written = c.pyapi.call_function_objargs(write, (bundle,))
-    c.pyapi.decref(write)
-    address = cgutils.alloca_once_value(c.builder, cgutils.voidptr_t(None))
-    failed = cgutils.is_null(c.builder, written)
-    with cgutils.if_likely(c.builder, c.builder.not_(failed)):
-        number = c.pyapi.object_getattr_string(written, "address")
-        c.builder.store(c.builder.inttoptr(c.pyapi.long_as_longlong(number), cgutils.voidptr_t), address)
-        c.pyapi.decref(number)
-    return NativeValue(c.builder.load(address), is_error=failed, cleanup=lambda: c.pyapi.decref(written))
+    space = cgutils.alloca_once(c.builder, ir.ArrayType(_NUMBER, _count(kind.bundle)))
+    _write(c, kind.bundle, bundle, c.builder.bitcast(space, _NUMBER.as_pointer()))
+    return NativeValue(c.builder.bitcast(space, cgutils.voidptr_t))
+
+
+def _write(c: Any, kind: Any, value: Any, place: Any) -> None:
+    """Write the code that writes an object of Python, known to be of this type, as `_numbers` does."""
+    parts = _parts_of(kind)
+    if parts is not None:
+        first = 0
+        for k, each in enumerate(parts):
+            _write(c, each, c.pyapi.tuple_getitem(value, k), c.builder.gep(place, [_NUMBER(first)]))
+            first += _count(each)
+    elif isinstance(kind, types.Array):
+        c.pyapi.numba_array_adaptor(value, c.builder.bitcast(place, cgutils.voidptr_t))
+    elif isinstance(kind, types.Float):
+        c.builder.store(c.builder.bitcast(c.pyapi.float_as_double(value), _NUMBER), place)
+    elif isinstance(kind, types.Boolean):
+        c.builder.store(c.builder.zext(c.pyapi.object_istrue(value), _NUMBER), place)
+    else:
+        c.builder.store(c.pyapi.long_as_longlong(value), place)
 
 
 for _class in vars(tables).values():
     if isinstance(_class, type) and issubclass(_class, tuple):
-        typeof_impl.register(_class)(lambda bundle, _: At(kind_of(bundle)))
+        typeof_impl.register(_class)(lambda bundle, _: _at(kind_of(bundle)))
 
 
 def _loaded(context: Any, builder: Any, kind: Any, place: Any) -> Any:
     """The value of this type whose numbers begin at a place; it does not change while compiled code runs."""
     if isinstance(kind, types.Array):
-        data, *others = (_load(builder, builder.gep(place, [_NUMBER(k)])) for k in range(_count(kind)))
+        data, *others = (_load(builder, builder.gep(place, [_NUMBER(k)])) for k in range(_HEAD, _count(kind)))
         shape, strides = others[: kind.ndim], others[kind.ndim :]
         array = context.make_array(kind)(context, builder)
         pointer = builder.inttoptr(data, array.data.type)
