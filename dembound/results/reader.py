@@ -24,7 +24,10 @@ COMPONENTS = ("x", "y", "rotation")
 
 
 _sound: set[tuple[int, ...]] = set()
-"""Records that have been searched for damage by this process, or written by it, as by `_state_of`."""
+"""Records that have been searched for damage by this process, members of their collections apart, see `_state_of`."""
+
+_own: set[tuple[int, ...]] = set()
+"""Records that this process has written, in which nothing is searched."""
 
 
 @contextmanager
@@ -35,17 +38,18 @@ def open_record(path: Path) -> Iterator[h5py.File]:
     of snapshots, and of runs and choices of charts, are searched when they are used, see `snapshots_of` and `Members`.
     """
     with reading(path) as file:
-        if _state_of(path) not in _sound:
+        state = _state_of(path)
+        if state not in _sound and state not in _own:
             require_structure(file)
             require_equal_rows(file)
             require_places(file)
-            trust(path)
+            _sound.add(_state_of(path))
         yield file
 
 
 def trust(path: Path) -> None:
-    """Note that a record is sound, as it has been searched for damage or written just now."""
-    _sound.add(_state_of(path))
+    """Note that a record is sound, as this process has written it just now."""
+    _own.add(_state_of(path))
 
 
 def _state_of(path: Path) -> tuple[int, ...]:
@@ -180,7 +184,10 @@ class Snapshots(Sequence["h5py.Group"]):
 
     def __init__(self, file: h5py.File, names: list[str] | None = None) -> None:
         self._file = file
-        self._members = Members(file, "snapshots")
+        path = Path(file.filename)
+        self._is_own = path.is_file() and _state_of(path) in _own
+        own: Mapping[str, h5py.Group] = file.get("snapshots", {})
+        self._members = own if self._is_own else Members(file, "snapshots")
         self.names = sorted(self._members, key=int) if names is None else names
         self._particles: set[int] = _rows(file.get("particles", {})) if file.attrs.get("complete", False) else set()
 
@@ -204,7 +211,7 @@ class Snapshots(Sequence["h5py.Group"]):
     def _group(self, name: str) -> h5py.Group:
         """A snapshot; raises RecordError as `Members`, and for columns of different lengths in a complete record."""
         group = self._members[name]
-        if self._particles and len(self._particles | _rows(group)) > 1:
+        if self._particles and not self._is_own and len(self._particles | _rows(group)) > 1:
             raise RecordError([f"{self._file.filename}: is damaged: snapshots/{name} has columns of different lengths"])
         return group
 
