@@ -175,7 +175,9 @@ def _write(c: Any, kind: Any, value: Any, place: Any) -> None:
             _write(c, each, c.pyapi.tuple_getitem(value, k), c.builder.gep(place, [_NUMBER(first)]))
             first += _count(each)
     elif isinstance(kind, types.Array):
-        c.pyapi.numba_array_adaptor(value, c.builder.bitcast(place, cgutils.voidptr_t))
+        kinds = ir.FunctionType(ir.IntType(32), [value.type, cgutils.voidptr_t])
+        adapt = cgutils.get_or_insert_function(c.builder.module, kinds, "numba_adapt_ndarray")
+        c.builder.call(adapt, [value, c.builder.bitcast(place, cgutils.voidptr_t)])
     elif isinstance(kind, types.Float):
         c.builder.store(c.builder.bitcast(c.pyapi.float_as_double(value), _NUMBER), place)
     elif isinstance(kind, types.Boolean):

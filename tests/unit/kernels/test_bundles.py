@@ -6,7 +6,7 @@ from numba import config, njit
 
 from dembound.kernels.bundles import Written, kind_of
 from dembound.kernels.calls import Given, Motion, entered
-from dembound.kernels.common import FAST
+from dembound.kernels.common import FAST, MAKES
 from dembound.kernels.tables import NO_SIDES, Body, Bonded, Cells, Contacts, Limits, Log, Supports
 
 pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")  # type: ignore[attr-defined]
@@ -27,7 +27,6 @@ def bonded(stops: bool = True, skin: float = -1.5) -> Bonded:
     return Bonded(CONTACTS, limits, np.arange(12.0).reshape(2, 6)[:, ::2], skin, CELLS, stops, *WORK)
 
 
-@njit(**FAST)
 def _read(law, found):
     contacts = law.contacts
     found[0], found[1], found[2] = contacts.begin, contacts.constants[1, 3], contacts.state[1]
@@ -37,18 +36,20 @@ def _read(law, found):
     law.way[1] = 4.0
 
 
-def read(law: Bonded) -> list[float]:
-    found = np.zeros(12)
-    _read(law, found)
-    return found.tolist()
+@pytest.mark.parametrize("options", [FAST, MAKES], ids=["plain", "creates arrays"])
+def test_compiled_code_reads_and_writes_what_is_in_a_bundle(options) -> None:
+    kernel = njit(**(options | {"cache": False}))(_read)
 
+    def read(law: Bonded) -> list[float]:
+        found = np.zeros(12)
+        kernel(law, found)
+        return found.tolist()
 
-def test_compiled_code_reads_and_writes_what_is_in_a_bundle() -> None:
     WORK[0][:] = 0.0
     assert read(bonded()) == [-3.0, 15.0, 200.0, 7.0, -2e6, 2.0, 10.0, -1.5, 0.25, 1.0, 1.0, 2.0]
     assert WORK[0].tolist() == [0.0, 4.0]
     assert read(bonded(stops=False, skin=3.0))[7:11] == [3.0, 0.25, 1.0, 0.0]
-    assert len(_read.signatures) == 1
+    assert len(kernel.signatures) == 1
 
 
 def test_only_what_has_changed_is_written_and_nothing_of_another_type() -> None:
