@@ -34,9 +34,8 @@ _RESOLVE = "dembound_compiled_kernel"
 
 def compiled(kernel: Any, arguments: tuple[Any, ...], returned: Any) -> int:
     """Address of a kernel for arguments of these types, compiled, or loaded; raises TypeError if it returns another."""
-    if arguments not in kernel.overloads:
-        with put_off():
-            kernel.compile(arguments)
+    with put_off():
+        kernel.compile(arguments)
     found: Any = kernel.overloads[arguments]
     if found.signature.return_type != returned:
         raise TypeError(f"{kernel.py_func.__qualname__} returns {found.signature.return_type}, not {returned}")

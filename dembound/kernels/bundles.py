@@ -5,13 +5,15 @@ bundle: what it reads of it, by attribute, is loaded where it is used. Passed as
 apart and put together again in each function that passes them on, which takes a third of the time of compiling it.
 """
 
-from collections.abc import Callable, Iterator
+import ctypes
+from collections.abc import Callable
 from functools import cache
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir  # type: ignore[import-untyped]
-from numba import typeof, types
+from numba import _helperlib, typeof, types
 from numba.core import cgutils
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
@@ -54,7 +56,8 @@ class At(types.Type):
         return found
 
 
-_at = cache(At)
+type_at = cache(At)
+"""`At` of a type of bundles, whose long name is then written once."""
 
 
 @register_model(At)
@@ -70,12 +73,12 @@ class _Fields(AttributeTemplate):
     def generic_resolve(self, at: Any, name: str) -> Any:  # type: ignore[override]  # declared as not implemented
         bundle = at.bundle
         kind = bundle.types[bundle.fields.index(name)] if name in bundle.fields else None
-        return At(kind) if isinstance(kind, types.BaseNamedTuple) else kind
+        return type_at(kind) if isinstance(kind, types.BaseNamedTuple) else kind
 
 
 def kind_of(bundle: Any) -> Any:
     """The numba type of a bundle with all it contains."""
-    parts = tuple(map(_kind_of_part, _parts(bundle)))
+    parts = kinds_of_parts(bundle)
     if parts not in _kinds:
         _kinds[parts] = _kind_of(bundle)
     return _kinds[parts]
@@ -89,6 +92,11 @@ def _kind_of(value: Any) -> Any:
     if not hasattr(value, "_fields"):
         return typeof(value)
     return types.BaseTuple.from_types(tuple(map(_kind_of, value)), type(value))
+
+
+def kinds_of_parts(bundle: Any) -> tuple[Any, ...]:
+    """What determines the numba type of a bundle, and takes less time to find and compare."""
+    return tuple(map(_kind_of_part, _parts(bundle)))
 
 
 def _kind_of_part(part: Any) -> Any:
@@ -105,28 +113,42 @@ def _parts_of(kind: Any) -> list[Any] | None:
 
 
 def _count(kind: Any) -> int:
-    """How many numbers a value of this type takes in memory, see `_numbers`."""
+    """How many numbers a value of this type takes in memory: of an array also `_HEAD`, address, shape and strides."""
     if isinstance(kind, types.Array):
         return _HEAD + 1 + 2 * int(kind.ndim)
     parts = _parts_of(kind)
     return 1 if parts is None else sum(map(_count, parts))
 
 
-def _numbers(value: Any) -> list[int]:
-    """Address, shape and strides of an array, as numba writes them, after four zeros; of floats their bits."""
-    if isinstance(value, np.ndarray):
-        return [*[0] * _HEAD, value.__array_interface__["data"][0], *value.shape, *value.strides]
-    return [int(np.float64(value).view(np.int64)) if isinstance(value, float | np.floating) else int(value)]
+_adapt = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.py_object, ctypes.c_void_p)(_helperlib.c_helpers["adapt_ndarray"])  # type: ignore[attr-defined]
 
 
-def _parts(value: Any) -> Iterator[Any]:
+def _put(part: Any, numbers: np.ndarray, first: int, address: int) -> None:
+    """Write a part of a bundle to numbers (k,) at an address, from number `first` on; of floats their bits."""
+    if isinstance(part, np.ndarray):
+        _adapt(part, address + 8 * first)
+    elif isinstance(part, float | np.floating):
+        numbers[first : first + 1].view(np.float64)[0] = part
+    elif not isinstance(part, type):
+        numbers[first] = part
+
+
+def _parts(bundle: Any) -> list[Any]:
     """The arrays and numbers of a bundle in order, each named tuple's class before them."""
-    if isinstance(value, tuple):
-        yield type(value)
-        for each in value:
-            yield from _parts(each)
-    else:
-        yield value
+    parts = [type(bundle)]
+    for each in bundle:
+        if isinstance(each, tuple):
+            parts += _parts(each)
+        else:
+            parts.append(each)
+    return parts
+
+
+def _size(part: Any) -> int:
+    """How many numbers a part of a bundle takes in memory, see `_count`."""
+    if isinstance(part, np.ndarray):
+        return _HEAD + 1 + 2 * part.ndim
+    return 0 if isinstance(part, type) else 1
 
 
 class Written:
@@ -138,22 +160,23 @@ class Written:
     """
 
     def __init__(self, bundle: NamedTuple) -> None:
-        self._parts = list(_parts(bundle))
-        numbers = [[] if isinstance(part, type) else _numbers(part) for part in self._parts]
-        self._first = np.cumsum([0, *map(len, numbers)]).tolist()
-        self.numbers = np.array([number for each in numbers for number in each], dtype=np.int64)
+        self._parts = _parts(bundle)
+        self._first = list(accumulate(map(_size, self._parts), initial=0))
+        self.numbers = np.zeros(self._first.pop(), dtype=np.int64)
         self.address = int(self.numbers.ctypes.data)
+        for part, first in zip(self._parts, self._first, strict=True):
+            _put(part, self.numbers, first, self.address)
 
     def takes(self, bundle: NamedTuple) -> bool:
         """Write what is new in another bundle over this one; False if it has another type, and nothing is written."""
-        parts = list(_parts(bundle))
+        parts = _parts(bundle)
         if len(parts) != len(self._parts):
             return False
         changed = [k for k, (part, other) in enumerate(zip(parts, self._parts, strict=True)) if part is not other]
         if any(isinstance(parts[k], type) or _kind_of_part(parts[k]) != _kind_of_part(self._parts[k]) for k in changed):
             return False
         for k in changed:
-            self.numbers[self._first[k] : self._first[k + 1]] = _numbers(parts[k])
+            _put(parts[k], self.numbers, self._first[k], self.address)
         self._parts = parts
         return True
 
@@ -167,7 +190,7 @@ def _unboxed(kind: Any, bundle: Any, c: Any) -> Any:
 
 
 def _write(c: Any, kind: Any, value: Any, place: Any) -> None:
-    """Write the code that writes an object of Python, known to be of this type, as `_numbers` does."""
+    """Write the code that writes an object of Python, known to be of this type, as `_put` does."""
     parts = _parts_of(kind)
     if parts is not None:
         first = 0
@@ -188,7 +211,7 @@ def _write(c: Any, kind: Any, value: Any, place: Any) -> None:
 
 for _class in vars(tables).values():
     if isinstance(_class, type) and issubclass(_class, tuple):
-        typeof_impl.register(_class)(lambda bundle, _: _at(kind_of(bundle)))
+        typeof_impl.register(_class)(lambda bundle, _: type_at(kind_of(bundle)))
 
 
 def _loaded(context: Any, builder: Any, kind: Any, place: Any) -> Any:
@@ -273,4 +296,4 @@ def reader(bundle: Any) -> Callable[..., Any]:
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         return builder.inttoptr(args[0], cgutils.voidptr_t)
 
-    return _known(lambda _: signature(At(bundle), types.int64), lower)
+    return _known(lambda _: signature(type_at(bundle), types.int64), lower)

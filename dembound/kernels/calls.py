@@ -12,7 +12,7 @@ from numba.extending import overload
 
 from dembound.kernels import tables
 from dembound.kernels.apart import compiled
-from dembound.kernels.bundles import At, Role, Written, caller, kind_of, reader
+from dembound.kernels.bundles import Role, Written, caller, kind_of, kinds_of_parts, reader, type_at
 from dembound.kernels.common import FAST
 from dembound.kernels.law import across, begin, check, finish, move, note, push, turn, turning_work
 
@@ -201,23 +201,36 @@ Kept = dict[tuple[int, int], tuple[Written, list[int]]]
 """Bundles as they were last entered, with their rows of addresses, by table and place: what has not changed is kept."""
 
 
+_KERNELS: dict[tuple[Any, ...], list[int]] = {}
+"""Addresses of kernels by role, 0 for none, of all types of bundles so far, by table and `bundles.kinds_of_parts`."""
+
+
+def _kernels(bundle: Any, table: int) -> list[int]:
+    """The addresses of the kernels of a bundle by role, which are compiled, or loaded."""
+    kinds = table, kinds_of_parts(bundle)
+    if kinds not in _KERNELS:
+        kind = kind_of(bundle)
+        wanted = {Motion: _MOTION, Given: _GIVEN}.get(type(bundle), kind)
+        if kind != wanted:
+            raise TypeError(f"the loop takes {wanted}, not {kind}")
+        found = [0] * len(ROLES)
+        for column in _CALLED[table]:
+            role = ROLES[column]
+            if role.generic.kernels[type(bundle)] is not None:
+                arguments = type_at(kind), *[types.int64] * (role.kernel.py_func.__code__.co_argcount - 1)
+                found[column - 1] = compiled(role.kernel, arguments, role.returned)
+        _KERNELS[kinds] = found
+    return _KERNELS[kinds]
+
+
 def _row(bundle: Any, table: int, place: int, kept: Kept) -> list[int]:
-    """The row of a bundle in a table of addresses, see `entered`; its kernels are compiled, or loaded."""
+    """The row of a bundle in a table of addresses, see `entered`."""
     known = kept.get((table, place))
     if known is not None and known[0].takes(bundle):
         return known[1]
-    data, kind = Written(bundle), kind_of(bundle)
-    wanted = {Motion: _MOTION, Given: _GIVEN}.get(type(bundle), kind)
-    if kind != wanted:
-        raise TypeError(f"the loop takes {wanted}, not {kind}")
-    row = [data.address] + [0] * len(ROLES)
-    for column in _CALLED[table]:
-        role = ROLES[column]
-        if role.generic.kernels[type(bundle)] is not None:
-            arguments = At(kind), *[types.int64] * (role.kernel.py_func.__code__.co_argcount - 1)
-            row[column] = compiled(role.kernel, arguments, role.returned)
-    kept[table, place] = data, row
-    return row
+    kernels, data = _kernels(bundle, table), Written(bundle)
+    kept[table, place] = data, [data.address, *kernels]
+    return kept[table, place][1]
 
 
 def entered(
