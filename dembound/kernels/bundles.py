@@ -7,7 +7,6 @@ apart and put together again in each function that passes them on: a third to a 
 
 import ctypes
 from collections.abc import Callable
-from functools import cache
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -56,10 +55,6 @@ class At(types.Type):
         return found
 
 
-type_at = cache(At)
-"""`At` of a type of bundles, whose long name is then written once."""
-
-
 @register_model(At)
 class _AddressModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
@@ -73,25 +68,14 @@ class _Fields(AttributeTemplate):
     def generic_resolve(self, at: Any, name: str) -> Any:  # type: ignore[override]  # declared as not implemented
         bundle = at.bundle
         kind = bundle.types[bundle.fields.index(name)] if name in bundle.fields else None
-        return type_at(kind) if isinstance(kind, types.BaseNamedTuple) else kind
+        return At(kind) if isinstance(kind, types.BaseNamedTuple) else kind
 
 
-def kind_of(bundle: Any) -> Any:
-    """The numba type of a bundle with all it contains."""
-    parts = kinds_of_parts(bundle)
-    if parts not in _kinds:
-        _kinds[parts] = _kind_of(bundle)
-    return _kinds[parts]
-
-
-_kinds: dict[tuple[Any, ...], Any] = {}
-"""Types of bundles by those of their parts: to find a type takes as long as to compute with the bundle of a bar."""
-
-
-def _kind_of(value: Any) -> Any:
+def kind_of(value: Any) -> Any:
+    """The numba type of a bundle with all it contains, or of another value."""
     if not hasattr(value, "_fields"):
         return typeof(value)
-    return types.BaseTuple.from_types(tuple(map(_kind_of, value)), type(value))
+    return types.BaseTuple.from_types(tuple(map(kind_of, value)), type(value))
 
 
 def kinds_of_parts(bundle: Any) -> tuple[Any, ...]:
@@ -214,7 +198,7 @@ def _write(c: Any, kind: Any, value: Any, place: Any) -> None:
 
 for _class in vars(tables).values():
     if isinstance(_class, type) and issubclass(_class, tuple):
-        typeof_impl.register(_class)(lambda bundle, _: type_at(kind_of(bundle)))
+        typeof_impl.register(_class)(lambda bundle, _: At(kind_of(bundle)))
 
 
 def _loaded(context: Any, builder: Any, kind: Any, place: Any) -> Any:
@@ -299,4 +283,4 @@ def reader(bundle: Any) -> Callable[..., Any]:
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         return builder.inttoptr(args[0], cgutils.voidptr_t)
 
-    return _known(lambda _: signature(type_at(bundle), types.int64), lower)
+    return _known(lambda _: signature(At(bundle), types.int64), lower)

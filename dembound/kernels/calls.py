@@ -12,7 +12,7 @@ from numba.extending import overload
 
 from dembound.kernels import tables
 from dembound.kernels.apart import compiled
-from dembound.kernels.bundles import Role, Written, caller, kind_of, kinds_of_parts, reader, type_at
+from dembound.kernels.bundles import At, Role, Written, caller, kind_of, kinds_of_parts, reader
 from dembound.kernels.common import FAST
 from dembound.kernels.law import across, begin, check, finish, move, note, push, turn, turning_work
 
@@ -217,7 +217,7 @@ def _kernels(bundle: Any, table: int) -> list[int]:
         for column in _CALLED[table]:
             role = ROLES[column]
             if role.generic.kernels[type(bundle)] is not None:
-                arguments = type_at(kind), *[types.int64] * (role.kernel.py_func.__code__.co_argcount - 1)
+                arguments = At(kind), *[types.int64] * (role.kernel.py_func.__code__.co_argcount - 1)
                 found[column - 1] = compiled(role.kernel, arguments, role.returned)
         _KERNELS[kinds] = found
     return _KERNELS[kinds]

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -9,21 +10,13 @@ ALIGNMENT = 64
 """Bytes at whose multiples arrays of slots begin: a line of the caches, and eight doubles."""
 
 
-def aligned_zeros(*shape: int) -> np.ndarray:
-    """Zeros of this shape, aligned in memory (`ALIGNMENT`)."""
-    count = int(np.prod(shape))
-    room = np.zeros(count + ALIGNMENT // 8)
-    first = (-room.ctypes.data % ALIGNMENT) // 8
-    return room[first : first + count].reshape(shape)
-
-
-def aligned(values: np.ndarray) -> np.ndarray:
-    """A copy of values, aligned in memory (`ALIGNMENT`)."""
-    room = np.zeros(values.nbytes + ALIGNMENT, dtype=np.uint8)
+def aligned_zeros(*shape: int, dtype: Any = np.float64) -> np.ndarray:
+    """Zeros of this shape and type, aligned in memory (`ALIGNMENT`)."""
+    kind = np.dtype(dtype)
+    size = int(np.prod(shape)) * kind.itemsize
+    room = np.zeros(size + ALIGNMENT, dtype=np.uint8)
     first = -room.ctypes.data % ALIGNMENT
-    copy = room[first : first + values.nbytes].view(values.dtype).reshape(values.shape)
-    copy[...] = values
-    return copy
+    return room[first : first + size].view(kind).reshape(shape)
 
 
 @dataclass(frozen=True, eq=False)

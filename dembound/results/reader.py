@@ -43,7 +43,7 @@ def open_record(path: Path) -> Iterator[h5py.File]:
             require_structure(file)
             require_equal_rows(file)
             require_places(file)
-            _sound.add(_state_of(path))
+            _sound.add(state)
         yield file
 
 

@@ -11,7 +11,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import INTACT, NONE
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import Contacts
-from dembound.motion.layout import aligned, aligned_zeros
+from dembound.motion.layout import aligned_zeros
 from dembound.packings.tiling import Assembly
 
 NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
@@ -80,7 +80,8 @@ def in_places(
 
     def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
         """Values of the pairs in their places."""
-        column = aligned(np.full((count, *values.shape[1:]), empty, dtype=values.dtype))
+        column = aligned_zeros(count, *values.shape[1:], dtype=values.dtype)
+        column[...] = empty
         column[live] = values
         return column
 
