@@ -12,7 +12,7 @@ from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.machine import Memory, memory_here
 
-PROGRAM, PICTURES = 220e6, 285e6
+PROGRAM, PICTURES = 250e6, 285e6
 """Bytes of the interpreter, packages and compiled code during the steps of a run, and once pictures are drawn.
 
 These two are measured, with Python 3.11 on Linux; they differ by some 10 % between versions of the packages. The first
