@@ -1,7 +1,7 @@
 """dembound: waves in bonded particles, with artificial boundaries that absorb.
 
 From Python: `load`, `case`, `change`, `run`, `estimate`, `resume`, `calibrate`, `calibrate_all` and `Results`; see
-`dembound.api` and docs/python.md.
+`dembound.api` and docs/start/python.md.
 """
 
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""dembound from Python: cases made of tables, runs, and their results as arrays. See docs/python.md."""
+"""dembound from Python: cases made of tables, runs, and their results as arrays. See docs/start/python.md."""
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -69,7 +69,7 @@ def loads(text: str, folder: Path | str = ".", name: str = "case") -> Case:
 
 
 def case(name: str = "case", folder: Path | str = ".", **tables: Any) -> Case:
-    """Make a case from its tables, with the keys of a case file (docs/case_file.md).
+    """Make a case from its tables, with the keys of a case file (docs/reference/case_file.md).
 
     Keys that are left out have their defaults. The tables are checked like those of a file.
 
@@ -127,7 +127,7 @@ def _estimated(case: Case, folder: Path) -> Results:
 
 
 def estimate(results: Path | str, *, repeat: bool = False, threads: int | None = None) -> Budget:
-    """Estimate the errors of a complete run, as ``dembound estimate`` does; see docs/errors.md.
+    """Estimate the errors of a complete run, as ``dembound estimate`` does; see docs/tasks/trust_a_result.md.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def advise(
     longest: float | None = None,
     threads: int | None = None,
 ) -> Advice:
-    """How wrong a case is, and the cheapest choices for errors, as ``dembound advise`` does; see docs/errors.md.
+    """How wrong a case is, and the cheapest choices for errors, see docs/tasks/trust_a_result.md.
 
     Parameters
     ----------

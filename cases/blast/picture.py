@@ -1,4 +1,4 @@
-"""Draws docs/blast.png: the forces of the pressure on the disks of the wall, and the motion beside the exact cavity.
+"""Draws docs/pictures/blast.png: forces of the pressure on the disks of the wall, motion beside the exact cavity.
 
 python cases/blast/picture.py [FILE]      (default: blast.png; half a minute of CPU time)
 """

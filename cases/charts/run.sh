@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The charts of docs/charts.md: error against cost of the long bar under P and S pulses, of the external source, of Lamb's
+# The charts of docs/evidence/charts.md: error against cost of the long bar under P and S pulses, of the external source, of Lamb's
 # problem, of a blast, of a hole under plane waves, of Garvin's problem, of the tunnel, of L's bar, and of the laws.
 #
 #   cases/charts/run.sh [RESULTS]      (default: results/charts)

@@ -1,4 +1,4 @@
-"""Errors of an explosion below a free surface beside Garvin's exact solution: the tables of docs/exact.md.
+"""Errors of an explosion below a free surface beside Garvin's exact solution: the tables of docs/evidence/exact.md.
 
     python cases/exact/explosion.py [lattice] [random]      (five minutes of CPU time)
 

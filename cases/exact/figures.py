@@ -1,4 +1,4 @@
-"""The pictures of docs/exact.md: a pressure in a cavity, a cavity under plane waves, and Garvin's problem.
+"""The pictures of docs/evidence/exact.md: a pressure in a cavity, a cavity under plane waves, and Garvin's problem.
 
     python figures.py [FOLDER]      (default: the current folder)
 

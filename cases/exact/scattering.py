@@ -1,4 +1,4 @@
-"""Errors of the motion of a tunnel's wall under P and SV waves beside the exact series: the table of docs/exact.md.
+"""Errors of a tunnel's wall under P and SV waves beside the exact series: the table of docs/evidence/exact.md.
 
     python cases/exact/scattering.py      (two minutes of CPU time)
 

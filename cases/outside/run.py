@@ -1,4 +1,4 @@
-"""Measures what docs/outside.md and docs/where_methods_fail.md quote of continua beyond sides, and draws pictures.
+"""Measures and draws what docs/evidence (outside.md, where_methods_fail.md) quotes of continua beyond sides.
 
     python cases/outside/run.py [RESULTS]      (default: results/outside)
 

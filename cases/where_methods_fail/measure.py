@@ -1,4 +1,4 @@
-"""Measures the thresholds of docs/where_methods_fail.md, prints them, and draws the pictures.
+"""Measures the thresholds of docs/evidence/where_methods_fail.md, prints them, and draws the pictures.
 
     python cases/where_methods_fail/measure.py [RESULTS]      (default: results/where_methods_fail)
 

@@ -6,7 +6,7 @@ from dembound.bar.scene import BarScene
 
 STEP, BOND, LAYER_BOND = 250.0, 0.45, 6.0
 """Nanoseconds of a step in any case, of a spring or bond (benchmarks/bar_rate.py), and of one in a layer: 0.3 µs of 40
-nodes (docs/bar_ends.md)."""
+nodes (docs/evidence/bar_ends.md)."""
 
 
 def of_bar(scene: BarScene) -> float:

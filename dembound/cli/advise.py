@@ -94,7 +94,7 @@ def advise_cases(
 
     All other lines of the case remain, comments too.
 
-    Nothing is run but small scenes with larger disks; see docs/errors.md.
+    Nothing is run but small scenes with larger disks; see docs/tasks/trust_a_result.md.
     """
     from dembound.accuracy.advise import BOUNDS, advise
 

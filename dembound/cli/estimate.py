@@ -29,7 +29,7 @@ def estimate(
 ) -> None:
     """Estimate how wrong runs are: by their sides, their grid and their time step, at every monitor.
 
-    Writes estimate.h5 and the entry error_estimate of summary.json; see docs/errors.md.
+    Writes estimate.h5 and the entry error_estimate of summary.json; see docs/tasks/trust_a_result.md.
     """
     from dembound.accuracy.estimate import estimate_results
     from dembound.results.folder import with_name

@@ -1,4 +1,4 @@
-"""The results of a run as arrays, for Python: the same names as in ``run.h5`` (docs/results.md)."""
+"""The results of a run as arrays, for Python: the same names as in ``run.h5`` (docs/reference/results.md)."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -103,7 +103,7 @@ class Results:
     Attributes
     ----------
     folder : path of the folder.
-    attributes : name, kind, time_step, steps, size … of the run, see docs/results.md.
+    attributes : name, kind, time_step, steps, size … of the run, see docs/reference/results.md.
     particles : reference positions and the like, one row per particle (of a bar, node); none of exact histories.
     histories : of every monitor ``time`` (k,), ``displacement`` and ``velocity`` (k, 3), of a bar ``stress`` (k,).
     boundaries : of every side its particles and their peak velocities, and of the side as a whole ``time`` (k,), mean

@@ -154,7 +154,7 @@ def test_one_side_or_all_are_calibrated() -> None:
 
 
 def test_the_documented_examples_run(tmp_path, monkeypatch, capsys) -> None:
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), flags=re.DOTALL)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/start/python.md").read_text(), flags=re.DOTALL)
     monkeypatch.chdir(tmp_path)
     names: dict = {}
     with warnings.catch_warnings():

@@ -7,7 +7,7 @@ from itertools import product
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/develop/architecture.md").read_text(encoding="utf-8")
 Arrows = dict[str, set[str]]
 
 

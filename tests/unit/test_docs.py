@@ -40,7 +40,7 @@ from dembound.results import new_record
 from dembound.running import SECTIONS, plan
 
 ROOT = Path(__file__).parents[2]
-REFERENCE = ROOT / "docs" / "case_file.md"
+REFERENCE = ROOT / "docs" / "reference" / "case_file.md"
 
 
 def members(union):
@@ -89,7 +89,7 @@ def test_every_law_stands_in_the_reference() -> None:
 
 
 def test_every_command_stands_in_the_readme_or_a_page() -> None:
-    pages = "\n".join(page.read_text() for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")))
+    pages = "\n".join(page.read_text() for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md")))
     names = [command.name or command.callback.__name__ for command in app.registered_commands]
     assert not [name for name in names if not re.search(rf"dembound {name}\b", pages)]
 
@@ -130,7 +130,7 @@ def test_every_dataset_of_a_record_stands_in_the_reference(tables, tmp_path) -> 
     with h5py.File(tmp_path / "layout.h5", "w") as file:
         new_record._lay_out(file, scene, list(scene.edges), list(scene.edges))
         file.visititems(lambda name, item: found.add(name) if isinstance(item, h5py.Dataset) else None)
-    page = re.sub(r"```.*?```", "", (ROOT / "docs" / "results.md").read_text(), flags=re.DOTALL)
+    page = re.sub(r"```.*?```", "", (ROOT / "docs" / "reference" / "results.md").read_text(), flags=re.DOTALL)
     rows = page.split("\n## `run.h5`\n")[1].split("\n## ")[0]
     words = {word for code in re.findall(r"`([^`]+)`", page) for word in re.findall(r"\w+", code)}
     named = [path.split("/") for path in found if not path.startswith("inputs/")]  # whose names are numbers
@@ -145,7 +145,7 @@ def test_exit_codes_are_the_same_wherever_they_are_told():
 
 
 def test_spacings_per_wavelength_are_those_that_are_computed():
-    text = (ROOT / "docs" / "dispersion.md").read_text()
+    text = (ROOT / "docs" / "evidence" / "dispersion.md").read_text()
     rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line[:3].strip("| ").isdigit()]
     assert [row[0] for row in rows] == ["1", "2", "3", "4", "5", "8", "10"]
     for row in rows:
@@ -157,14 +157,14 @@ def test_spacings_per_wavelength_are_those_that_are_computed():
 
 
 def test_all_that_a_run_spends_time_on_stands_in_the_reference():
-    text = (ROOT / "docs" / "results.md").read_text()
+    text = (ROOT / "docs" / "reference" / "results.md").read_text()
     (line,) = (line for line in text.splitlines() if line.startswith("| `seconds` |"))
     assert not [section for section in SECTIONS if f"`{section}`" not in line]
 
 
 FAILURES = [
     [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
-    for line in (ROOT / "docs" / "where_methods_fail.md").read_text().splitlines()
+    for line in (ROOT / "docs" / "evidence" / "where_methods_fail.md").read_text().splitlines()
     if re.match(r"\| \d+ \|", line)
 ]
 """The rows of the page: number, what fails, threshold, how it shows, guard, measured by, tests."""

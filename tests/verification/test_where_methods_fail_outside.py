@@ -1,4 +1,4 @@
-"""Where sides with a continuum beyond them fail: the thresholds of docs/where_methods_fail.md, measured again."""
+"""Where sides with a continuum beyond fail: the thresholds of docs/evidence/where_methods_fail.md, measured again."""
 
 import numpy as np
 import pytest

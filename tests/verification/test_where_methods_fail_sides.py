@@ -1,4 +1,4 @@
-"""Where dashpots, springs and columns fail: the thresholds of docs/where_methods_fail.md, measured again."""
+"""Where dashpots, springs and columns fail: the thresholds of docs/evidence/where_methods_fail.md, measured again."""
 
 import numpy as np
 import pytest

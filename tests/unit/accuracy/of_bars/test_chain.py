@@ -30,7 +30,7 @@ def test_a_clock_has_the_angles_of_central_differences() -> None:
 )
 @pytest.mark.parametrize("step", [STEP, 0.0])
 def test_waves_run_as_on_the_infinite_row(name: str, horizon: int, step: float) -> None:
-    # the layer returns up to 1e-3 of them, see docs/bar_ends.md, 16 nodes are few for m = 8
+    # the layer returns up to 1e-3 of them, see docs/evidence/bar_ends.md, 16 nodes are few for m = 8
     wavenumber = np.array([10.0, 30.0])
     omega = Lattice(horizon, 0.01, step, 2740.0).frequency(wavenumber)
     case, clock = scene(name), Frequencies.of(1j * omega, step)
