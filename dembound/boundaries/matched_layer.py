@@ -83,7 +83,7 @@ class MatchedLayer(Drivable):
 def usual_reflection(nodes: int) -> float:
     """R0 = 10^−(4 + N/20), not below 1e-12, with which about as much returns from the outer end as from the profile.
 
-    Measured with pulses of 20 spacings and p = 3, finite differences and peridynamics (docs/evidence/bar_ends.md): 1e-6 for
-    40 nodes, 1e-8 for 80.
+    Measured with pulses of 20 spacings and p = 3, finite differences and peridynamics (docs/evidence/bar_ends.md): 1e-6
+    for 40 nodes, 1e-8 for 80.
     """
     return max(10.0 ** -(4.0 + nodes / 20.0), 1e-12)

@@ -2,8 +2,8 @@
 
 The reference is a bar so long that nothing comes back from its far end. A cosine pulse of 20 spacings is sharp: at 5
 spacings in a wavelength its spectrum still has a per cent. Returned amplitudes are bounded by those of
-docs/evidence/bar_ends.md, measured at three nodes over four passages; a wrong sign, rate or stiffness of any bond returns
-a thousand times as much.
+docs/evidence/bar_ends.md, measured at three nodes over four passages; a wrong sign, rate or stiffness of any bond
+returns a thousand times as much.
 """
 
 import numpy as np
