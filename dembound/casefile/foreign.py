@@ -1,18 +1,25 @@
-"""Names of keys in other codes (PFC, UDEC, FLAC, Yade, LAMMPS) and in textbooks, and what to write here instead."""
+"""Names of keys in other codes (PFC, UDEC, FLAC, YADE, LAMMPS, SPECFEM) and in textbooks, and what to write instead."""
 
 import re
 from collections.abc import Collection
+
+_MORE = "; see docs: start/from_pfc"
+"""Ends a line about which that page says more."""
 
 _EMOD = "write emod, Pa: the normal stiffness of a contact is k_n = emod, N/m for each metre of thickness"
 _PB_EMOD = "write pb_emod, Pa: a bond has pb_kn = pb_emod/(R1 + R2), Pa/m"
 _SPEED = "write p_wave_speed, which with density gives the moduli: ρ c_p² along the rows of a square lattice"
 _WIDTHS = "write radius, the mean one, and radius_ratio, the largest over the smallest"
-_RATIO = "there is none for disks: it follows from kratio and pb_kratio, and `dembound check` prints c_p and c_s"
+_RATIO = (
+    f"there is none for disks: it follows from kratio and pb_kratio, and `dembound check` prints c_p and c_s{_MORE}"
+)
 _BAR_RATIO = "there is none: a bar moves along its axis only, at the speed √(E/ρ)"
-_DASHPOTS = "there is none: sides of type viscous absorb, damp takes energy from the whole body"
-_DAMP = "write damp, which is for bringing bodies to rest: for waves leave it 0"
+_DASHPOTS = f"there is none: sides of type viscous absorb, damp takes energy from the whole body{_MORE}"
+_DAMP = f"write damp, which is for bringing bodies to rest: for waves leave it 0{_MORE}"
 _BAR_DAMP = "write attenuation, 1/m: a wave fades by exp(−αx)"
-_OUTSIDE_OF = "give [[load]] an acceleration, such as [0.0, -9.81] m/s², and [static] to settle under it"
+_WEIGHT = f"give [[load]] an acceleration, such as [0.0, -9.81] m/s², and [static] to settle under it{_MORE}"
+_IN_SITU = f"[static] has stress = [sxx, syy, sxy], Pa, tension positive: it replaces walls with a servo{_MORE}"
+_VELOCITY = "give wave_p (along the normal) or wave_s (across it) the name of a [wave.NAME]"
 
 Advice = tuple[tuple[str, str], ...]
 """What to write, for each key that a table may have; the first of them that it has decides, "" is for all others."""
@@ -25,7 +32,10 @@ _MODULUS: Advice = (
 )
 _OF_SHEAR: Advice = (
     ("youngs_modulus", _BAR_RATIO),
-    ("kratio", "there is none: it follows from kratio and pb_kratio, normal over shear stiffness, and from fric > 0"),
+    (
+        "kratio",
+        f"there is none: it follows from kratio and pb_kratio, normal over shear stiffness, and fric > 0{_MORE}",
+    ),
 )
 _DENSITY: Advice = (("density", "write density, kg/m³, of the body as a whole: a particle's is larger, by the pores"),)
 _POISSON: Advice = (
@@ -37,7 +47,7 @@ _LOCAL: Advice = (
     ("attenuation", _BAR_DAMP),
     ("damp", _DAMP),
     ("beta_p", "write beta_p and beta_s, factors of ρc"),
-    ("", "[material] has damp, for waves 0; [static] a damp of its own; [bar] attenuation"),
+    ("", f"[material] has damp, for waves 0; [static] a damp of its own; [bar] attenuation{_MORE}"),
 )
 _STRENGTH: Advice = (
     ("strength", "write strength, Pa"),
@@ -53,16 +63,29 @@ _P_SPEED: Advice = (
     ("", "[material] has p_wave_speed, [bar] wave_speed"),
 )
 _S_SPEED: Advice = (("s_wave_speed", "write s_wave_speed, m/s"), ("wave_speed", _BAR_RATIO))
-_RADII: Advice = (("radius", _WIDTHS), ("diameter", "write diameter, m"), ("", f"in [packing], {_WIDTHS}"))
-_STEP: Advice = (("time_step", "write time_step, s"), ("", "[run] has time_step, s"))
+_RADII: Advice = (
+    ("radius_ratio", _WIDTHS),
+    ("pattern", 'write radius: disks of pattern "A" are equal, those of "B" and "C" also have radius_ratio'),
+    ("radius", "write radius, m"),
+    ("diameter", "write diameter, m"),
+    ("", f"in [packing], {_WIDTHS}"),
+)
+_STEP: Advice = (
+    ("time_step", 'write time_step, s, or leave it out: "auto" is 0.9 of the stability limit'),
+    ("", "[run] has time_step, s"),
+)
 _TIME: Advice = (("duration", "write duration, s"), ("", "[run] has duration, s"))
 _STEPS: Advice = (
-    ("duration", "write duration, s: `dembound check` prints the number of steps"),
-    ("", "[run] has duration, s"),
+    ("duration", f"write duration, s: `dembound check` prints the number of steps{_MORE}"),
+    ("max_steps", "write ratio, the force ratio at which the body is at rest, and max_steps"),
+    ("", f"[run] has duration, s; [static] ratio and max_steps{_MORE}"),
 )
-_GRAVITY: Advice = (("", _OUTSIDE_OF),)
 _POROSITY: Advice = (
-    ("", "there is none: it follows from the packing's pattern; `dembound check` prints the solid fraction"),
+    ("", f"there is none: it follows from the packing's pattern; `dembound check` prints the solid fraction{_MORE}"),
+)
+_REST: Advice = (
+    ("ratio", "write ratio, the mean unbalanced over the mean contact force at which the body is at rest"),
+    ("", "[static] has ratio, the mean unbalanced over the mean contact force at which the body is at rest"),
 )
 _CENTRE: Advice = (("centre", "write centre, m"), ("position", "write position, m"), ("origin", "write origin, m"))
 _PLACE: Advice = (("position", "write position = [x, y], m"), ("centre", "write centre = [x, y], m"))
@@ -73,11 +96,22 @@ _SCENE: Advice = (
 )
 
 NAMES: dict[tuple[str, ...], Advice] = {
-    ("kn", "k_n", "normal_stiffness", "stiffness"): (("emod", f"{_EMOD}; or p_wave_speed, which gives it"),),
-    ("ks", "k_s", "shear_stiffness"): (("kratio", "write kratio = kn/ks; contacts have it with fric > 0 only"),),
-    ("pb_kn", "pbkn"): (("pb_emod", f"{_PB_EMOD}; or p_wave_speed, which gives it"),),
-    ("pb_ks", "pbks"): (("pb_kratio", "write pb_kratio = pb_kn/pb_ks"),),
-    ("pb_deform", "deform", "deformability", "pb_modulus"): (("emod", "write emod, kratio, pb_emod and pb_kratio"),),
+    ("kn", "k_n", "normal_stiffness", "stiffness", "ball_kn", "hooke_kn"): (
+        ("emod", f"{_EMOD}; or p_wave_speed, which gives it{_MORE}"),
+        ("", f"in [material], {_EMOD}{_MORE}"),
+    ),
+    ("ks", "k_s", "kt", "shear_stiffness", "tangential_stiffness"): (
+        ("kratio", f"write kratio = kn/ks; contacts have it with fric > 0 only{_MORE}"),
+        ("", f"in [material], write kratio = kn/ks{_MORE}"),
+    ),
+    ("kn_ks", "kn_over_ks", "stiffness_ratio", "k_ratio", "kratio_c"): (("kratio", "write kratio, and pb_kratio"),),
+    ("emod_c", "e_c", "ec", "contact_modulus", "effective_modulus", "emod_star"): (("emod", f"{_EMOD}{_MORE}"),),
+    ("pb_kn", "pbkn"): (("pb_emod", f"{_PB_EMOD}; or p_wave_speed, which gives it{_MORE}"),),
+    ("pb_emod_c", "pb_e", "pb_ec", "pbe", "bond_modulus"): (("pb_emod", f"{_PB_EMOD}{_MORE}"),),
+    ("pb_ks", "pbks"): (("pb_kratio", f"write pb_kratio = pb_kn/pb_ks{_MORE}"),),
+    ("pb_deform", "deform", "deformability", "pb_deformability", "pb_modulus"): (
+        ("emod", f"write emod, kratio, pb_emod and pb_kratio{_MORE}"),
+    ),
     (
         "young",
         "youngs",
@@ -93,45 +127,150 @@ NAMES: dict[tuple[str, ...], Advice] = {
     ("shear_modulus", "shear", "g_modulus", "mu_lame"): _OF_SHEAR,
     ("bulk_modulus", "bulk", "k_modulus", "lame", "lambda"): _OF_SHEAR,
     ("poisson", "poissons_ratio", "poisson_ratio", "nu", "pr", "poissonratio"): _POISSON,
-    ("porosity", "void_ratio", "solid_fraction", "poros"): _POROSITY,
-    ("damping", "local_damping", "damp", "damp_local", "alpha", "damping_ratio", "numerical_damping"): _LOCAL,
-    ("rayleigh", "rayleigh_damping", "beta", "quality_factor", "q_factor"): _LOCAL,
+    ("porosity", "void_ratio", "solid_fraction", "poros", "packing_fraction"): _POROSITY,
+    ("damping", "local_damping", "damp", "damp_local", "alpha", "damping_ratio", "numerical_damping"): (
+        ("alpha_n", "write alpha_n and alpha_s, factors of the springs; beta_p and beta_s, of the dashpots"),
+        *_LOCAL,
+    ),
+    ("rayleigh", "rayleigh_damping", "beta", "quality_factor", "q_factor", "qkappa", "qmu", "viscosity"): _LOCAL,
     ("dp_nratio", "dp_sratio", "dp_mode", "dashpot", "critical_damping", "restitution", "cn", "cs_damp"): (
         ("", _DASHPOTS),
     ),
-    ("rho", "dens", "mass_density", "ball_density", "grain_density", "particle_density", "unit_weight"): _DENSITY,
-    ("friction", "mu", "fric_coef", "friction_coefficient", "frictioncoefficient"): _FRICTION,
+    ("c_n", "c_s_dashpot", "impedance"): (("beta_p", "write beta_p and beta_s, factors of ρc, or leave them out"),),
+    ("rho", "dens", "mass_density", "ball_density", "density_ball", "grain_density", "particle_density"): _DENSITY,
+    ("mass", "unit_weight"): _DENSITY,
+    ("friction", "mu", "fric_coef", "friction_coefficient", "frictioncoefficient", "xmu"): _FRICTION,
     ("friction_angle", "phi", "frictionangle", "fric_angle", "pb_phi", "fa"): _ANGLE,
     ("cohesion", "coh", "pb_cohesion", "pb_shear_strength", "shear_strength", "cb_shearf", "cb_shears"): _COHESION,
     ("ten", "tension", "tensile_strength", "pb_tension", "pb_tensile_strength", "cb_tenf", "cb_tens"): _STRENGTH,
-    ("rmul", "pb_radius", "pb_rad", "radius_multiplier"): (("pb_rmul", "write pb_rmul, bond over smaller radius"),),
+    ("pb_strength", "bond_strength", "ucs", "tensilestrength"): _STRENGTH,
+    ("rmul", "pb_radius", "pb_rad", "radius_multiplier", "bond_radius"): (
+        ("pb_rmul", "write pb_rmul, bond over smaller radius"),
+    ),
+    ("pb_mcf", "mcf", "moment_contribution"): (("", f"there is none: bonds break as with pb_mcf = 1{_MORE}"),),
+    ("rgap", "reference_gap"): (("law", f"there is none: contacts are unloaded at their packed distance{_MORE}"),),
+    ("rr_fric", "rolling_friction", "rolling_resistance", "rfric"): (
+        ("", f"there is none: only bonds resist rotation{_MORE}"),
+    ),
+    ("model", "contact_model", "cmat", "bond_type", "contact_type", "cm_type"): (
+        ("law", 'write law, "elastic" or "linearpbond"'),
+        ("material", f'[material] has law, "elastic" or "linearpbond"{_MORE}'),
+    ),
+    ("contact", "contacts", "bond", "bonds", "property", "properties", "materials"): (
+        ("material", f"one [material] is for all contacts and bonds{_MORE}"),
+    ),
     ("vp", "v_p", "cp", "c_p", "pwave", "p_speed", "p_velocity", "velocity_p"): _P_SPEED,
     ("vs", "v_s", "cs", "c_s", "swave", "s_speed", "s_velocity", "velocity_s"): _S_SPEED,
     ("rmin", "r_min", "rmax", "r_max", "rlo", "rhi", "radius_min", "radius_max", "min_radius", "max_radius"): _RADII,
-    ("diameter", "d50", "particle_size", "grain_size", "ball_radius"): _RADII,
-    ("dt", "delta_t", "time_increment", "deltat"): _STEP,
-    ("time", "end_time", "t_end", "tend", "total_time", "tmax", "solve_time", "duration_s"): _TIME,
-    ("steps", "nsteps", "n_steps", "cycle", "cycles", "cyc", "iterations"): _STEPS,
-    ("gravity", "grav", "body_force"): _GRAVITY,
+    ("diameter", "d50", "particle_size", "grain_size", "ball_radius", "r", "rmean", "rrelfuzz"): _RADII,
+    ("psd", "gradation", "distribution", "size_distribution"): (
+        ("pattern", f'radii are uniform between two limits: with pattern "B" or "C", {_WIDTHS}{_MORE}'),
+    ),
+    ("n_balls", "num_balls", "number", "count", "n_particles", "ball_count", "nballs"): (
+        ("pattern", "there is none: it follows from size and radius; `dembound check` prints it"),
+    ),
+    ("lattice", "arrangement", "cubic", "hexagonal"): (("pattern", 'write pattern, "A" square, "B" or "C" random'),),
+    ("random_seed", "random", "rng"): (("seed", "write seed"), ("pattern", 'pattern "B" or "C" has seed')),
+    ("ball", "balls", "particles", "disks", "brick", "pbrick", "geometry", "mesh"): (
+        ("material", f"[packing] has pattern, size and radius{_MORE}"),
+    ),
+    ("periodic", "is_periodic"): (("pattern", 'two opposite sides may have type = "periodic"'),),
+    ("gap", "installation_gap", "interaction_radius"): (
+        ("bond_gap", "write bond_gap, m: gaps up to it are bonded"),
+        ("pattern", 'pattern "B" or "C" has bond_gap, m: gaps up to it are bonded'),
+    ),
+    ("clump", "clumps", "rblock", "rblocks"): (("material", f"there is none: particles are disks{_MORE}"),),
+    ("water", "fluid", "pore_pressure", "pore", "thermal", "temperature"): (("", "there is none: the body is dry"),),
+    ("dfn", "joint", "joints", "fracture", "fractures", "smooth_joint", "crack", "cracks"): (
+        (
+            "material",
+            f'there is none: with law = "linearpbond" bonds break at pb_ten or pb_coh, and runs record it{_MORE}',
+        ),
+    ),
+    ("layer", "layers", "soil", "strata", "zones"): (("packing", "there is one [material] for all disks"),),
+    ("dt", "delta_t", "time_increment", "deltat", "timestep"): _STEP,
+    ("courant", "cfl", "timestep_factor", "safety_factor"): (("safety", "write safety, share of the stability limit"),),
+    ("mass_scaling", "density_scaling", "timestep_scale", "scaling"): (
+        ("", f"there is none: it would change the speed of waves{_MORE}"),
+    ),
+    ("time", "end_time", "t_end", "tend", "t_max", "total_time", "tmax", "solve_time", "duration_s", "run_time"): _TIME,
+    ("steps", "nsteps", "n_steps", "nstep", "cycle", "cycles", "cyc", "iterations", "solve", "solver"): _STEPS,
+    ("ratio_average", "solve_ratio", "unbalanced_ratio", "unbalanced", "tolerance", "ratio_average_limit"): _REST,
+    ("large_strain", "large_strain_on", "small_strain"): (
+        ("geometry", 'write geometry, "updated" or "reference"'),
+        ("", '[material] has geometry, "updated" or "reference", with law = "linearpbond"'),
+    ),
+    ("threads", "nthreads", "cores", "nproc"): (("", "give the command: `dembound run CASE --threads 2`"),),
+    ("gravity", "grav", "body_force"): (("", _WEIGHT),),
     ("center", "origin", "centroid"): _CENTRE,
-    ("pos", "location", "coordinates"): _PLACE,
+    ("pos", "location", "coordinates", "coords", "x", "y"): _PLACE,
     ("width", "height", "box", "domain", "extent"): _SCENE,
     ("freq", "f0", "fpeak", "omega"): (("frequency", "write frequency, Hz"), ("period", "write period, s")),
     ("amp", "peak", "ppv", "velocity", "pgv"): (
         ("amplitude", "write amplitude, m/s"),
         ("scale", "write scale"),
+        ("wave_p", _VELOCITY),
+        ("beta_p", f'with type = "viscous_input", {_VELOCITY}'),
+    ),
+    ("vx", "vy", "xvel", "yvel", "velocity_x", "velocity_y", "velx", "vely", "wave", "input"): (
+        ("wave_p", _VELOCITY),
+        ("beta_p", f'with type = "viscous_input", {_VELOCITY}'),
+    ),
+    ("t0", "tshift", "delay", "onset", "time_shift"): (("start", "write start, s"),),
+    ("filename", "file", "table_file", "name_of_source_file"): (
+        ("path", "write path"),
+        ("start", 'with type = "file", write path'),
+    ),
+    ("source", "sources", "force", "forcesolution"): (
+        ("material", "[[load]] has a force and a position, or a side a wave; [wave.NAME] is its time factor"),
+        ("method", "[[load]] has a pressure, or an end a wave; [wave.NAME] is its time factor"),
+    ),
+    ("history", "histories", "hist", "measure", "measurement", "receiver", "receivers", "station", "stations"): (
+        ("", f"[[monitor]] has name and position, [output] stress and snapshots{_MORE}"),
+    ),
+    ("interval", "output_interval", "nvar", "frequency_of_output"): (
+        ("history_interval", "write history_interval, s; snapshots is their number"),
+    ),
+    ("component", "direction", "variable", "quantity"): (("position", "there is none: all components are recorded"),),
+    ("vtk", "dump", "save", "movie"): (("snapshots", "write snapshots, their number, and paraview"),),
+    ("excavation", "excavate", "tunnel", "null_zones"): (
+        ("stage", 'write stage = "after"'),
+        ("", '[[hole]] has a shape and stage = "after"'),
+    ),
+    ("wall", "walls", "facet"): (
+        ("material", f"[boundary.bottom] and other sides have a type; supports are in [static.boundary.bottom]{_MORE}"),
+    ),
+    ("fix", "fixed", "fixity"): (("beta_p", 'write type = "fixed" or "roller"'),),
+    ("quiet", "absorbing", "absorb", "pml", "free_field", "boundaries", "stacey", "apply"): (
+        ("type", 'write type = "viscous", "viscous_input", "free_field" or "outside"'),
+        ("material", 'each side has a type: [boundary.left] type = "viscous", "free_field" or "outside"'),
+        ("method", 'each end has a type: [boundary.left] type = "viscous" or "matched_layer"'),
     ),
     ("units", "unit", "system"): (("", "there is none: all numbers are in SI units, m, s, kg, Pa"),),
     ("thickness", "depth", "out_of_plane"): (("", "there is none: a scene is 1 m thick, forces are N/m"),),
     ("plane_strain", "plane_stress"): (("", "there is none: disks are plane, ν follows from kratio and pb_kratio"),),
-    ("sigma", "sxx", "syy", "sxy", "insitu", "initial_stress", "in_situ_stress", "confining"): (
-        ("stress", "write stress = [sxx, syy, sxy], Pa, tension positive"),
-        ("", "[static] has stress = [sxx, syy, sxy], Pa, tension positive"),
+    ("sigma", "sxx", "syy", "sxy", "insitu", "in_situ", "initial_stress", "in_situ_stress", "target_stress"): (
+        ("max_steps", f"write stress = [sxx, syy, sxy], Pa, tension positive{_MORE}"),
+        ("", _IN_SITU),
+    ),
+    ("servo", "confining", "confinement", "sigma1", "sigma3"): (
+        ("max_steps", f"write stress = [sxx, syy, sxy], Pa, tension positive{_MORE}"),
+        ("", _IN_SITU),
+    ),
+    ("k0", "k_0", "lateral_pressure"): (
+        ("", f"there is none: [static] has stress = [sxx, syy, sxy]; under weight it is C12/C11, see `check`{_MORE}"),
+    ),
+    ("stress", "traction", "sigma_n"): (
+        ("pressure", "write pressure, Pa, on the wall of a hole, or force, N/m"),
+        ("amplitude", "write amplitude, m/s: a wave of stress σ has v = σ/(ρc)"),
+        ("beta_p", "give wave_p or wave_s a wave of the incident velocity v = σ/(ρc), without a factor of 2"),
+        ("", _IN_SITU),
     ),
     ("horizon_length", "delta", "m_ratio"): (("horizon", "write horizon, in spacings: δ = horizon·Δx"),),
-    ("dx", "mesh_size", "cell_size", "grid_spacing", "h_max"): (
+    ("dx", "spacing", "mesh_size", "cell_size", "grid_spacing", "h_max"): (
         ("spacing", "write spacing, m"),
         ("element", "write element, m"),
+        ("pattern", "write radius, half the distance of two disks of a square lattice"),
     ),
     ("gc", "gf", "g_f", "g_c", "toughness", "energy_release_rate"): (
         ("fracture_energy", "write fracture_energy, J/m²"),

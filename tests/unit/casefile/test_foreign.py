@@ -1,6 +1,7 @@
 """Names of other codes are answered by what to write here, and only near spellings by a guess."""
 
 import re
+from pathlib import Path
 
 import pytest
 import tomli_w
@@ -10,6 +11,7 @@ from dembound.casefile.foreign import BY_NAME, NAMES, TYPE_OF
 from dembound.casefile.json_schema import json_schema
 from dembound.kinds import SCHEMAS
 
+DOCS = Path(__file__).parents[3] / "docs"
 DISKS = PUSHED | {"static": {"stress": [-1e6, -1e6, 0.0]}}
 
 
@@ -26,6 +28,11 @@ def about(tables: dict, path: str, key: str) -> str:
 SAID = """
 material | kn | write emod, Pa: the normal stiffness of a contact is k_n = emod
 material | pb_ks | write pb_kratio = pb_kn/pb_ks
+material | emod_c | write emod, Pa
+material | pb_radius | write pb_rmul
+material | pb_mcf | there is none: bonds break as with pb_mcf = 1
+material | contact_model | write law, "elastic" or "linearpbond"
+material | stress | [static] has stress = [sxx, syy, sxy]
 material | E | write p_wave_speed, which with density gives the moduli
 material | Poisson | there is none for disks: it follows from kratio and pb_kratio
 bar | poisson | there is none: a bar moves along its axis only
@@ -34,7 +41,10 @@ material | damping | write damp, which is for bringing bodies to rest: for waves
 static | damping | write damp
 bar | damping | write attenuation, 1/m
 packing | porosity | there is none: it follows from the packing's pattern
-packing | radius_max | write radius, the mean one, and radius_ratio
+packing | radius_max | write radius: disks of pattern "A" are equal, those of "B" and "C" also have radius_ratio
+packing | spacing | write radius, half the distance of two disks
+packing | gap | pattern "B" or "C" has bond_gap
+packing | n_balls | there is none: it follows from size and radius
 packing | width | write size = [width, height], m
 material | rho | write density, kg/m³
 bar | rho | write density, kg/m³
@@ -50,9 +60,20 @@ bar | tensile_strength | write strength, Pa
 bar | gf | write fracture_energy, J/m²
 run | dt | write time_step, s
 run | cycles | write duration, s: `dembound check` prints the number of steps
+run | mass_scaling | there is none: it would change the speed of waves
+run | courant | write safety
+static | cycles | write ratio
+static | solve_ratio | write ratio
+static | in_situ | write stress = [sxx, syy, sxy]
+static | k0 | there is none: [static] has stress
 material | gravity | give [[load]] an acceleration, such as [0.0, -9.81] m/s²
  | gravity | give [[load]] an acceleration
  | units | there is none: all numbers are in SI units
+ | in_situ | [static] has stress = [sxx, syy, sxy], Pa, tension positive: it replaces walls with a servo
+ | walls | [boundary.bottom] and other sides have a type
+ | ball | [packing] has pattern, size and radius
+ | dfn | there is none: with law = "linearpbond" bonds break
+ | measure | [[monitor]] has name and position
 static | sxx | write stress = [sxx, syy, sxy], Pa, tension positive
 bar | dx | write spacing, m
 """
@@ -63,6 +84,20 @@ def test_a_name_of_another_code_is_answered_by_what_to_write(path: str, key: str
     line = about(SPALLING if path == "bar" else DISKS, path, key)
     assert line.startswith(f"unknown {'key' if path else 'table'}; {said}")
     assert "did you mean" not in line
+
+
+def test_a_name_that_other_codes_have_in_several_tables_is_answered_by_the_keys_of_each() -> None:
+    side = PUSHED | {"boundary": {"right": {"type": "viscous", "stress": 1.0}}}
+    hole = PUSHED | {"hole": [{"name": "h", "type": "circle", "centre": [5.0, 1.0], "radius": 1.0, "diameter": 2.0}]}
+    wave = {"type": "ricker", "amplitude": 1.0, "frequency": 5.0, "stress": 1.0}
+    for tables, said in (
+        (side, "give wave_p or wave_s a wave of the incident velocity"),
+        (hole, "write radius, m"),
+        (PUSHED | {"wave": PUSHED["wave"] | {"w": wave}}, "write amplitude, m/s"),
+        (SPALLING | {"quiet": {}}, "each end has a type"),
+        (SPALLING | {"walls": {}}, "allowed: title, bar"),
+    ):
+        assert any(f"; {said}" in line for line in problems_of(tomli_w.dumps(tables))), said
 
 
 def test_only_a_near_key_is_guessed() -> None:
@@ -99,6 +134,8 @@ def test_every_advice_names_keys_and_types_that_there_are() -> None:
             assert text
             for named in re.findall(r"\bwrite (\w+)", text):
                 assert named in known, text
+            for page in re.findall(r"see docs: (\S+)", text):
+                assert (DOCS / f"{page}.md").is_file()
     assert set(TYPE_OF.values()) <= known
     assert len(BY_NAME) == sum(map(len, NAMES))  # no name has two answers
 
