@@ -116,24 +116,24 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
         alike = ("time step", "time step, kinks", *(f"{side} side" for side in case.driving))
         causes = replace(causes, found=[cause for cause in causes.found if cause.name not in alike])
     found = Budget(causes.motions or recorded, causes, "rock" if scene.reference in ("finer", "layer") else "disks")
-    wanted = reference_of(scene, case, recorded)
+    expected = reference_of(scene, case, recorded)
     rows = [
-        _row(scene, found, recorded, name, quantity, wanted[name][quantity])
-        for name in wanted
-        for quantity in wanted[name]
+        _row(scene, found, recorded, name, quantity, expected[name][quantity])
+        for name in expected
+        for quantity in expected[name]
     ]
     return [row | {"stepping": stepping} for row in rows], [
         f"{each.name}: {each.words}" for each in causes.unknown
     ] + list(causes.limits)
 
 
-def _row(scene: Scene, found: Any, recorded: Any, monitor: str, quantity: str, wanted: np.ndarray) -> dict[str, Any]:
+def _row(scene: Scene, found: Any, recorded: Any, monitor: str, quantity: str, expected: np.ndarray) -> dict[str, Any]:
     """One row."""
     own = recorded[monitor]
     column = own.component(quantity)
-    values, wanted = own.values[quantity][:, column], wanted[:, column]
-    size = float(np.linalg.norm(wanted))
-    truth = float(np.linalg.norm(values - wanted)) / size
+    values, expected = own.values[quantity][:, column], expected[:, column]
+    size = float(np.linalg.norm(expected))
+    truth = float(np.linalg.norm(values - expected)) / size
     total = found.total(monitor, quantity)
     estimate = total.value
     row = {
@@ -142,7 +142,7 @@ def _row(scene: Scene, found: Any, recorded: Any, monitor: str, quantity: str, w
         "monitor": monitor,
         "quantity": quantity,
         "truth": truth,
-        "peak": float(np.abs(values - wanted).max() / np.abs(values).max()),
+        "peak": float(np.abs(values - expected).max() / np.abs(values).max()),
         "estimate": estimate,
         "upper": total.upper,
         "ratio": estimate / truth if truth > 0.0 else np.nan,
@@ -155,7 +155,7 @@ def _row(scene: Scene, found: Any, recorded: Any, monitor: str, quantity: str, w
     part = sides.parts.get(monitor, {}).get(quantity) if sides else None
     if isinstance(part, np.ndarray):
         error = replace(found.motions[monitor], values={quantity: part}).at(own.time).values[quantity]
-        row["corrected"] = float(np.linalg.norm(values - error[:, column] - wanted)) / size
+        row["corrected"] = float(np.linalg.norm(values - error[:, column] - expected)) / size
         row["gained"] = truth / row["corrected"]
     return row
 

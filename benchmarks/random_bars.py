@@ -118,8 +118,8 @@ def random_bar(seed: int) -> BarCase:
 def reference(case: BarCase, step: float) -> dict[str, History]:
     """The motion at the places of the monitors by finite differences in steps of at most `step` (s)."""
     parts, names = case.bar.parts, [given.name for given in case.bar.range]
-    wanted = max(step, case.bar.travel_time / CELLS)
-    cells = [max(20, math.ceil(part.length / part.speed / wanted)) for part in parts]
+    requested = max(step, case.bar.travel_time / CELLS)
+    cells = [max(20, math.ceil(part.length / part.speed / requested)) for part in parts]
     if (damped := any(part.drag_rate for part in parts)) and case.side("right").is_artificial:
         grown = math.ceil(0.6 * case.run.duration * parts[-1].speed / parts[-1].length) + 1
     else:
@@ -205,8 +205,8 @@ def grid(case: BarCase) -> Iterator[BarCase]:
     spacings: list[dict[str, Any]] = [{}]
     for factor in np.geomspace(16.0, 1 / 8, 15) if not breaks else []:
         for even in (False, True)[: len(parts)]:
-            wanted = [factor * (unit * p.speed if even else p.length / p.cells) for p in parts]
-            counts = [max(2, round(p.length / w)) for p, w in zip(parts, wanted, strict=True)]
+            requested = [factor * (unit * p.speed if even else p.length / p.cells) for p in parts]
+            counts = [max(2, round(p.length / w)) for p, w in zip(parts, requested, strict=True)]
             spacings.append({key: p.length / n for key, p, n in zip(keys, parts, counts, strict=True)})
     rest = {"duration": case.run.duration}
     steps = [{}, {"run": rest | {"courant": 1.0}}, {"run": rest | {"safety": 0.98}}]

@@ -212,7 +212,7 @@ def _row(small: list[Ran], whole: list[Ran]) -> dict[str, Any]:
 def shipped(names: list[str]) -> Iterator[tuple[str, Any, list[str]]]:
     """Names, cases and reductions of the shipped cases, without those of charts, which are the same scenes.
 
-    names : those that are wanted; all without names.
+    names : those that are requested; all without names.
     """
     from dembound.kinds import load, with_changes
 

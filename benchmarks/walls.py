@@ -95,14 +95,14 @@ def key(quantity: str, radius: float) -> str:
     return f"{quantity} at {10.0 * radius:.0f} tenths"  # a point would be one of a format
 
 
-def row(name: str, own: Mapping[str, Any], wanted: Mapping[str, Any], along: float) -> dict[str, Any]:
+def row(name: str, own: Mapping[str, Any], expected: Mapping[str, Any], along: float) -> dict[str, Any]:
     """A row of the table: errors by quantity and distance, times the disks along the smaller half."""
     found: dict[str, Any] = {"hole": name, "along": along}
     for quantity in QUANTITIES:
         for radius in RADII:
             errors = []
-            for monitor in (each for each in wanted if each.startswith(f"{radius:g}_")):
-                right = wanted[monitor][quantity][:, :2]
+            for monitor in (each for each in expected if each.startswith(f"{radius:g}_")):
+                right = expected[monitor][quantity][:, :2]
                 column = int(np.argmax(np.abs(right).max(axis=0)))
                 rest = own[monitor].values[quantity][:, column] - right[:, column]
                 errors.append(np.linalg.norm(rest) / np.linalg.norm(right[:, column]))
@@ -138,9 +138,9 @@ def rectangles() -> Iterator[dict[str, Any]]:
             own = motions(tables)[1]
             same = [{"name": name, "position": history.place.tolist()} for name, history in own.items()]
             fine = motions(tables | {"packing": lattice(wide, wide, 1.0 / FINER), "monitor": same})[1]
-            wanted = {name: fine[name].at(history.time).values for name, history in own.items()}
+            expected = {name: fine[name].at(history.time).values for name, history in own.items()}
             name = f"A square, {'pressure' if lasting is None else f'wave × {lasting:g}'}, × 2/3"
-            yield row(name, own, wanted, n)
+            yield row(name, own, expected, n)
 
 
 if __name__ == "__main__":

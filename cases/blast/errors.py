@@ -58,8 +58,8 @@ class Motion:
     ) -> None:
         scene = build(case)
         from_axis = scene.positions[: scene.recorded] - case.hole[0].centre
-        wanted = RADIUS * np.outer(DISTANCES, np.exp(1j * np.radians(angles))).ravel()
-        nodes = cKDTree(from_axis).query(np.stack([wanted.real, wanted.imag], axis=1), disks)[1].reshape(-1, disks)
+        points = RADIUS * np.outer(DISTANCES, np.exp(1j * np.radians(angles))).ravel()
+        nodes = cKDTree(from_axis).query(np.stack([points.real, points.imag], axis=1), disks)[1].reshape(-1, disks)
         self.step = step or choose_step(scene)[0]
         self.places = from_axis[nodes].mean(axis=1)
         record = Simulation(scene, self.step, nodes.ravel().tolist()).advance(round(case.run.duration / self.step))

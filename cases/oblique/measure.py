@@ -104,8 +104,8 @@ def compare(changes: Changes, larger: Changes, places: dict[str, tuple[float, fl
     assert scene.outside is not None
     size = f"{scene.disk_count:,} disks, {scene.outside.count:,} nodes of {scene.outside.settings.element:.3g} m"
     return size, {
-        name: 100.0 * float(np.sqrt(np.mean((own[name] - wanted) ** 2) / np.mean(wanted**2)))
-        for name, wanted in reference.items()
+        name: 100.0 * float(np.sqrt(np.mean((own[name] - expected) ** 2) / np.mean(expected**2)))
+        for name, expected in reference.items()
         if not name.endswith(".free_field")
     }
 

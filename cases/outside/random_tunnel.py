@@ -60,8 +60,8 @@ def disks_at_places(seed: int, given: argparse.Namespace) -> np.ndarray:
     """Positions (places·MEAN, 2) m of the disks next to the places."""
     scene = build(tunnel("325 m × 300 m", seed, np.zeros((0, 2)), given))
     disks = scene.positions[scene.seam.count : scene.disk_count]
-    wanted = np.array([0.5 * WIDTH, HEIGHT - DEPTH]) + list(PLACES.values())
-    return disks[cKDTree(disks).query(wanted, MEAN)[1].ravel()]
+    requested = np.array([0.5 * WIDTH, HEIGHT - DEPTH]) + list(PLACES.values())
+    return disks[cKDTree(disks).query(requested, MEAN)[1].ravel()]
 
 
 def motions(seed: int, given: argparse.Namespace) -> dict[str, np.ndarray]:

@@ -183,7 +183,9 @@ def write_record(path: Path, name: str, histories: dict[str, History]) -> None:
         file.attrs.update({"name": name, "case": "", "version": __version__, "size": size, "complete": True})
         for monitor, history in histories.items():
             group = file.create_group(f"histories/{monitor}")
-            group.attrs.update({"particle": -1, "position": history.position, "wanted": history.position, "unit": "m"})
+            group.attrs.update(
+                {"particle": -1, "position": history.position, "requested": history.position, "unit": "m"}
+            )
             group.create_dataset("time", data=history.time).attrs["unit"] = "s"
             for kind, unit in (("displacement", "m, m, rad"), ("velocity", "m/s, m/s, rad/s")):
                 group.create_dataset(kind, data=np.pad(getattr(history, kind), [(0, 0), (0, 1)])).attrs["unit"] = unit

@@ -1,4 +1,4 @@
-"""The error of a motion: what each cause adds at every monitor, and all together, of these disks or of the rock."""
+"""The error of a motion: each cause's contribution at every monitor, and the total, relative to disks or rock."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from dembound.accuracy.repeat import Repeat
 class Share:
     """An error, RMS over RMS.
 
-    value : expected; upper : with what causes may be larger, and with bounds. at_least : whether a cause is unknown.
+    value : expected error; upper : error with 95 % factors of causes and with causes of which only a bound is known.
+    at_least : whether a cause is unknown.
     """
 
     value: float
@@ -27,15 +28,15 @@ class Share:
 
     @property
     def is_known(self) -> bool:
-        """Whether anything is known."""
+        """Whether the expected error or an upper value is known."""
         return math.isfinite(self.upper)
 
 
 @dataclass(frozen=True)
 class Worst:
-    """The largest error of all monitors that are not quiet.
+    """The largest error over all monitors whose motion is not negligible.
 
-    by : shares of its causes that are not zero.
+    by : nonzero shares by cause.
     """
 
     share: Share
@@ -50,10 +51,10 @@ class Budget:
 
     Attributes
     ----------
-    motions : monitor -> motion, up to the time from which on nothing is known.
-    causes : what contributes to the error.
-    of : the truth that applies where none is asked for.
-    cpu_seconds : CPU time that it took, s. repeat : the run once more with a smaller time step, if that was asked for.
+    motions : histories by monitor, cut where errors are no longer known.
+    causes : contributions to the error.
+    of : truth ("disks" or "rock") that applies where none is given.
+    cpu_seconds : CPU time of the estimate, s. repeat : the run repeated with a smaller time step, if requested.
     """
 
     motions: Motions
@@ -63,7 +64,7 @@ class Budget:
     repeat: Repeat | None = None
 
     def shares(self, monitor: str, quantity: str, of: Truth = "rock") -> dict[str, float]:
-        """RMS errors over the RMS of the motion, by cause; only those that are known."""
+        """RMS errors over the RMS of the motion, by cause, without unknown causes."""
         own = self.motions[monitor]
         found = {cause.name: cause.share(monitor, quantity, own) for cause in self.causes.found if cause.counts(of)}
         return {name: share for name, share in found.items() if math.isfinite(share)}
@@ -71,9 +72,11 @@ class Budget:
     def total(self, monitor: str, quantity: str, of: Truth | None = None) -> Share:
         """The error by all causes; nan if none is known.
 
-        Histories add up, as those of the grid and of the time step have opposite signs; where only the size of an error
-        is known, or it is one sample of a random error, squares do. So do bounds, and what causes, those found alike
-        together, may be larger than their value; the upper value has these, too.
+        Error histories are added, as errors of grid and time step have opposite signs. Squares are added where only the
+        size
+        of an error is known or where it is a random sample. The upper value adds the root of the sum of squares of
+        bounds and
+        of the excess, factor − 1 times the error, of each group of causes found in the same way.
         """
         counted = [cause for cause in self.causes.found if cause.counts(of or self.of)]
         known = [cause for cause in counted if math.isfinite(cause.share(monitor, quantity, self.motions[monitor]))]
@@ -96,7 +99,7 @@ class Budget:
         return math.hypot(share_of(sum(histories, np.zeros_like(own.values[quantity])), quantity, own), *sizes)
 
     def _split(self, causes: Sequence[Cause], monitor: str, quantity: str) -> tuple[list[np.ndarray], list[float]]:
-        """The known errors of some causes: histories (k, c), and where only they are known sizes."""
+        """Known errors of some causes: histories (k, c), and sizes of causes without a history."""
         histories, sizes = [], []
         for cause in causes:
             part = cause.parts.get(monitor, {}).get(quantity, math.nan)
@@ -107,11 +110,11 @@ class Budget:
         return histories, [size for size in sizes if math.isfinite(size)]
 
     def quantities(self, monitor: str) -> list[str]:
-        """Quantities of a monitor that has any."""
+        """Quantities recorded at a monitor."""
         return [name for name in QUANTITIES if name in self.motions[monitor].values]
 
     def largest(self, monitor: str, of: Truth | None = None) -> tuple[str, Share]:
-        """The quantity of a monitor with the largest error, and this; nan if nothing is known there."""
+        """The quantity of a monitor with the largest error, and that error; nan if none is known."""
         totals = {quantity: self.total(monitor, quantity, of) for quantity in self.quantities(monitor)}
         return max(
             ((q, share) for q, share in totals.items() if share.is_known),
@@ -120,7 +123,7 @@ class Budget:
         )
 
     def worst(self, of: Truth | None = None) -> Worst:
-        """The largest error of all quantities at monitors that are not quiet; none is 0."""
+        """The largest error of all quantities at monitors whose motion is not negligible; 0 without such monitors."""
         found = [
             Worst(share, name, quantity)
             for name in self.motions
@@ -134,7 +137,7 @@ class Budget:
         return Worst(worst.share, worst.monitor, worst.quantity, {c: each for c, each in shares.items() if each > 0.0})
 
     def correction(self, monitor: str, quantity: str) -> np.ndarray | None:
-        """What the sides add (k, c), to be subtracted; None if it is not known without echoes."""
+        """Error history (k, c) of the sides, to be subtracted; None if it is not known without echoes."""
         cause = next((cause for cause in self.causes.found if cause.name == SIDES), None)
         if cause is None or not self.causes.echo_free:
             return None
@@ -142,9 +145,9 @@ class Budget:
         return part if isinstance(part, np.ndarray) else None
 
     def band(self, monitor: str, quantity: str) -> np.ndarray:
-        """Half the width (k, c) of the band around the motion in which the exact one is expected.
+        """Half the width (k, c) of the band around the motion in which the exact motion is expected.
 
-        The size of the sum of all errors at every time; of those of which only the size is known, this times the RMS.
+        The absolute sum of all error histories at every time, plus the RMS size of errors without a history.
         """
         values = self.motions[monitor].values[quantity]
         counted = [cause for cause in self.causes.found if cause.counts(self.of)]
@@ -153,7 +156,7 @@ class Budget:
         return np.asarray(np.abs(sum(histories, np.zeros_like(values))) + sum(sizes) * usual)
 
     def summary(self) -> dict[str, Any]:
-        """Plain JSON values: totals and shares by monitor, quantity and cause, and how they were found."""
+        """Totals and shares by monitor, quantity and cause, and how they were found, as plain JSON values."""
         known = [cause for cause in self.causes.found if cause.how != "unknown"]
         return {
             "of": self.of,
@@ -170,7 +173,7 @@ class Budget:
         }
 
     def _of_monitor(self, name: str) -> Iterator[tuple[str, dict[str, Any]]]:
-        """The errors of each quantity of a monitor of which something is known."""
+        """Quantities of a monitor with their known errors."""
         for quantity in self.quantities(name):
             both = {of: self.total(name, quantity, of) for of in ("disks", "rock")}  # type: ignore[arg-type]
             if both["rock"].is_known:

@@ -1,4 +1,4 @@
-"""Causes of the error of a run, each with what it adds to the motion of the monitors."""
+"""Causes of the error of a run, each with its contribution to the motion at the monitors."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ How = Literal["measured", "companion", "formula", "bound", "unknown"]
 """
 
 Truth = Literal["disks", "rock"]
-"""What an error is one of: of these disks, which are the material, so that only what is done to them is wrong; or of
-the rock, for which they are a grid."""
+"""Reference of an error: "disks", which are the material, so that only sides, steps and loads err; or "rock", which
+the disks discretise."""
 
 TITLES: dict[Truth, str] = {"disks": "of these disks", "rock": "of the rock"}
 """Truths in words."""
@@ -44,9 +44,12 @@ Parts = Mapping[str, Mapping[str, np.ndarray | float]]
 class Cause:
     """One cause of errors.
 
-    words : how its errors were found; of one that is not known why. parts : see `Parts`; of a bound they are at most
-    as large. of_disks : whether it is none where the disks are the material. factor : 95 % of true errors are at most
-    so many times as large. is_sample : whether they are a sample of a random error, of which only the RMS counts.
+    words : how its errors were found, or why they are not known. parts : contributions, see `Parts`; largest possible
+    ones
+    for a bound. of_disks : whether the cause is an error only relative to the rock, not where the disks are the
+    material.
+    factor : 95 % of true errors are at most this factor larger. is_sample : whether errors are one sample of a random
+    error, of which only the RMS counts.
     """
 
     name: str
@@ -63,23 +66,23 @@ class Cause:
         return cls(name, words, {}, "unknown", of_disks)
 
     def counts(self, of: Truth) -> bool:
-        """Whether it is an error of this truth."""
+        """Whether the cause is an error relative to a truth, "disks" or "rock"."""
         return of == "rock" or not self.of_disks
 
     @property
     def largest(self) -> float:
-        """The largest of its sizes, for a cause of which only these are known."""
+        """The largest size over all monitors and quantities, for a cause without histories."""
         sizes = [size for each in self.parts.values() for size in each.values()]
         return max((size for size in sizes if isinstance(size, float)), default=0.0)
 
     def share(self, monitor: str, quantity: str, motion: History) -> float:
-        """RMS of its part over that of the motion, of the component with the largest; nan if not known."""
+        """RMS of the contribution over RMS of the motion, for the component with the largest motion; nan if unknown."""
         part = self.parts.get(monitor, {}).get(quantity, np.nan)
         return part if isinstance(part, float) else share_of(part, quantity, motion)
 
 
 def share_of(part: np.ndarray, quantity: str, motion: History) -> float:
-    """RMS of a part (k, c) of a motion over that of the motion, of the component with the largest; nan at rest."""
+    """RMS of a contribution (k, c) over RMS of the motion, for the component with the largest motion; nan at rest."""
     column = motion.component(quantity)
     size = float(np.linalg.norm(motion.values[quantity][:, column]))
     return float(np.linalg.norm(part[:, column])) / size if size > 0.0 else np.nan
@@ -87,11 +90,11 @@ def share_of(part: np.ndarray, quantity: str, motion: History) -> float:
 
 @dataclass(frozen=True)
 class Causes:
-    """Causes, and what is said about them.
+    """Causes of errors with their notes.
 
-    limits : what of the motion is not covered, and why, a line each. notes : other lines. cost : work that was spent,
-    over that of the run. echo_free : whether what `SIDES` adds is known without echoes of the larger run. motions : the
-    motion without what sides add, relative to which errors are; None: that which was recorded.
+    limits : a line for each part of the motion that is not covered, with the reason. notes : other lines. cost : work
+    spent over the work of the run. echo_free : whether the cause `SIDES` is known without echoes of the larger run.
+    motions : the motion without errors of sides, to which errors are relative; None: the recorded motion.
     """
 
     found: Sequence[Cause]
@@ -102,7 +105,7 @@ class Causes:
     motions: Motions | None = None
 
     def __add__(self, other: Causes) -> Causes:
-        """The causes of both, and what is said about both."""
+        """The causes, limits and notes of both."""
         return Causes(
             [*self.found, *other.found],
             [*self.limits, *other.limits],

@@ -48,8 +48,9 @@ AnyCase = TypeVar("AnyCase", bound=Case)
 class Choice(Generic[AnyCase]):
     """A change of a case.
 
-    name : in words. changes : dotted keys with their new values, None for what is left out, as `with_changes` takes
-    them. case : the changed case.
+    name : in words. changes : new values by dotted key, None for keys left out, as `with_changes` takes them. case :
+    the
+    changed case.
     """
 
     name: str
@@ -99,7 +100,7 @@ def combinations(case: Case, vary: Mapping[str, Sequence[Any]]) -> dict[str, dic
 
 
 def is_valid(case: Case, changes: Mapping[str, Any], use: Callable[[Any], object] = bool) -> bool:
-    """Whether a changed case has no mistake; nor has it one that only its use, such as `build`, finds."""
+    """Whether a changed case has no mistake, nor one that appears only when it is used (`use`, such as `build`)."""
     try:
         use(changed(case, changes))
     except CaseError:
@@ -118,7 +119,7 @@ def changed(case: AnyCase, changes: Mapping[str, Any]) -> AnyCase:
 
 
 def digest(case: Case) -> str:
-    """A text that is the same for cases that give the same results: of tables, waves and version."""
+    """A hash that is equal for cases with equal results: same tables, waves and program version."""
     tables = {key: _filled(table) for key, table in tomllib.loads(case.text).items() if key not in NO_RESULTS}
     found = hashlib.sha256(json.dumps([__version__, tables], sort_keys=True).encode())
     times = np.linspace(0.0, case.run.duration, WAVE_SAMPLES)
@@ -128,7 +129,7 @@ def digest(case: Case) -> str:
 
 
 def _filled(table: Any) -> Any:
-    """A table without the empty ones inside, which say as much as none."""
+    """A table without empty tables inside, which are equivalent to missing ones."""
     if not isinstance(table, dict):
         return table
     return {key: _filled(value) for key, value in table.items() if value != {}}

@@ -16,9 +16,9 @@ Delay = Callable[[np.ndarray], np.ndarray]
 
 
 def error_of_delay(time: np.ndarray, velocity: np.ndarray, delay: Delay) -> tuple[np.ndarray, np.ndarray]:
-    """What a delay adds to a recorded velocity (k, c) m/s and its displacement (k, c) m, at evenly spaced times (k,).
+    """Errors that a delay adds to a recorded velocity (k, c) m/s and its displacement (k, c) m, at even times (k,) s.
 
-    Frequencies at which no wave runs, whose delay is nan, count as an error as large as themselves.
+    Frequencies at which no wave runs, whose delay is nan, count as an error of 100 %.
     """
     step = float(time[1] - time[0]) if len(time) > 1 else 1.0
     count = len(time)
@@ -34,11 +34,13 @@ def error_of_delay(time: np.ndarray, velocity: np.ndarray, delay: Delay) -> tupl
 
 
 def error_of_steps(time: np.ndarray, velocity: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
-    """What steps (s) of central differences add to a velocity (k, c) m/s and its displacement (k, c) m.
+    """Errors that central differences with a step (s) add to a velocity (k, c) m/s and its displacement (k, c) m.
 
-    At even times (k,). What is stepped moves as it would at the frequency ω̂ = (2/Δt) sin(ωΔt/2), and its velocity is
-    the mean of those of two half steps, cos(ωΔt/2) iω̂u. Waves keep the amplitude of iω̂u, so that the velocity is
-    smaller by (ωΔt)²/8, and the displacement larger by (ωΔt)²/24.
+    time : even times (k,) s. The steps move the body as it would move at the frequency ω̂ = (2/Δt) sin(ωΔt/2); the
+    recorded
+    velocity is the mean of two half steps, cos(ωΔt/2) iω̂u. Waves keep the amplitude of iω̂u, so that the velocity is
+    too
+    small by (ωΔt)²/8, and the displacement too large by (ωΔt)²/24.
     """
     if len(time) < 2:
         return np.zeros_like(velocity), np.zeros_like(velocity)
@@ -47,11 +49,10 @@ def error_of_steps(time: np.ndarray, velocity: np.ndarray, step: float) -> tuple
 
 
 def _going_on(values: np.ndarray) -> np.ndarray:
-    """What is taken to follow values (k, c) that end within a wave, (k - 1, c): it goes on with their slope, and fades.
+    """Continuation (k - 1, c) of values (k, c) that end within a wave: same slope at first, then fading to zero.
 
     The values turned about the last one, times a polynomial that falls from 1 to 0 without slope and curvature at its
-    ends. Corners would have high frequencies, which no wave of the record has, and whose long delays would bring them
-    into the record.
+    ends. Corners would add high frequencies that no wave of the record has, whose long delays would enter the record.
     """
     turned = 2.0 * values[-1] - values[-2::-1]
     s = np.arange(1, len(values)) / len(values)
@@ -62,7 +63,7 @@ def _going_on(values: np.ndarray) -> np.ndarray:
 def part_above(
     time: np.ndarray, velocity: np.ndarray, least: float, power: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A velocity (k,) at even times (k,) s, its spectrum times ω^power, and the part of that above `least` rad/s."""
+    """A velocity (k,) at even times (k,) s with its spectrum times ω^power, and its part above `least` rad/s."""
     padded = np.concatenate([velocity, _going_on(velocity[:, None])[:, 0]])
     length = 2 ** int(np.ceil(np.log2(2 * len(padded))))
     omega = 2.0 * np.pi * np.fft.rfftfreq(length, float(time[1] - time[0]))

@@ -1,4 +1,4 @@
-"""What a changed case has in place of a given one: keys and values, as `with_changes` takes them."""
+"""Keys and values in which a changed case differs from a given one, as `with_changes` takes them."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _named(value: Any) -> Any:
 
 
 def in_toml(changes: Mapping[str, Any]) -> list[str]:
-    """A line ``key = value`` for each change, as TOML and ``--set`` take it; those that are left out are named so."""
+    """A line ``key = value`` for each change, as TOML and ``--set`` take it; removed keys are marked as left out."""
     return [f"{key}: left out" if value is None else f"{key} = {_value(value)}" for key, value in changes.items()]
 
 

@@ -1,4 +1,4 @@
-"""The end of a run before its duration, once its monitors are silent, where nothing that counts comes later."""
+"""Ending a run before its duration, once its monitors are silent and no later motion counts."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ KEYS = ("run", "run.duration", "run.until", "run.silent_level", "run.silent_for"
 class EarlierEnd:
     """An end before the duration.
 
-    case : with it. share : of the duration. lost : the error by the motion that is not recorded.
+    case : with this end. share : of the duration. lost : the error by the motion that is not recorded.
     """
 
     case: Case
@@ -43,9 +43,10 @@ class EarlierEnd:
 
 
 def ended_earlier(best: Proposal, given: Case, bound: float, motion: Motions, kept: Sequence[str]) -> Proposal:
-    """A choice that keeps its bound with the earliest end with which it still does; itself without one.
+    """A proposal with the earliest end with which it still keeps its bound; unchanged if no earlier end does.
 
-    given : the case that it is a choice for. motion : what its monitors are expected to record. kept : keys that do not
+    given : the case that the proposal is a choice for. motion : expected records of its monitors. kept : keys that do
+    not
     change.
     """
     for end in earlier_ends(best.case, motion, bound, kept) if best.holds(bound) else []:
@@ -58,10 +59,9 @@ def ended_earlier(best: Proposal, given: Case, bound: float, motion: Motions, ke
 
 
 def earlier_ends(case: Case, motion: Motions, bound: float, kept: Sequence[str]) -> list[EarlierEnd]:
-    """Ends of a run with `until = "silent"`, the earliest first; none that saves little.
+    """Ends of a run with `until = "silent"`, the earliest first, without ends that save little.
 
-    motion : what its monitors are expected to record, at the same times. bound : error asked for. kept : keys that do
-    not change.
+    motion : expected records of its monitors, at the same times. bound : error bound. kept : keys that do not change.
     """
     if case.run.until == "silent" or any(key in KEYS for key in kept):
         return []
@@ -91,7 +91,7 @@ def _ended(case: Case, motion: Motions, changes: Mapping[str, object]) -> Earlie
 
 
 def _lost(motion: Motions, end: float) -> Cause:
-    """What is not recorded after the end, with the sign of an error: of displacements what is added to the last one."""
+    """The error by unrecorded motion after the end: minus that motion, displacement relative to the last sample."""
     errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in motion.items():
         late = own.time > end

@@ -58,7 +58,7 @@ def estimate_results(folder: Path, repeat: bool = False) -> Budget:
 
 
 def _estimated(folder: Path, repeat: bool) -> tuple[Budget, Motions, dict[str, Any]]:
-    """The errors, what the monitors have recorded, and the summary of the run."""
+    """The errors, the records of the monitors, and the summary of the run."""
     record = folder / "run.h5"
     with open_record(record) as file:
         require_run(file)
@@ -88,16 +88,17 @@ def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, A
 def causes_of(case: Case, recorded: Motions, time_step: float, work: float) -> Causes:
     """The causes of the error of a run.
 
-    case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step (s),
-    work (in the unit of its kind) : of the run, of which companions may take a tenth, and `SHORT` in any case.
+    case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step : of
+    the run, s. work : of the run, in the unit of its kind of body; companions may take a tenth of it, or at least
+    `SHORT`.
     """
     return judge_of(case).causes(case, recorded, time_step, work, max(SHORT, BUDGET * work))
 
 
 def estimate_if_asked(case: Case, folder: Path) -> str:
-    """Estimate the error of a complete run of a case with ``output.estimate``; returns why this is not possible.
+    """Estimate the error of a complete run of a case with ``output.estimate``; returns the reason if it cannot.
 
-    Empty where it is, and for other cases: a run is complete without its estimate.
+    Returns "" after an estimate, and for cases without ``output.estimate``. A run is complete without its estimate.
     """
     if case.output.estimate:
         try:
@@ -110,7 +111,7 @@ def estimate_if_asked(case: Case, folder: Path) -> str:
 
 
 def _at_rest(found: Budget) -> Iterator[str]:
-    """Monitors of which nothing is known, unless it is already said why."""
+    """Lines on monitors whose errors are not known, unless another line gives the reason."""
     said = {line.split(":")[0] for line in found.causes.limits}
     for name in found.motions if found.causes.found else ():
         if name not in said and not found.largest(name)[1].is_known:
@@ -132,12 +133,12 @@ def _until(case: Case, summary: Mapping[str, Any]) -> Case:
 
 
 def _broken(first: float) -> str:
-    """What is not estimated: motion from the first break of a bond on, at a time (s)."""
+    """The line that motion after the first break of a bond, at a time (s), is not estimated."""
     return f"motion after {first:.4g} s, when the first bond broke"
 
 
 def _recorded(record: Path, until: float) -> tuple[dict[str, History], str]:
-    """What the monitors have recorded up to a time (s); where that is nothing, or too little, why."""
+    """Records of the monitors up to a time (s), and the reason if they are missing or too short."""
     found: dict[str, History] = {}
     samples = []
     with open_record(record) as file:
@@ -158,7 +159,7 @@ def _recorded(record: Path, until: float) -> tuple[dict[str, History], str]:
 
 
 def _too_little(samples: Sequence[int], until: float) -> str:
-    """Why histories of monitors, each with so many samples up to a time (s), are not enough."""
+    """Why histories of monitors with these numbers of samples up to a time (s) are too short."""
     most = max(samples, default=0)
     if not samples or (most == 0 and math.isinf(until)):
         return "has no monitor whose error could be estimated"
@@ -169,7 +170,7 @@ def _too_little(samples: Sequence[int], until: float) -> str:
 
 
 def _write(found: Budget, recorded: Motions, path: Path) -> None:
-    """Write the histories of errors, those without that of the sides where it is known, and the cracks of a repeat."""
+    """Write the error histories, the motions corrected for errors of sides where known, and the cracks of a repeat."""
     import h5py
 
     with replacing(path) as part, h5py.File(part, "w") as file:

@@ -1,12 +1,12 @@
-"""A scene enlarged until nothing returns from its artificial sides: the reference for what they reflect.
+"""A scene enlarged until nothing returns from its artificial sides: the reference for reflections of these sides.
 
 Sides that stand in for the ground or rock beyond them (`Boundary.is_artificial`) move outwards by whole bricks, until
 no wave can have been there and back at any monitor within the run. Loads, holes and monitors stay where they are. The
 disks of the case keep their places, as all bricks are alike, and move like those of an endless scene. Driven sides,
 mirror planes and periodic sides stay where they are, and free, fixed and roller sides that are not `artificial`.
 
-Where waves enter through an artificial side it stays, too: farther away it would send another wave, as packings
-disperse, or the same too late. What it reflects is then in the reference as in the case, and the sentence gives it.
+An artificial side through which waves enter also stays: farther away it would send another wave, as packings disperse,
+or the same wave too late. Its reflections are then in the reference as in the case, and the sentence says so.
 """
 
 from dembound.accuracy.judges import judge_of
@@ -20,7 +20,8 @@ MOST = 8_000_000
 def extended(case: Case, most: int = MOST) -> Extended:
     """The scene of a case enlarged so that nothing returns from artificial sides to its monitors within run.duration.
 
-    Without monitors nothing returns to any place of the scene. Its time step is that of the case. Bars are extended
+    Without monitors nothing returns to any place of the scene. The time step remains that of the case. Bars are
+    extended
     beyond ends that are neither loaded nor driven.
 
     most : largest number of particles or nodes.

@@ -37,26 +37,26 @@ class History:
         velocity: np.ndarray,
         stress: np.ndarray | None = None,
     ) -> History:
-        """A motion (k, c) m, rad and m/s, rad/s; stress : (k,) Pa, which only bars have."""
+        """A history from displacement (k, c) m, rad, velocity (k, c) m/s, rad/s and, of bars, stress (k,) Pa."""
         along = {} if stress is None else {"stress": stress[:, None]}
         return cls(place, time, {"displacement": displacement, "velocity": velocity, **along})
 
     @property
     def displacement(self) -> np.ndarray:
-        """(k, c) m, rad."""
+        """Displacement (k, c) m, rad."""
         return self.values["displacement"]
 
     @property
     def velocity(self) -> np.ndarray:
-        """(k, c) m/s, rad/s."""
+        """Velocity (k, c) m/s, rad/s."""
         return self.values["velocity"]
 
     def component(self, quantity: str) -> int:
-        """The column, along x or y, with the largest value, whose error counts."""
+        """The column, along x or y, with the largest value; errors are computed for this column."""
         return int(np.argmax(np.abs(self.values[quantity][:, :2]).max(axis=0, initial=0.0)))
 
     def at(self, times: np.ndarray) -> History:
-        """The motion at other times (m,) s; before the first and after the last sample that of these."""
+        """The motion interpolated at times (m,) s; constant before the first and after the last sample."""
         return History(
             self.place, times, {name: at_times(self.time, each, times) for name, each in self.values.items()}
         )
@@ -70,7 +70,7 @@ class History:
         return self._part(self.time < end)
 
     def _part(self, kept: np.ndarray) -> History:
-        """The history with some of its samples, kept (k,) bool; itself if these are all."""
+        """The history with the samples kept (k,) bool; itself if all are kept."""
         if kept.all():
             return self
         return History(self.place, self.time[kept], {name: each[kept] for name, each in self.values.items()})
@@ -81,18 +81,18 @@ Motions = Mapping[str, History]
 
 
 def loud(motions: Motions, quantity: str) -> list[str]:
-    """Monitors with a quantity that count, as it is not small there beside that at the loudest one."""
+    """Monitors at which a quantity is not negligible relative to the monitor with the largest one."""
     recorded = {name: each.values[quantity] for name, each in motions.items() if quantity in each.values}
     return loud_of({name: float(np.abs(values).max(initial=0.0)) for name, values in recorded.items()})
 
 
 def loud_of(peaks: Mapping[str, float]) -> list[str]:
-    """Monitors whose largest value is at least `QUIET` of that of the loudest one."""
+    """Monitors whose peak is at least `QUIET` times the largest peak of all monitors."""
     return [name for name, peak in peaks.items() if peak >= QUIET * max(peaks.values())]
 
 
 def earlier(motions: Motions, by: float) -> Motions:
-    """Motions of which all is earlier by a time (s), at later times if it is negative; themselves for none."""
+    """Motions shifted to earlier times by `by` s (to later ones if negative); unchanged for 0."""
     if by == 0.0:
         return motions
     return {name: replace(each, time=each.time - by) for name, each in motions.items()}

@@ -1,4 +1,4 @@
-"""What is asked of every kind of body about the errors of its cases."""
+"""The interface by which every kind of body gives the errors of its cases."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ S = TypeVar("S", bound=Scene)
 
 
 class Judge(ABC, Generic[C, S]):
-    """Errors of one kind of body: what causes them, what runs are compared with, which choices a case leaves open.
+    """Errors of one kind of body: their causes, references for comparison, and the choices that a case leaves open.
 
     Attributes
     ----------
     from_left_end : findings of its runs that are places, m from the left end, which extended scenes have elsewhere.
     first_break : its finding that is the time (s) of the first break.
-    quantities : what its monitors record, and charts compare.
+    quantities : quantities that its monitors record and charts compare.
     """
 
     from_left_end: ClassVar[Sequence[str]] = ()
@@ -45,41 +45,43 @@ class Judge(ABC, Generic[C, S]):
         """
 
     def truth(self, case: C) -> Truth:
-        """What the errors of a case are those of where this is not said; by default of the rock."""
+        """The truth, "disks" or "rock", to which errors of a case are relative by default."""
         return "rock"
 
     def of_other_seeds(self, case: C, motions: Motions, seeds: int) -> Causes:
-        """What the seed of a random packing adds to the motion of its monitors, from runs with several seeds.
+        """The scatter of the monitors' motion between random packings, from runs with several seeds.
 
         motions : by monitor, at the times at which it is found. Raises CaseError for a case without a seed, and the
-        errors of runs.
+        errors of
+        runs.
         """
         raise no_seed(case)
 
     def notes(self, case: C, summary: Mapping[str, Any]) -> Iterator[str]:
-        """Lines about how far the estimate of a run holds, given the summary of its results; by default none."""
+        """Lines on the validity of a run's estimate, from the summary of its results; by default none."""
         yield from ()
 
     @abstractmethod
     def advise(self, case: C, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None) -> Advice:
-        """The errors of a case, and the cheapest choices for several bounds; kept : keys not changed.
+        """The errors of a case, and the cheapest choices for several bounds.
 
-        longest : CPU seconds that the steps of a choice may take; None: as many as by default.
+        kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: the default.
 
         Raises CaseError for cases whose errors are not known, that do not move at their monitors, and where no choice
-        keeps those values; the errors of building a scene and of runs.
+        keeps
+        the values of `kept`; the errors of building a scene and of runs.
         """
 
     @abstractmethod
     def extended(self, case: C, most: int) -> Extended:
-        """The scene of a case enlarged to at most so many nodes, see `extended.extended`."""
+        """The scene of a case enlarged to at most `most` nodes, see `extended.extended`."""
 
     @abstractmethod
     def exact(self, case: C) -> Exact[C] | None:
-        """The exact solution of a case, None if none is known; raises CaseError if the reasons are."""
+        """The exact solution of a case, or None; raises CaseError if its loads belong to no known problem."""
 
     def finer(self, case: C, choices: Sequence[Choice[C]], outcomes: Sequence[Run]) -> FinerRun | None:
-        """A finer run than those of choices with these outcomes, with the ends of a case; by default there is none."""
+        """A run with a finer grid than those of all choices, whose runs are the outcomes; by default None."""
         return None
 
     @abstractmethod
@@ -87,7 +89,7 @@ class Judge(ABC, Generic[C, S]):
         """Choices for the chart of a case where neither the command nor the case gives any."""
 
     def hides_sides(self, case: C) -> bool:
-        """Whether errors of the body itself hide those of its sides beside an exact solution, by default not."""
+        """Whether, beside an exact solution, other errors of the body hide those of its sides; by default False."""
         return False
 
     def has_input_continuum(self, case: C) -> bool:
@@ -95,22 +97,22 @@ class Judge(ABC, Generic[C, S]):
         return False
 
     def cautions(self, cases: Sequence[C]) -> tuple[str, ...]:
-        """What errors of some cases beside a run of one of them include besides errors, a line each."""
+        """Lines on what differences between runs of some cases contain besides errors."""
         return ()
 
     def of_reference(self, case: C, motions: Motions, time_step: float) -> Causes:
-        """Causes of the error of a run that others are compared with, but for sides without waves; by default none.
+        """Causes of the error of a run used as reference, but for sides without waves; by default none.
 
         motions : at its monitors; time_step : s.
         """
         return Causes([])
 
     def quick(self, scene: S) -> Causes:
-        """Causes of the error of a scene that are known without its motion, the others as unknown; by default none."""
+        """Causes of errors of a scene; those that need its motion are unknown. By default none."""
         return Causes([])
 
 
 def no_seed(case: Case) -> CaseError:
-    """The error of a case without a random packing that is to be run with another seed."""
+    """The error for a request of other seeds for a case without a random packing."""
     reason = "the case has no random packing, so that nothing depends on a seed"
     return CaseError([f"--seeds: {reason}"], case.name)

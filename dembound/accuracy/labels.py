@@ -20,7 +20,7 @@ def label(case: Case, changes: Mapping[str, Any]) -> str:
 
 
 def short_keys(changes: Mapping[str, Any]) -> list[str]:
-    """The last names of keys, where that is clear, else the whole keys."""
+    """The last names of keys, or the full keys where the last names are ambiguous."""
     last = [key.rpartition(".")[2] for key in changes]
     return [
         short if key.count(".") == 1 and last.count(short) == 1 and not isinstance(value, Mapping) else key
@@ -29,7 +29,7 @@ def short_keys(changes: Mapping[str, Any]) -> list[str]:
 
 
 def in_words(value: Any) -> str:
-    """A value without quotes; of a table its type, and its other keys in brackets."""
+    """A value without quotes; a table as its type followed by its other keys in brackets."""
     if isinstance(value, Mapping):
         kind = [in_words(inner) for key, inner in value.items() if key in DISCRIMINATORS]
         rest = ", ".join(f"{key} {in_words(inner)}" for key, inner in value.items() if key not in DISCRIMINATORS)

@@ -1,4 +1,4 @@
-"""What enlarged scenes of all kinds have in common: sides that move, their size in words, and their time step."""
+"""Enlarged scenes of all kinds: sides that move, their size in words, and their time step."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,9 +24,9 @@ R = TypeVar("R", bound=Run)
 class Extended:
     """An enlarged case.
 
-    case : the enlarged case, called as the case with "_extended"; the case itself if no side has to move.
-    sentence : its size, the number of its particles, and what does not return from where.
-    inside : the scene of the case in it, m; a bar begins at zero however long it is.
+    case : the enlarged case, named as the case with "_extended"; the case itself if no side has to move.
+    sentence : its size, the number of its particles, and from which sides nothing returns.
+    inside : rectangle of the given case's scene in the enlarged one, m; a bar begins at zero whatever its length.
     """
 
     case: Case
@@ -66,7 +66,7 @@ def must_not_exceed(count: int, most: int, size: str, case: Case) -> None:
 
 
 def sentence_of(case: Case, what: str, moving: list[str]) -> str:
-    """The size of the scene, and what does not return."""
+    """The size of the enlarged scene, and the sides from which nothing returns, in words."""
     artificial = [side for side in SIDES if case.side(side).is_artificial]
     if not artificial:
         return f"reference: {what}, none of whose sides is artificial"

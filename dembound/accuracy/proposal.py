@@ -1,4 +1,4 @@
-"""Choices with the error and the cost that are expected of them, and those that are advised for a case."""
+"""Choices with their expected error and cost, and the choices advised for a case."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from dembound.casefile import Case
 
 @dataclass(frozen=True)
 class Proposal:
-    """A choice for a case, without changes if it is the case itself.
+    """A choice for a case; without changes it is the case itself.
 
-    cost : predicted CPU time of its steps, s. budget : its errors, of the truth that was asked for.
+    cost : predicted CPU time of its steps, s. budget : its errors, relative to the requested truth.
     """
 
     choice: Choice
@@ -27,17 +27,17 @@ class Proposal:
         return self.choice.case
 
     def holds(self, bound: float) -> bool:
-        """Whether its error, with all that it may be larger, is within a bound at all monitors."""
+        """Whether its upper error is within a bound at all monitors."""
         share = self.budget.worst().share
         return share.upper <= bound and not share.at_least
 
 
 @dataclass(frozen=True)
 class Advice:
-    """What is advised for a case.
+    """Choices advised for a case.
 
-    given : the case as it is. best : by error bound the cheapest choice that keeps it; where none does, that with the
-    smallest error. tried : number of choices whose error was found. cpu_seconds : CPU time that it took, s.
+    given : the case as it is. best : by error bound the cheapest choice that keeps it, or else the choice with the
+    smallest error. tried : number of choices whose error was computed. cpu_seconds : CPU time of the search, s.
     """
 
     given: Proposal

@@ -1,4 +1,4 @@
-"""Errors of choices: the histories of their monitors beside those of a reference."""
+"""Errors of choices: the histories of their monitors compared with those of a reference."""
 
 import math
 from abc import ABC, abstractmethod
@@ -25,13 +25,13 @@ MEASURED = {
     "finer": "in what choices differ, grid and time step",
     "finest": "in what choices differ",
 }
-"""Causes of the errors of choices beside a run, by the name of the reference."""
+"""Causes of errors that a comparison with a run measures, by the name of the reference."""
 
 C = TypeVar("C", bound=Case)
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Requested:
     """What is compared: a quantity, its component (None: the largest in the reference), a monitor (None: all)."""
 
     quantity: Quantity = "velocity"
@@ -41,13 +41,16 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Reference:
-    """What errors are measured against.
+    """A reference for errors.
 
-    name : "exact", "extended", "finer" or "finest"; sentence : it in words. motions : histories for a choice and its
-    run. until : s, time up to which histories are compared. findings : its numbers by name. own : numbers of the
-    choices that are the reference itself. cautions : what these errors do not include, in words. rest : monitor ->
-    quantity -> its own error by formula, RMS over RMS, which errors beside it do not include, of what `of` says. late :
-    (s) of its run, see `Run.late`. added, unknown : names of the causes in `rest`, and of those that are left out.
+    name : "exact", "extended", "finer" or "finest"; sentence : it in words. motions : its histories, given a choice and
+    the
+    run of the choice. until : s, time up to which histories are compared. findings : its findings by name. own :
+    numbers of
+    the choices that are the reference itself. cautions : lines on errors that the comparison does not include. rest :
+    monitor -> quantity -> error of the reference itself by formula, RMS over RMS, relative to the truth `of`. late :
+    delay
+    (s) of its motion, see `Run.late`. added, unknown : names of the causes included in `rest`, and of those left out.
     """
 
     name: str
@@ -65,7 +68,7 @@ class Reference:
 
     @property
     def covered(self) -> str:
-        """Which errors those of choices include, in words: what is measured, added and left out."""
+        """Which errors the compared ones include, in words: measured, added by formula, and left out."""
         measured = "all causes" if self.name == "exact" else MEASURED[self.name]
         added = [f"added by formula: {', '.join(self.added)}"] if self.added else []
         unknown = [f"not known: {', '.join(self.unknown)}"] if self.unknown else []
@@ -87,7 +90,7 @@ class Exact(ABC, Generic[C]):
 
     @abstractmethod
     def motions(self, case: C, recorded: Motions) -> dict[str, History]:
-        """The exact motion at the recorded positions; case : that of the choice they were recorded for."""
+        """The exact motion at the recorded positions and times of a choice, whose case is `case`."""
 
 
 class FinerRun(Protocol):
@@ -102,15 +105,16 @@ class FinerRun(Protocol):
         """Distance of its nodes, m."""
 
     def motions(self, run: Run, choice: Run) -> dict[str, History]:
-        """Histories at the monitors of a choice; run : of this case, or of that with ends farther away."""
+        """Histories at the monitors of a choice, from a run of this case, which may have been extended."""
 
 
 @dataclass(frozen=True)
 class MonitorError:
     """The error at one monitor.
 
-    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared,
-    0 if it is of rounding only. rest : RMS error of the reference itself, by formula.
+    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : distance of the compared particles, m, 0 if
+    it
+    is rounding only. rest : RMS error of the reference itself, by formula.
     """
 
     monitor: str
@@ -122,61 +126,61 @@ class MonitorError:
 
     @property
     def total(self) -> float:
-        """RMS error: what is measured and the error of the reference itself, as squares."""
+        """RMS error: root of the sum of squares of the measured error and of the reference's own error."""
         return math.hypot(self.rms, self.rest)
 
 
-def errors(choice: Choice, outcome: Run, reference: Reference, wanted: Wanted) -> list[MonitorError]:
-    """The errors of a choice at all monitors that are not quiet in the reference, the largest total first.
+def errors(choice: Choice, outcome: Run, reference: Reference, requested: Requested) -> list[MonitorError]:
+    """The errors of a choice at all monitors whose motion is not negligible, the largest total first.
 
-    Motion that is later than that of the reference, by where waves enter, is compared as if it were not.
+    The two histories are first shifted by their delays at the sides where waves enter (`Run.late`).
     Raises CaseError for a monitor that does not exist and if the reference does not move until histories end.
     """
     recorded, expected = (
         {name: history.until(reference.until) for name, history in each.items()}
         for each in (earlier(outcome.motions, outcome.late - reference.late), reference.motions(choice, outcome))
     )
-    names = _monitors(recorded, expected, wanted)
-    series = {name: expected[name].values[wanted.quantity] for name in names}
-    columns = {name: _column(values, wanted) for name, values in series.items()}
+    names = _monitors(recorded, expected, requested)
+    series = {name: expected[name].values[requested.quantity] for name in names}
+    columns = {name: _column(values, requested) for name, values in series.items()}
     peaks = {name: float(np.abs(values[:, columns[name]]).max(initial=0.0)) for name, values in series.items()}
     if not max(peaks.values()) > 0.0:
-        raise CaseError([f"monitor: the {wanted.quantity} is zero in the reference ({reference.sentence})"])
+        raise CaseError([f"monitor: the {requested.quantity} is zero in the reference ({reference.sentence})"])
     found = [
         replace(
-            _error(name, recorded[name], expected[name], columns[name], wanted),
-            rest=reference.rest.get(name, {}).get(wanted.quantity, 0.0),
+            _error(name, recorded[name], expected[name], columns[name], requested),
+            rest=reference.rest.get(name, {}).get(requested.quantity, 0.0),
         )
         for name in loud_of(peaks)
     ]
     return sorted(found, key=lambda error: -error.total)
 
 
-def _monitors(found: Motions, expected: Motions, wanted: Wanted) -> list[str]:
+def _monitors(found: Motions, expected: Motions, requested: Requested) -> list[str]:
     """The names of the monitors to compare."""
     names = [name for name in found if name in expected]
-    if wanted.monitor is not None and wanted.monitor not in names:
-        raise CaseError([f"--monitor: is {wanted.monitor}, must be one of {', '.join(names)}"])
-    return names if wanted.monitor is None else [wanted.monitor]
+    if requested.monitor is not None and requested.monitor not in names:
+        raise CaseError([f"--monitor: is {requested.monitor}, must be one of {', '.join(names)}"])
+    return names if requested.monitor is None else [requested.monitor]
 
 
-def _column(values: np.ndarray, wanted: Wanted) -> int:
+def _column(values: np.ndarray, requested: Requested) -> int:
     """The column to compare of values (k, c)."""
     if values.shape[1] == 1:
         return 0
-    if wanted.component is not None:
-        return COMPONENTS.index(wanted.component)
+    if requested.component is not None:
+        return COMPONENTS.index(requested.component)
     return int(np.argmax(np.abs(values[:, :2]).max(axis=0, initial=0.0)))
 
 
-def _error(name: str, found: History, expected: History, column: int, wanted: Wanted) -> MonitorError:
+def _error(name: str, found: History, expected: History, column: int, requested: Requested) -> MonitorError:
     """The error at a monitor, at the times of the history with fewer samples, so that the finer one is interpolated."""
-    mine, theirs = ((history.time, history.values[wanted.quantity][:, column]) for history in (found, expected))
+    mine, theirs = ((history.time, history.values[requested.quantity][:, column]) for history in (found, expected))
     if len(theirs[0]) > len(mine[0]):
         right, left = on_common_clock(*theirs, *mine)
     else:
         left, right = on_common_clock(*mine, *theirs)
     rms, peak = relative_errors(left, right)
     apart = distance(found.place, expected.place)
-    component = "stress" if wanted.quantity == "stress" else COMPONENTS[column]
+    component = "stress" if requested.quantity == "stress" else COMPONENTS[column]
     return MonitorError(name, component, rms, peak, apart)

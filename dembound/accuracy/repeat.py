@@ -1,7 +1,7 @@
-"""How far to trust a run with many cracks: the same case once more, with a slightly smaller time step.
+"""How reproducible a run with many cracks is: the same case repeated with a slightly smaller time step.
 
 Once bonds break, differences of the size of rounding decide which one is next, and grow with every break. So a run with
-another step is another draw of the same problem: what both have in common is the answer, the rest is chance.
+another step is another draw of the same problem: what both have in common is reproducible, the rest is chance.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ QUANTITIES: tuple[Quantity, ...] = ("velocity", "displacement")
 class Cracked:
     """The bonds that broke in a run after its start.
 
-    places (k, 2) m, times (k,) s; energy : taken by them, in a unit. size : m, mean diameter of the disks, of a bar its
-    largest spacing. time_step : s, of the run. in_bar : whether it is one of a bar.
+    places : (k, 2) m. times : (k,) s. energy : taken by the breaks, in a unit. size : mean diameter of the disks, or
+    largest spacing of a bar, m. time_step : of the run, s. in_bar : whether the run is one of a bar.
     """
 
     places: np.ndarray
@@ -75,24 +75,24 @@ class Cracked:
 
     @property
     def radius(self) -> float | None:
-        """Distance (m) from their mean place within which `MOST` of the cracks are; None without cracks."""
+        """Distance (m) from the mean place within which `MOST` of the cracks are; None without cracks."""
         if len(self) == 0:
             return None
         return float(np.quantile(np.hypot(*(self.places - self.places.mean(axis=0)).T), MOST))
 
     def summary(self) -> dict[str, Any]:
-        """Plain JSON values."""
+        """Number, places, times and energy of the cracks as plain JSON values."""
         return {"time_step": self.time_step, "cracks": len(self), "energy": self.energy, "radius": self.radius}
 
     @property
     def reach(self) -> float:
-        """Distance (m) within which one of another run is at the same place."""
+        """Distance (m) within which cracks of two runs count as being at the same place."""
         return NEAR * self.size
 
     def one_draw(self) -> Iterator[str]:
-        """A line that a run of disks with so many cracks is one draw of many; none if they are few.
+        """A line saying that a run of disks with so many cracks is one draw of many; none if cracks are few.
 
-        In a bar several bonds break at one place.
+        None for bars, in which several bonds break at one place.
         """
         if len(self) > MANY and not self.in_bar:
             yield (
@@ -103,10 +103,11 @@ class Cracked:
 
 @dataclass(frozen=True)
 class Repeat:
-    """The cracks of a run beside those of the same case with a smaller time step.
+    """The cracks of a run compared with those of the same case with a smaller time step.
 
-    changes : monitor -> quantity -> RMS of the difference of both motions, as vectors, over that of the run's, over all
-    of the run. cost : work of the second run over that of the first.
+    changes : monitor -> quantity -> RMS of the difference of both motions, as vectors, over the RMS of the run's
+    motion,
+    over the whole run. cost : work of the second run over that of the first.
     """
 
     own: Cracked
@@ -116,7 +117,7 @@ class Repeat:
 
     @property
     def common(self) -> float:
-        """Share of the cracks of both runs that have one of the other run within `reach`."""
+        """Share of the cracks of both runs that lie within `reach` of a crack of the other run."""
         near = _near(self.own, self.other) + _near(self.other, self.own)
         return near / (len(self.own) + len(self.other))
 
@@ -131,7 +132,7 @@ class Repeat:
         }
 
     def lines(self) -> list[str]:
-        """In words: how many cracks there are and where, what they take and how far they reach, and the motion."""
+        """Number, place, energy and extent of the cracks in both runs, and the change of motion, in words."""
         own, other = self.own, self.other
         cracks = (
             f"repeated at {other.time_step / own.time_step:.3g} of the time step: {len(other):,} bonds break in place "
@@ -154,7 +155,7 @@ def _in_words(radius: float | None) -> str:
 
 
 def repeated(case: Case, record: Path, own: Cracked, shorter: float = SHORTER) -> Repeat:
-    """The run of a record, whose cracks are `own`, once more with its time step times a factor.
+    """Run the case of a record, whose cracks are `own`, again with its time step times `shorter`.
 
     case : of the record, to the end of its run. The second run writes to a folder of its own, which is removed. Raises
     CaseError if no bond broke, and the errors of runs.
@@ -181,7 +182,7 @@ def _near(cracked: Cracked, other: Cracked) -> int:
 
 
 def _changes(record: Path, other: Path) -> dict[str, dict[str, float]]:
-    """Changes of all monitors that move, see `Repeat`."""
+    """Changes of motion at all monitors that move, see `Repeat`."""
     found: dict[str, dict[str, float]] = {}
     for quantity in QUANTITIES:
         again = read_histories(other, quantity)

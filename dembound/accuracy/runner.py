@@ -1,6 +1,6 @@
-"""Runs of choices and of companions: what they cost, and what their monitors record.
+"""Runs of choices and of companions: their costs, and the records of their monitors.
 
-A companion is a run beside that of a case, with other sides, disks or seeds, that shows what these do. No files of
+A companion is an additional run of a case with other sides, disks or seeds, which shows their effect. No files of
 results are written.
 """
 
@@ -41,8 +41,9 @@ class Run:
     ----------
     failure : why it has no results; empty otherwise.
     time_step, step_limit (s), steps : of the run. count : number of nodes that are stepped.
-    work : in the unit of its kind of body. threads : of the steps. late : s, by which all motion is later than that of
-    waves through the planes of sides, see `Kind.late`.
+    work : in the unit of its kind of body. threads : of the steps. late : delay of all motion relative to waves that
+    start
+    at the planes of sides, s, see `Kind.late`.
     motions, findings : by name. laws : names of those used.
     cpu, wall : s, of every timed run: CPU time of all threads while stepping, and time of the whole run.
     """
@@ -62,7 +63,7 @@ class Run:
     wall: list[float] = field(default_factory=list)
 
     def finding(self, name: str) -> float:
-        """A number that the run has found, such as the time (s) of its first break; infinite if it has not."""
+        """A number found by the run, such as the time (s) of its first break; infinite if it is missing."""
         found = self.findings.get(name)
         return math.inf if found is None else found.value
 
@@ -101,7 +102,7 @@ class Runner:
 
     Attributes
     ----------
-    work : of all runs that it has made, in the unit of their kind of body.
+    work : total work of its runs, in the unit of their kind of body.
     """
 
     def __init__(self, kept: Kept | None = None, shown: Shown = lambda name: nullcontext(Progress())) -> None:
@@ -135,7 +136,8 @@ def measure(
     The whole run is building, settling and stepping, without files and pictures. Times do not include compiling.
     watched : whether the energy ledger detects runs that gain energy; it interrupts the stepping a few hundred times,
     which takes longer than all steps of a short bar. inside : the part of the scene in which findings are looked for.
-    timed : whether the CPU time counts, which some systems take half a millisecond to tell; else it is elapsed time.
+    timed : whether CPU time is measured, a query that takes half a millisecond on some systems; else elapsed time is
+    returned in its place.
 
     Raises the errors of `running.plan` and of runs.
     """

@@ -16,21 +16,21 @@ WIDTH, CELL = 80, 9
 """Most characters in a line, and the most in a cell, such as ">= 0.14 %"."""
 
 WHAT = "errors: RMS over RMS, of the quantity with the largest error at each monitor"
-"""What the numbers are."""
+"""Explanation of the numbers, printed above the table."""
 
 MUCH = 3.0
 """Upper value over the value from which on only the upper one is given."""
 
 
 def lines_of(budget: Budget) -> list[str]:
-    """The table, what its numbers are, how they were found, and what is not known."""
+    """The table, explanations of its numbers, how they were found, and unknown causes."""
     if not any(budget.largest(name, "rock")[1].is_known for name in budget.motions):
         return _wrapped(_sentences(budget))
     return [WHAT, *_table(budget), *_wrapped(_sentences(budget))]
 
 
 def _table(budget: Budget) -> list[str]:
-    """The table."""
+    """The rows of the table."""
     causes = list(budget.causes.found)
     titles = ["how wrong is it", *(f"  {cause.name}" for cause in causes), *TITLES.values()]
     first = max(map(len, titles))
@@ -73,7 +73,7 @@ def _row(title: str, cells: Sequence[str], last: str, wide: Sequence[int]) -> st
 
 
 def _cells(budget: Budget, cause: Cause, names: Sequence[str]) -> Iterator[str]:
-    """The share of a cause at every monitor, of the quantity with the largest error."""
+    """The share of a cause at every monitor, for the quantity with the largest error."""
     for name in names:
         share = cause.share(name, budget.largest(name)[0], budget.motions[name])
         text = in_words(share) if math.isfinite(share) else "-"
@@ -81,7 +81,7 @@ def _cells(budget: Budget, cause: Cause, names: Sequence[str]) -> Iterator[str]:
 
 
 def _total(share: Share) -> str:
-    """A total: what is expected, or what is known of it."""
+    """A total error as text, with ≥ where a cause is unknown."""
     if not share.is_known:
         return "-"
     if share.at_least:
@@ -90,7 +90,7 @@ def _total(share: Share) -> str:
 
 
 def _at_most(totals: Sequence[Share]) -> str:
-    """Up to how much the largest of several totals may be."""
+    """Text of the upper value of the largest total."""
     known = [share for share in totals if share.is_known]
     if any(share.at_least for share in known):
         return "at least"
@@ -98,7 +98,7 @@ def _at_most(totals: Sequence[Share]) -> str:
 
 
 def _sentences(budget: Budget) -> Iterator[str]:
-    """How the errors were found, causes found alike together, then notes, and what is not known."""
+    """How the errors were found, with causes found in the same way in one line, then notes and unknown causes."""
     ways: dict[str, list[str]] = {}
     for cause in budget.causes.found:
         ways.setdefault(cause.words, []).append(cause.name)

@@ -31,13 +31,13 @@ def _sections(case: BarCase) -> Iterator[str]:
     """Sections that are left to the default beside others that are given, and neighbours of very unlike sections."""
     parts, names = case.bar.parts, [each.name for each in case.bar.range]
     given = [part.section is not None or part.diameter is not None for part in parts]
-    told = set()
+    reported = set()
     for left, right in itertools.pairwise(range(len(parts))):
         areas = parts[left].area, parts[right].area
         if given[left] != given[right] and areas[0] != areas[1]:
             bare, other = (left, right) if given[right] else (right, left)
-            if bare not in told:
-                told.add(bare)
+            if bare not in reported:
+                reported.add(bare)
                 yield (
                     f"bar.range[{bare + 1}, {names[bare]}]: has neither section nor diameter, so 1 m², beside "
                     f"{parts[other].area:.4g} m² of {names[other]}; give it one, or give [bar] that of all ranges"

@@ -29,16 +29,16 @@ def edited(text: str, changes: Mapping[str, Any]) -> str:
     return rewritten(text, applied(parsed(text), changes))
 
 
-def rewritten(text: str, wanted: Mapping[str, Any]) -> str:
-    """The text with as few lines changed as make it the text of the tables wanted; errors as of `edited`."""
+def rewritten(text: str, requested: Mapping[str, Any]) -> str:
+    """The text with as few lines changed as make it the text of the tables requested; errors as of `edited`."""
     for _ in range(ROUNDS):
         present = parsed(text)
-        if _same(present, wanted):
+        if _same(present, requested):
             return text
         page = _Page(text)
-        _edit(page, (), present, wanted)
+        _edit(page, (), present, requested)
         text = "".join(page.lines)
-    if not _same(parsed(text), wanted):
+    if not _same(parsed(text), requested):
         raise RuntimeError("the text of the case could not be edited")
     return text
 
@@ -52,42 +52,42 @@ def _same(one: Any, other: Any) -> bool:
     return repr(one) == repr(other)
 
 
-def _edit(page: "_Page", place: Place, present: Any, wanted: Any) -> None:
-    """Make what is at a place what is wanted there."""
-    if _same(present, wanted):
+def _edit(page: "_Page", place: Place, present: Any, requested: Any) -> None:
+    """Make what is at a place what is requested there."""
+    if _same(present, requested):
         return
-    if isinstance(present, Mapping) and isinstance(wanted, Mapping):
-        for key in present.keys() - wanted.keys():
+    if isinstance(present, Mapping) and isinstance(requested, Mapping):
+        for key in present.keys() - requested.keys():
             page.remove((*place, key))
-        for key, value in wanted.items():
+        for key, value in requested.items():
             if key in present:
                 _edit(page, (*place, key), present[key], value)
             else:
                 page.add(place, key, value)
-    elif _are_tables(present) and _are_tables(wanted):
-        _edit_list(page, place, present, wanted)
-    elif isinstance(present, list) and isinstance(wanted, list) and len(present) == len(wanted):
-        for index, pair in enumerate(zip(present, wanted, strict=True)):
+    elif _are_tables(present) and _are_tables(requested):
+        _edit_list(page, place, present, requested)
+    elif isinstance(present, list) and isinstance(requested, list) and len(present) == len(requested):
+        for index, pair in enumerate(zip(present, requested, strict=True)):
             _edit(page, (*place, index), *pair)
     elif page.value_at(place) is not None:
-        page.set(place, wanted)
+        page.set(place, requested)
     else:
         page.remove(place)
-        page.add(place[:-1], str(place[-1]), wanted)
+        page.add(place[:-1], str(place[-1]), requested)
 
 
-def _edit_list(page: "_Page", place: Place, present: Sequence[Any], wanted: Sequence[Any]) -> None:
+def _edit_list(page: "_Page", place: Place, present: Sequence[Any], requested: Sequence[Any]) -> None:
     """Edit a list of tables, each by comparison with the one of its name."""
-    old, new = ([repr(each.get("name", each)) for each in tables] for tables in (present, wanted))
+    old, new = ([repr(each.get("name", each)) for each in tables] for tables in (present, requested))
     steps = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
     for _, begin, end, first, last in reversed(steps):  # from the last, as numbers of earlier ones remain
         shared = min(end - begin, last - first)
         for index in reversed(range(begin + shared, end)):
             page.remove((*place, index))
         for index in range(first + shared, last):
-            page.insert(place, begin + index - first, wanted[index])
+            page.insert(place, begin + index - first, requested[index])
         for index in range(shared):
-            _edit(page, (*place, begin + index), present[begin + index], wanted[first + index])
+            _edit(page, (*place, begin + index), present[begin + index], requested[first + index])
 
 
 def _are_tables(value: Any) -> bool:

@@ -87,7 +87,7 @@ def chart(
     from dembound.accuracy.chart.study import Options
     from dembound.accuracy.chart.study import chart as make
     from dembound.accuracy.choice import combinations, parsed
-    from dembound.accuracy.reference import Wanted
+    from dembound.accuracy.reference import Requested
 
     prepare_computing(threads)
     loaded = load_case(case, changes, name)
@@ -96,7 +96,7 @@ def chart(
         repeats=repeats,
         reference=reference.value if reference else None,
         of=of.value if of else None,
-        wanted=Wanted(quantity.value, component.value if component else None, monitor),
+        requested=Requested(quantity.value, component.value if component else None, monitor),
     )
     folder = output / f"{loaded.name}_chart"
 

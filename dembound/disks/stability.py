@@ -122,9 +122,9 @@ def own_step(case: DiskCase, limit: float) -> float:
 
     Raises CaseError when the step is automatic and nothing can vibrate.
     """
-    wanted = case.run.time_step
-    if wanted != "auto":
-        return float(wanted)
+    requested = case.run.time_step
+    if requested != "auto":
+        return float(requested)
     step = case.run.safety * limit
     if not np.isfinite(step):
         raise CaseError(["run.time_step: is auto but nothing in the scene can vibrate, give a step in s"])

@@ -72,9 +72,9 @@ def wavenumber(frequency: np.ndarray, radius: float, poisson: float, speed: floa
     from scipy.interpolate import CubicSpline
 
     reduced, speeds = _table(poisson)
-    wanted = np.minimum(np.asarray(frequency) * radius / (2.0 * np.pi * speed), reduced[-1])  # (a/Λ)(c/c_0)
+    requested = np.minimum(np.asarray(frequency) * radius / (2.0 * np.pi * speed), reduced[-1])  # (a/Λ)(c/c_0)
     level = ((1, 0.0), "not-a-knot")  # c/c_0 is even in ω
-    return np.asarray(frequency) / (speed * CubicSpline(reduced, speeds, bc_type=level)(wanted))
+    return np.asarray(frequency) / (speed * CubicSpline(reduced, speeds, bc_type=level)(requested))
 
 
 @lru_cache(maxsize=4)

@@ -170,8 +170,8 @@ def _doubts_of_speed(gauge: Gauge, found: Findings) -> Iterator[str]:
     if first is not None and doubts and abs(found.speed.value / first.value - 1.0) > FAR:
         raise CaseError([f"RECORD: {doubts[0]}"])
     yield from doubts
-    told = list(misfit(found, "wave speed"))
-    yield from told or uncertain_speed(found.speed)
+    misfits = list(misfit(found, "wave speed"))
+    yield from misfits or uncertain_speed(found.speed)
 
 
 def _problems_with_options(

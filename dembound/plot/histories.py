@@ -128,8 +128,10 @@ def twin_of(monitor: str) -> str:
 
 def monitor_title(monitor: str, histories: Sequence[MonitorRecord]) -> str:
     """Name of the monitor, position of its particle in each run, and the given position if it differs."""
-    places, wanted = (list(dict.fromkeys(getattr(each, what) for each in histories)) for what in ("place", "wanted"))
-    asked = "" if places == wanted else f", wanted {_in_words(wanted)}"
+    places, requested = (
+        list(dict.fromkeys(getattr(each, what) for each in histories)) for what in ("place", "requested")
+    )
+    asked = "" if places == requested else f", requested {_in_words(requested)}"
     return f"{monitor} at {_in_words(places)}{asked}"
 
 
@@ -140,16 +142,16 @@ def _in_words(places: Sequence[str]) -> str:
     return f"{places[0]} and {len(places) - 1} other places"
 
 
-def chosen_monitors(runs: Sequence[Path], histories: Sequence[Histories], wanted: Sequence[str] | None) -> list[str]:
+def chosen_monitors(runs: Sequence[Path], histories: Sequence[Histories], requested: Sequence[str] | None) -> list[str]:
     """Names of the monitors that have a panel, each once; errors as in `plot_histories`."""
     known = list(dict.fromkeys(name for run in histories for name in run))
     if not known:
         raise CaseError([f"{', '.join(map(str, runs))}: has no monitors to show"])
-    if wanted is None:
+    if requested is None:
         return [name for name in known if name.removesuffix(FREE_FIELD) == name]
-    if unknown := [name for name in wanted if name not in known]:
+    if unknown := [name for name in requested if name not in known]:
         raise CaseError([f"monitor: is {name}, must be one of {', '.join(known)}" for name in unknown])
-    return list(dict.fromkeys(wanted))
+    return list(dict.fromkeys(requested))
 
 
 def shown_columns(histories: Sequence[Histories], component: Component | None) -> list[int]:

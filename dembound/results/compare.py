@@ -57,14 +57,14 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity, as_recorded: 
     with the largest error. Raises CaseError when nothing can be compared.
     """
     names = record_names([reference, *runs])[1:]
-    wanted, late = read_histories(reference, quantity), delay_of(reference)
+    expected, late = read_histories(reference, quantity), delay_of(reference)
     found = []
     for name, path in zip(names, runs, strict=True):
         own = read_histories(path, quantity).items()
         delays = () if as_recorded else (delay_of(path), late)
-        shift = _shift(*delays, reference=wanted)
-        shared = [(key, history) for key, history in own if key in wanted]
-        lines = [_difference(name, key, history, wanted[key], quantity, shift) for key, history in shared]
+        shift = _shift(*delays, reference=expected)
+        shared = [(key, history) for key, history in own if key in expected]
+        lines = [_difference(name, key, history, expected[key], quantity, shift) for key, history in shared]
         found += _with_one_twin(lines)
     if not found:
         raise CaseError([f"{reference}: has no monitor in common with the runs to compare"])
@@ -127,23 +127,24 @@ def _difference(
 
 
 def on_common_clock(
-    time: np.ndarray, values: np.ndarray, wanted_time: np.ndarray, wanted: np.ndarray
+    time: np.ndarray, values: np.ndarray, expected_time: np.ndarray, expected: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Two histories at the same times (m,): those of the second one, up to the end of the shorter one.
+    """Values of two histories at the sample times (m,) of the second, up to the end of the shorter one.
 
-    time (k,) s and values (k,) or (k, c) of the first one, which is interpolated; wanted_time (l,) and wanted (l,) or
-    (l, c) of the second.
+    time : (k,) s, values : (k,) or (k, c) of the first history, which is interpolated. expected_time : (l,) s, expected
+    :
+    (l,) or (l, c) of the second.
     """
-    shared = wanted_time <= min(time[-1], wanted_time[-1])
-    return at_times(time, values, wanted_time[shared]), wanted[shared]
+    shared = expected_time <= min(time[-1], expected_time[-1])
+    return at_times(time, values, expected_time[shared]), expected[shared]
 
 
-def relative_errors(values: np.ndarray, wanted: np.ndarray) -> tuple[float, float]:
-    """RMS of the difference over that of the wanted values, and largest difference over their peak.
+def relative_errors(values: np.ndarray, expected: np.ndarray) -> tuple[float, float]:
+    """RMS of the difference over that of the expected values, and largest difference over their peak.
 
-    values, wanted : (m,), or vectors (m, c), whose lengths count.
+    values, expected : (m,), or vectors (m, c), whose lengths count.
     """
-    error, size = (np.hypot.reduce(each.reshape(len(each), -1), axis=1) for each in (values - wanted, wanted))
+    error, size = (np.hypot.reduce(each.reshape(len(each), -1), axis=1) for each in (values - expected, expected))
     return float(np.sqrt(np.sum(error**2) / np.sum(size**2))), float(error.max() / size.max())
 
 

@@ -44,7 +44,7 @@ class MonitorRecord:
     values: np.ndarray
     position: np.ndarray
     place: str
-    wanted: str
+    requested: str
 
 
 def read_histories(path: Path, quantity: Quantity) -> dict[str, MonitorRecord]:
@@ -87,6 +87,6 @@ def _read(group: h5py.Group, quantity: Quantity, size: list[float]) -> MonitorRe
     time, values = history_of(group, SOURCES.get(quantity, quantity))
     if quantity in SOURCES:
         values = np.gradient(values, time, axis=0)
-    place, wanted = (place_in_words(group.attrs[name], size) for name in ("position", "wanted"))
+    place, requested = (place_in_words(group.attrs[name], size) for name in ("position", "requested"))
     position = np.array(group.attrs["position"], dtype=np.float64)
-    return MonitorRecord(time, values.reshape(len(time), -1) / SCALES[quantity], position, place, wanted)
+    return MonitorRecord(time, values.reshape(len(time), -1) / SCALES[quantity], position, place, requested)

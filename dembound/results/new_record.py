@@ -20,7 +20,7 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             surface (s, 4), ends of the element sides at its free surface; tie (t, 2), where ties to
                             disks act; if the case asks for it peak_velocity (m,)
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle
-                            (−1 in a continuum), position, wanted; on a bar density, section, youngs_modulus,
+                            (−1 in a continuum), position, requested; on a bar density, section, youngs_modulus,
                             wave_speed, attenuation there, and with ranges the name of its range
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
                             side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
@@ -132,9 +132,9 @@ def require_laid_out(file: h5py.File, scene: Scene, counts: Mapping[str, int]) -
 
     with h5py.File("layout", "w", driver="core", backing_store=False) as layout:
         _lay_out(layout, scene, [name for name in scene.sides if name in scene.edges], list(scene.sides))
-        wanted: dict[str, Any] = {}
-        layout.visititems(wanted.__setitem__)
-        for name, item in wanted.items():
+        expected: dict[str, Any] = {}
+        layout.visititems(expected.__setitem__)
+        for name, item in expected.items():
             kind = name.split("/")[0]
             _require_like(file, name, item, counts["sides" if kind == "boundaries" else kind] if _grows(item) else 0)
     snapshots = snapshots_of(file)[: counts["snapshots"]]
@@ -153,17 +153,17 @@ def _grows(item: h5py.HLObject) -> bool:
     return hasattr(item, "maxshape") and item.shape != () and item.maxshape[0] is None
 
 
-def _require_like(file: h5py.File, name: str, wanted: h5py.HLObject, rows: int) -> None:
+def _require_like(file: h5py.File, name: str, expected: h5py.HLObject, rows: int) -> None:
     """Raise RecordError if a record has nothing like a group or dataset of its layout, fewer rows, or as `finite`."""
     found = file.get(name)
-    if found is None or hasattr(found, "dtype") != hasattr(wanted, "dtype"):
+    if found is None or hasattr(found, "dtype") != hasattr(expected, "dtype"):
         raise _lacking(file, name)
-    if missing := sorted(set(wanted.attrs) - set(found.attrs)):
+    if missing := sorted(set(expected.attrs) - set(found.attrs)):
         raise _lacking(file, f"{name}, attribute {missing[0]}")
-    if not hasattr(wanted, "dtype"):
+    if not hasattr(expected, "dtype"):
         return
-    shapes = [(each.dtype.kind, each.shape[1:] if _grows(each) else each.shape) for each in (found, wanted)]
-    if shapes[0] != shapes[1] or _grows(found) != _grows(wanted):
+    shapes = [(each.dtype.kind, each.shape[1:] if _grows(each) else each.shape) for each in (found, expected)]
+    if shapes[0] != shapes[1] or _grows(found) != _grows(expected):
         raise _lacking(file, f"{name} as this case records it")
     if _grows(found) and len(found) < rows:
         raise _lacking(file, f"{rows} rows in {name}, it has {len(found)}")
@@ -217,9 +217,9 @@ def header_of(run: Run) -> dict[str, Any]:
 def header_of_monitor(scene: Scene, name: str) -> dict[str, Any]:
     """The attributes of a monitor's history."""
     place = scene.monitored[name]
-    wanted = scene.places.get(name, place)  # a twin has no given position
+    requested = scene.places.get(name, place)  # a twin has no given position
     particle = NO_PARTICLE if name in scene.between else scene.monitors[name]
-    places = {"particle": particle, "position": place, "wanted": wanted, "unit": "m"}
+    places = {"particle": particle, "position": place, "requested": requested, "unit": "m"}
     return places | scene.attributes_of_monitor(name)
 
 

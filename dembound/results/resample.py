@@ -17,30 +17,30 @@ FEWEST = 4
 """Samples of the shortest smooth piece through which a cubic is put."""
 
 
-def at_times(time: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Values (m,) or (m, c) of a history at wanted times (m,) s; before its first and after its last sample these.
+def at_times(time: np.ndarray, values: np.ndarray, requested: np.ndarray) -> np.ndarray:
+    """Values (m,) or (m, c) of a history at requested times (m,) s; before its first and after its last sample these.
 
     time (k,) s, ascending, and values (k,) or (k, c) of the history. A sine with 20 samples a period has an error of
     0.002 % then, with straight lines 0.9 %. A spline through a jump would overshoot for some samples on both sides.
     """
-    if np.array_equal(time, wanted):
+    if np.array_equal(time, requested):
         return values
-    inside = np.clip(wanted, time[0], time[-1])
+    inside = np.clip(requested, time[0], time[-1])
     columns = [_column(time, column, inside) for column in np.atleast_2d(values.T)]
     return np.array(columns).T.reshape(-1, *values.shape[1:])
 
 
-def _column(time: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Values of one column at other times; wanted : between the first and the last sample."""
+def _column(time: np.ndarray, values: np.ndarray, requested: np.ndarray) -> np.ndarray:
+    """Values of one column at other times; requested : between the first and the last sample."""
     from scipy.interpolate import CubicSpline
 
     jumps = _jumps(values)
-    found = np.interp(wanted, time, values)
+    found = np.interp(requested, time, values)
     ends = np.flatnonzero(np.diff(np.concatenate([[True], jumps, [True]]).astype(int)))
     for first, last in zip(ends[::2], ends[1::2], strict=True):  # without a jump between them
         if last - first + 1 >= FEWEST:
-            own = (wanted >= time[first]) & (wanted <= time[last])
-            found[own] = CubicSpline(time[first : last + 1], values[first : last + 1])(wanted[own])
+            own = (requested >= time[first]) & (requested <= time[last])
+            found[own] = CubicSpline(time[first : last + 1], values[first : last + 1])(requested[own])
     return found
 
 

@@ -254,9 +254,9 @@ def _require_attributes(file: h5py.File, name: str, item: Any, size: int, is_hea
             raise _refused(file, where, "has no value")
         _require_plain(file, where, dtype)
         if is_header and key in ATTRIBUTES:
-            kinds, wanted = ATTRIBUTES[key]
-            if dtype.kind not in kinds or shape != wanted:
-                raise _refused(file, where, f"must be {'text' if kinds == TEXTS else _numbers(wanted)}")
+            kinds, permitted = ATTRIBUTES[key]
+            if dtype.kind not in kinds or shape != permitted:
+                raise _refused(file, where, f"must be {'text' if kinds == TEXTS else _numbers(permitted)}")
         if dtype.kind == "O":
             texts = np.empty(shape, dtype)
             found.read(texts)

@@ -173,7 +173,7 @@ def calibrate(
         shortened=[*shortened, *reduced(scene).scene.reduced, *left_out],
         particles=scene.count,
     )
-    foretold = start is None and table.factors[motion] == "matched"
+    predicted = start is None and table.factors[motion] == "matched"
     beta = factors_in(scene, side)[motion] if start is None else start
     if not 0.0 < beta < np.inf:
         raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
@@ -186,7 +186,7 @@ def calibrate(
         found.steps += steps
         if report is not None:
             report(found)
-        if abs(found.ratio[-1] - 1.0) < tolerance and not (foretold and len(found.beta) == 1):
+        if abs(found.ratio[-1] - 1.0) < tolerance and not (predicted and len(found.beta) == 1):
             found.result = known(beta, found.ratio[-1])
             return found
         beta = _next_beta(found)

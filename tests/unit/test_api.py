@@ -99,7 +99,7 @@ def test_results_are_those_of_the_record(results) -> None:
         for name in ("time", "velocity", "displacement"):
             assert np.array_equal(results.histories["middle"][name], file["histories/middle"][name][:])
         assert results.histories["middle"].units("time") == (text_of(file["histories/middle/time"].attrs["unit"]),)
-        assert results.histories["middle"].attributes["wanted"] == [2.6, 0.3]
+        assert results.histories["middle"].attributes["requested"] == [2.6, 0.3]
         assert [shot.attributes["time"] for shot in results.snapshots] == [
             group.attrs["time"] for group in file["snapshots"].values()
         ]

@@ -37,8 +37,8 @@ def error(diameter: float, on: str) -> float:
     scene = quarter(diameter, **{"load.blast.on": on})
     disks = scene.positions[: scene.recorded]
     angles = np.radians(np.linspace(5.0, 85.0, 8))
-    wanted = 1.5 * RADIUS * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    nodes = [int(np.argmin(np.hypot(*(disks - place).T))) for place in wanted]
+    requested = 1.5 * RADIUS * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    nodes = [int(np.argmin(np.hypot(*(disks - place).T))) for place in requested]
     step = choose_step(scene)[0]
     record = Simulation(scene, step, nodes).advance(round(scene.case.run.duration / step))
     times, distances = step * np.arange(len(record)), np.hypot(*disks[nodes].T)

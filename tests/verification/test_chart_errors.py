@@ -12,7 +12,7 @@ import tomli_w
 
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.choice import combinations
-from dembound.accuracy.reference import Wanted
+from dembound.accuracy.reference import Requested
 from dembound.kinds import loads, with_changes
 from dembound.running import Progress
 
@@ -24,7 +24,7 @@ def quiet(name: str):
 
 def errors_of(case, vary, folder, quantity="velocity", reference="exact") -> list[float]:
     """RMS errors of all choices."""
-    options = Options(combinations(case, vary), 1, reference, Wanted(quantity))
+    options = Options(combinations(case, vary), 1, reference, Requested(quantity))
     found = chart(case, options, folder, False, quiet)
     assert found.reference.name == reference
     return [line.errors[0].rms for line in found.lines]

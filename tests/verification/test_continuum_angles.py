@@ -82,9 +82,9 @@ def test_forces_of_a_row_are_those_of_the_kernels(side: Side) -> None:
     for element, own in enumerate(row.elements):
         nodes = row.mesh.nodes[own][:-1].ravel()  # its upper edge is that of the next row
         found = forces[:, nodes] + row.accelerated**2 * body.mass[nodes] * u[:, nodes]
-        wanted = (row.spread(element) @ expected).reshape(2, -1)[:, : len(nodes)]
+        exact = (row.spread(element) @ expected).reshape(2, -1)[:, : len(nodes)]
         moves = ~row.mesh.held[nodes]
-        np.testing.assert_allclose(found[:, moves], wanted[:, moves], rtol=0.0, atol=1e-8 * np.abs(wanted).max())
+        np.testing.assert_allclose(found[:, moves], exact[:, moves], rtol=0.0, atol=1e-8 * np.abs(exact).max())
 
 
 def _forces(part: GridPart, u: np.ndarray, row: Row) -> np.ndarray:

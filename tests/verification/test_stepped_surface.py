@@ -55,10 +55,10 @@ def histories(case, step: float) -> np.ndarray:
     return scene.observed(record, step * np.arange(len(record)))[:, :, [0, 1, 3, 4]]
 
 
-def errors(own: np.ndarray, wanted: np.ndarray, mean: int = 1) -> np.ndarray:
+def errors(own: np.ndarray, expected: np.ndarray, mean: int = 1) -> np.ndarray:
     """RMS deviations (2, p) of displacements and velocities over the motion, at the means of so many places each."""
-    own, wanted = (each.reshape(len(each), -1, mean, 2, 2).mean(axis=2) for each in (own, wanted))
-    return np.sqrt(np.sum((own - wanted) ** 2, axis=(0, 3)) / np.sum(wanted**2, axis=(0, 3))).T
+    own, expected = (each.reshape(len(each), -1, mean, 2, 2).mean(axis=2) for each in (own, expected))
+    return np.sqrt(np.sum((own - expected) ** 2, axis=(0, 3)) / np.sum(expected**2, axis=(0, 3))).T
 
 
 def both(case) -> tuple[np.ndarray, np.ndarray, float]:
@@ -74,13 +74,13 @@ def test_a_bench_moves_as_one_of_disks_alone(lab, monkeypatch) -> None:
     With the surface half a diameter too high beyond the floor, displacements have 9 to 50 times the error.
     """
     case = bench(lab, **monitors(PLACES))
-    own, wanted, step = both(case)
-    found = errors(own, wanted)
+    own, expected, step = both(case)
+    found = errors(own, expected)
 
     assert found[0].max() < 7e-4
     assert found[1].max() < 2.2e-3
     monkeypatch.setattr(PackedMaterial, "cut", shifted(PackedMaterial.cut, 0.5))
-    assert (errors(histories(case, step), wanted) > 5.0 * found).sum() >= 6
+    assert (errors(histories(case, step), expected) > 5.0 * found).sum() >= 6
 
 
 def shifted(cut, by: float):
@@ -97,8 +97,8 @@ def test_a_ridge_between_two_floors_moves_as_one_of_disks_alone(lab) -> None:
     places = {"left": (10.5, 19.5), "ridge": (24.5, 29.5), "right": (50.5, 11.5), "beyond": (64.5, 11.5)}
     force = {"name": "f", "force": [0.0, -1e6], "region": [-5.0, 19.0, 0.0, 20.0], "wave": "pulse"}
     case = bench(lab, hole=holes, load=[force], **monitors(places))
-    own, wanted, _ = both(case)
-    found = errors(own, wanted)
+    own, expected, _ = both(case)
+    found = errors(own, expected)
 
     assert build(case).outside.levels.keys() == {"left", "right"}
     assert found[0].max() < 7e-4
@@ -111,14 +111,14 @@ def test_the_floor_of_a_random_packing_has_a_skin(lab, monkeypatch) -> None:
     near_the_floor = monitors({"toe": (48.0, 16.8), "floor": (56.0, 16.8)}, 2)
     longer = {"wave.pulse.period": 0.2, "run.duration": 0.35}
     case = bench(lab, "B", 17.3, **near_the_floor, **longer, **{"packing.seed": 3})
-    own, wanted, step = both(case)
-    found = errors(own, wanted, 5)
+    own, expected, step = both(case)
+    found = errors(own, expected, 5)
 
     assert found[0].max() < 1.5e-3
     assert found[1].max() < 8e-3
     with_skin = PackedMaterial.cut
     monkeypatch.setattr(PackedMaterial, "cut", lambda ground, height: (with_skin(ground, height)[0],) * 2)
-    assert (errors(histories(case, step), wanted, 5)[0] > 2.0 * found[0]).all()
+    assert (errors(histories(case, step), expected, 5)[0] > 2.0 * found[0]).all()
 
 
 @pytest.mark.parametrize("pattern", ["A", "B"])

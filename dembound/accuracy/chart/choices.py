@@ -1,4 +1,4 @@
-"""The choices of a chart: those of the table ``[chart]`` of a case, or else those that its kind of body suggests."""
+"""The choices of a chart: from the table ``[chart]`` of a case, or else suggested by its kind of body."""
 
 from collections.abc import Mapping
 from typing import Any

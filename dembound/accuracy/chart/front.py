@@ -1,12 +1,12 @@
 """The Pareto front: choices for which no other is both cheaper and more accurate.
 
 One error and one cost of every choice decide it, and are drawn: no choice that the picture shows as dominated is on it,
-and every other one is. So that a second run of a chart has the same front, what differs by less than a busy machine
-adds is one cost:
+and every other one is. So that a second run of a chart has the same front, differences that a busy machine can cause
+are ignored:
 
 - The cost is the least CPU time of the timed runs, as whatever else a machine does only adds to it.
 - Costs that differ by less than `TIE` are one cost, their median: the nearest are put together first, as long as all of
-  them remain within it. So no two costs that differ by more are equal, and those of one scene with other sides are.
+  them remain within it. So costs that differ by more are never equal, and costs of one scene with other sides are.
 - Errors are the same to the bit in every run. Those within `EQUAL` are put together in the same way, and all below
   `NONE`, which a logarithmic axis cannot show, are equal.
 """
@@ -31,7 +31,7 @@ SHORTEST = 1e-9
 
 
 class Point(NamedTuple):
-    """A choice as it is compared and drawn: relative error, and cost, s of CPU time."""
+    """A choice as compared and drawn: relative error, and cost, s of CPU time."""
 
     error: float
     cost: float
@@ -44,7 +44,7 @@ def points_of(errors: Sequence[float], costs: Sequence[float]) -> list[Point]:
 
 
 def alike(values: np.ndarray, ratio: float) -> list[float]:
-    """The positive values, of which those in one group are replaced by its median.
+    """The positive values, with nearly equal ones replaced by the median of their group.
 
     Groups are put together, the two with the nearest extremes first, as long as these differ by less than a ratio.
     """
@@ -62,13 +62,13 @@ def alike(values: np.ndarray, ratio: float) -> list[float]:
 
 
 def front(points: Sequence[Point]) -> list[int]:
-    """Numbers of the points on the front, the most accurate first, of several at one place the first."""
+    """Indices of the points on the front, the most accurate first; of several equal points the first."""
     kept = [k for k, point in enumerate(points) if not any(_dominates(other, point) for other in points)]
     return sorted(kept, key=lambda k: points[k])
 
 
 def _dominates(other: Point, point: Point) -> bool:
-    """Whether a point is left of another one, or below it, and nowhere beyond."""
+    """Whether `other` is cheaper or more accurate than `point`, and neither costlier nor less accurate."""
     return other.error <= point.error and other.cost <= point.cost and other != point
 
 

@@ -51,8 +51,8 @@ class Record:
     def get(self, key: str, monitors: Iterable[str] = (), quantity: str = "velocity") -> Run | None:
         """The results of the case with this digest; None if it has not been run.
 
-        Raises RecordError for results that no run writes, and for those of a run without a failure that lack the
-        quantity at one of these monitors.
+        Raises RecordError for results that no run writes, and for a successful run without the quantity at one of these
+        monitors.
         """
         if not self.path.is_file():
             return None
@@ -100,7 +100,7 @@ class Record:
 
 
 def record_in(folder: Path, resume: bool) -> Record:
-    """The record of a chart in its folder; that of an earlier chart is kept to resume it, otherwise deleted.
+    """The record of a chart in its folder; with `resume` an earlier chart is kept, otherwise it is deleted.
 
     Other files in the folder remain. Raises CaseError for a folder that holds something else.
     """
@@ -127,7 +127,7 @@ def write_motions(group: h5py.Group, motions: Motions) -> None:
 
 
 def _read_history(group: h5py.Group, run: Run) -> History:
-    """The history of a monitor that `write_motions` has written; raises RecordError for any other."""
+    """The history of a monitor as written by `write_motions`; raises RecordError for any other contents."""
     position = np.asarray(group.attrs["position"], dtype=float)
     if position.shape != (2,) or not np.isfinite(position).all():
         raise _damaged(group, "attribute position")
@@ -142,7 +142,7 @@ def _read_history(group: h5py.Group, run: Run) -> History:
 
 
 def _read_costs(group: h5py.Group, name: str) -> list[float]:
-    """The costs (s) of the timed runs of a case; raises RecordError for what is none."""
+    """The costs (s) of the timed runs of a case; raises RecordError for values that are no costs."""
     costs = finite(group[name])
     if costs.ndim != 1 or not np.all((costs >= 0.0) & (costs < MOST)):
         raise _damaged(group, name)

@@ -1,4 +1,4 @@
-"""The reference of a chart: an exact solution, an extended run, a finer run of a bar, or that of the finest choice."""
+"""The reference of a chart: an exact solution, an extended run, a finer run of a bar, or the finest choice's run."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -44,21 +44,22 @@ def reference_of(
     case: Case,
     choices: Sequence[Choice],
     outcomes: Sequence[Run],
-    wanted: ReferenceName | None,
+    requested: ReferenceName | None,
     run: RunOf,
     of: Truth | None = None,
 ) -> Reference:
-    """The reference of this name for choices with these outcomes, and for errors of these disks or of the rock.
+    """The reference of a chart for choices whose runs have these outcomes.
 
-    of : None: those of the case, see `Judge.truth`; beside exact solutions they are of the rock.
+    requested : its name; None: the exact solution if the case has one, no hole, and `of` is not "disks". Else, if
+    choices
+    differ in their sides, the extended scene, if it is affordable. Else for bars the finer run, for disks the choice
+    with
+    the most nodes times steps. of : truth to which errors are relative; None: by `Judge.truth`, or "rock" for exact
+    solutions.
 
-    By default the exact solution if the case has one, no hole, and `of` is not "disks". Else, if choices differ in
-    their sides, the extended scene, if it is affordable. Else of bars the finer run, of disks the choice with the most
-    nodes times steps.
-
-    Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
+    Raises CaseError if the requested reference is not possible, RunError if its run fails.
     """
-    return _References(case, choices, outcomes, run, of).named(wanted)
+    return _References(case, choices, outcomes, run, of).named(requested)
 
 
 def exact_of(case: Case) -> Exact:
@@ -85,19 +86,19 @@ class _References:
         self._own = _finest(outcomes)
         self._judge = judge_of(case)
 
-    def named(self, wanted: ReferenceName | None) -> Reference:
-        """The reference of this name, or the default."""
-        if wanted is None:
+    def named(self, requested: ReferenceName | None) -> Reference:
+        """The reference with the requested name, or the default."""
+        if requested is None:
             return self._default()
         made = {"exact": self._exact, "extended": self._extended, "finer": self._finer, "finest": self._finest}
-        if (found := made[wanted]()) is None:
+        if (found := made[requested]()) is None:
             raise CaseError(
                 ["--reference: finer is for bars; of disks take exact, extended or finest"], self._case.name
             )
         return found
 
     def _default(self) -> Reference:
-        """The first that the case allows."""
+        """The first reference that the case allows: exact, extended, or the most accurate run."""
         if self._of != "disks" and not self._judge.hides_sides(self._case):
             with suppress(CaseError):
                 return self._exact()
@@ -131,9 +132,9 @@ class _References:
         )
 
     def _extended(self, most: int = MOST) -> Reference:
-        """The scene with all keys of the finest choice but those of its sides, extended to at most so many particles.
+        """The extended scene of the finest choice, with the case's own sides, of at most `most` particles.
 
-        Bars are those of the finer run.
+        A bar is that of the finer run, extended.
         """
         changes = self._choices[self._own].changes
         others = {key: each for key, each in changes.items() if not key.startswith(SIDES)}
@@ -152,9 +153,9 @@ class _References:
         return self._of_run("extended", sentence, larger.case, outcome, self._places(fine))
 
     def _sides(self) -> dict[str, Any]:
-        """Changes of sides for the extended scene: those of a choice with waves through a continuum; by default none.
+        """Changes of sides for the extended scene: a continuum where a choice lets waves in through one; else none.
 
-        A side that waves enter through cannot move away. A continuum is the one that returns next to nothing.
+        A side that waves enter through cannot move away; a continuum there reflects least.
         """
         for choice in self._choices:
             if self._judge.has_input_continuum(choice.case):
@@ -182,20 +183,20 @@ class _References:
         return self._of_run("finest", sentence, own, self._outcomes[self._own], lambda run, _: run.motions)
 
     def _done(self, name: str, case: Case, inside: Box | None = None) -> Run:
-        """The outcome of a case that is no choice, breaking inside a box; raises RunError if its run fails."""
+        """The run of a case that is no choice, with breaks found inside a box; raises RunError if it fails."""
         outcome = self._run(name, case, inside)
         if outcome.failure:
             raise RunError(f"{name}: {outcome.failure}")
         return outcome
 
     def _places(self, fine: FinerRun | None) -> Callable[[Run, Run], Motions]:
-        """The histories of a run for the outcome of a choice."""
+        """A function that gives the histories of the reference's run at the monitors of a choice."""
         return (lambda run, _: run.motions) if fine is None else fine.motions
 
     def _of_run(
         self, name: str, sentence: str, case: Case, run: Run, motions: Callable[[Run, Run], Motions]
     ) -> Reference:
-        """The reference that the run of a case is, up to its first break, after which histories do not converge."""
+        """The run of a case as reference, up to its first break, after which histories do not converge."""
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
         of = self._of or self._judge.truth(self._choices[self._own].case)
@@ -221,13 +222,13 @@ class _References:
 
 
 def _is_left_out(case: Case, side: str) -> bool:
-    """Whether nothing is known of the errors of a side: one that lets no waves in and has no continuum beyond."""
+    """Whether errors of a side are unknown: it lets no waves in and has no continuum beyond."""
     table = case.side(side)
     return table.is_artificial and not table.waves and not table.is_outside
 
 
 def _sizes(causes: Causes) -> dict[str, dict[str, float]]:
-    """By monitor and quantity the RMS of all causes together over that of the motion; none of causes without any."""
+    """By monitor and quantity, RMS of all causes together over RMS of the motion; empty without causes."""
     if causes.motions is None:
         return {}
     budget = Budget(causes.motions, causes)
@@ -239,7 +240,7 @@ def _sizes(causes: Causes) -> dict[str, dict[str, float]]:
 
 
 def _finest(outcomes: Sequence[Run]) -> int:
-    """The number of the choice with the most nodes times steps, the first of several.
+    """Index of the choice with the most nodes times steps, the first of several.
 
     Work would be no measure of accuracy for bars: wider horizons have more bonds and larger errors.
     """
@@ -250,14 +251,14 @@ def _finest(outcomes: Sequence[Run]) -> int:
 
 
 def _from_own_end(findings: Mapping[str, Finding], begins: float, names: Sequence[str]) -> dict[str, Finding]:
-    """Findings of an extended scene, those of these names from where the scene of the case begins in it, m."""
+    """Findings of an extended scene, the named places measured from `begins` (m), where the case's scene begins."""
     return {
         name: found._replace(value=found.value - begins) if name in names else found for name, found in findings.items()
     }
 
 
 def _is_same_run(outcome: Run, run: Run) -> bool:
-    """Whether two outcomes are of the same run: the same work in the same steps, and the same bits."""
+    """Whether two outcomes are those of one run: equal work, steps and bits."""
     if (outcome.time_step, outcome.steps, outcome.work) != (run.time_step, run.steps, run.work):
         return False
     return outcome.motions.keys() == run.motions.keys() and all(

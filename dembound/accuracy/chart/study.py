@@ -14,7 +14,7 @@ from dembound.accuracy.chart.record import Record, record_in
 from dembound.accuracy.chart.references import exact_of, reference_of
 from dembound.accuracy.choice import Choice, choices_of, digest
 from dembound.accuracy.judges import judge_of
-from dembound.accuracy.reference import MonitorError, Reference, Wanted, errors
+from dembound.accuracy.reference import MonitorError, Reference, Requested, errors
 from dembound.accuracy.runner import Run, Runner, Shown, measure
 from dembound.casefile import Case
 from dembound.casefile.chart import ReferenceName
@@ -29,7 +29,7 @@ LEVELS = (0.01, 0.001)
 """Errors within which the cheapest choice is named."""
 
 NOWHERE = Point(np.nan, np.nan)
-"""Place of a choice that has none."""
+"""Point of a choice without an error."""
 
 SHORT, AT_ONCE = 0.1, 25
 """CPU time (s) in which a timed run is repeated, and how often at most; its cost is the median of these runs."""
@@ -37,10 +37,10 @@ SHORT, AT_ONCE = 0.1, 25
 
 @dataclass(frozen=True)
 class Options:
-    """What is charted.
+    """Options of a chart.
 
-    named : changes of keys by the name of the choice; None: those of the case's [chart] table, by default `defaults`.
-    repeats, reference : as in the table [chart]; None: those of the table. of : what errors are those of, see
+    named : changes of keys by the name of the choice; None: from the case's [chart] table, by default `defaults`.
+    repeats, reference : as in the table [chart]; None: from the table. of : truth to which errors are relative, see
     `reference_of`.
     """
 
@@ -48,14 +48,14 @@ class Options:
     repeats: int | None = None
     reference: ReferenceName | None = None
     of: Truth | None = None
-    wanted: Wanted = field(default_factory=Wanted)
+    requested: Requested = field(default_factory=Requested)
 
 
 @dataclass(frozen=True)
 class Line:
     """A choice in the chart: its results and the errors of its monitors, the largest first; none after a failure.
 
-    point : where it is in the chart: its error, in total, and its cost, s of CPU time, as of `front.points_of`.
+    point : its total error and cost (CPU seconds), after `front.points_of`.
     """
 
     choice: Choice
@@ -70,7 +70,7 @@ class Line:
 
     @property
     def apart(self) -> float:
-        """Largest distance (m) of a monitor from where the reference recorded it."""
+        """Largest distance (m) between a monitor and the place where the reference recorded it."""
         return max((error.apart for error in self.errors), default=0.0)
 
 
@@ -94,33 +94,33 @@ class Charted:
     front: Sequence[int] = ()
 
     def found(self, line: Line) -> str:
-        """The findings of a choice in words, as differences from those of the reference if it has them.
+        """The findings of a choice in words, as differences from the reference where it has them.
 
-        Those of the reference itself are its numbers.
+        Findings of the reference itself are given as numbers.
         """
         is_own = any(line is self.lines[k] for k in self.reference.own)
-        wanted, found = {} if is_own else self.reference.findings, line.outcome.findings
-        missing = [name for name in wanted if name not in found]
+        expected, found = {} if is_own else self.reference.findings, line.outcome.findings
+        missing = [name for name in expected if name not in found]
         parts = [f"no {', '.join(missing)}"] if missing else []
         for name, (value, unit) in found.items():
-            number = f"{value:.5g}" if name not in wanted else f"{value - wanted[name]:+.2g}"
+            number = f"{value:.5g}" if name not in expected else f"{value - expected[name]:+.2g}"
             parts.append(f"{name} {number}{'' if unit == '1' else f' {unit}'}")
         return ", ".join(parts)
 
     @property
     def judged(self) -> list[int]:
-        """Numbers of the choices that have an error and are not the reference."""
+        """Indices of the choices that have an error and are not the reference."""
         return [k for k, line in enumerate(self.lines) if line.errors and k not in self.reference.own]
 
     def cheapest(self, level: float) -> int | None:
-        """Number of the cheapest choice with an error of at most `level`; None if there is none."""
+        """Index of the cheapest choice with an error of at most `level`; None if there is none."""
         judged = self.judged
         found = cheapest_within([self.lines[k].point for k in judged], level)
         return None if found is None else judged[found]
 
     @property
     def sentence(self) -> str:
-        """What errors are those of, and the cheapest choices within the `LEVELS`, in words."""
+        """Which errors the chart contains, and the cheapest choices within the `LEVELS`, in words."""
         within: dict[str, list[str]] = {}
         for level in LEVELS:
             found = self.cheapest(level)
@@ -146,57 +146,57 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
     Every choice runs once, which also compiles, then `repeats` times in turn. A choice whose run fails is kept with its
     failure. resume : runs that are already recorded are not repeated; otherwise an earlier chart is deleted.
 
-    Raises CaseError, before anything is written, if no choice is valid, the case lacks what is to be compared, or the
-    folder holds no chart; RunError if all runs fail.
+    Raises CaseError, before anything is written, if no choice is valid, the case lacks a monitor, quantity or reference
+    that the options name, or the folder holds no chart; RunError if all runs fail.
     """
     _must_be_comparable(case, options)
     named = options.named if options.named is not None else from_table(case) or defaults(case)
     choices, left_out = choices_of(case, named)
-    if len(choices) == 1 and _wanted_reference(case, options) == "finest":
+    if len(choices) == 1 and _requested_reference(case, options) == "finest":
         raise CaseError([f"--vary: {choices[0].name} is the only valid choice, which would be its own reference"])
-    runs = _Runs(record_in(folder, resume), shown, options.wanted.quantity)
+    runs = _Runs(record_in(folder, resume), shown, options.requested.quantity)
     outcomes = runs.all_of(choices, options.repeats or case.chart.repeats)
     if all(outcome.failure for outcome in outcomes):
         raise RunError("\n".join(f"{c.name}: {o.failure}" for c, o in zip(choices, outcomes, strict=True)))
-    reference = reference_of(case, choices, outcomes, _wanted_reference(case, options), runs.one, options.of)
+    reference = reference_of(case, choices, outcomes, _requested_reference(case, options), runs.one, options.of)
     lines = [_line(choice, outcome, reference, options) for choice, outcome in zip(choices, outcomes, strict=True)]
     lines = _placed(lines)
     if not any(line.errors for line in lines):
         raise RunError("\n".join(dict.fromkeys(f"{line.outcome.failure}" for line in lines)))
     unit, lines_out = kind_of(case).work_unit, [*left_out, *reference.cautions]
-    charted = Charted(case, reference, options.wanted.quantity, unit, lines, lines_out)
+    charted = Charted(case, reference, options.requested.quantity, unit, lines, lines_out)
     if not (judged := charted.judged):
         raise RunError(f"nothing is left to compare with the reference, {reference.sentence}, which is a choice itself")
     return replace(charted, front=[judged[k] for k in front([lines[k].point for k in judged])])
 
 
 def _must_be_comparable(case: Case, options: Options) -> None:
-    """Raise CaseError for a case without what the options compare."""
-    monitors, wanted = [monitor.name for monitor in case.monitor], options.wanted
+    """Raise CaseError for a case without the monitors, quantity or reference that the options compare."""
+    monitors, requested = [monitor.name for monitor in case.monitor], options.requested
     if not monitors:
         raise CaseError(["monitor: is missing; a chart compares the histories of monitors"], case.name)
-    if wanted.monitor is not None and wanted.monitor not in monitors:
-        raise CaseError([f"--monitor: is {wanted.monitor}, must be one of {', '.join(monitors)}"])
-    is_recorded = wanted.quantity in judge_of(case).quantities
-    if wanted.quantity == "stress" and (not is_recorded or wanted.component is not None):
+    if requested.monitor is not None and requested.monitor not in monitors:
+        raise CaseError([f"--monitor: is {requested.monitor}, must be one of {', '.join(monitors)}"])
+    is_recorded = requested.quantity in judge_of(case).quantities
+    if requested.quantity == "stress" and (not is_recorded or requested.component is not None):
         raise CaseError(["--quantity: stress is that along a bar; disks do not have it, nor has it components"])
-    if _wanted_reference(case, options) == "exact":
+    if _requested_reference(case, options) == "exact":
         if options.of == "disks":
             raise CaseError(["--of: errors beside an exact solution are those of the rock, not of these disks"])
         exact_of(case)
 
 
-def _wanted_reference(case: Case, options: Options) -> ReferenceName | None:
+def _requested_reference(case: Case, options: Options) -> ReferenceName | None:
     """The reference given by the options or else by the case."""
     return options.reference or case.chart.reference
 
 
 def _line(choice: Choice, outcome: Run, reference: Reference, options: Options) -> Line:
-    """A choice beside the reference; one that cannot be compared has failed."""
+    """A choice compared with the reference; if it cannot be compared, with a failure."""
     if outcome.failure:
         return Line(choice, outcome)
     try:
-        return Line(choice, outcome, errors(choice, outcome, reference, options.wanted))
+        return Line(choice, outcome, errors(choice, outcome, reference, options.requested))
     except CaseError as error:
         return Line(choice, replace(outcome, failure="; ".join(error.problems)))
 
@@ -216,7 +216,7 @@ class _Runs:
         self._runner = Runner(record, shown)
 
     def all_of(self, choices: Sequence[Choice], repeats: int) -> list[Run]:
-        """The outcomes of choices, each with as many costs; in every round all choices run, one after the other."""
+        """The outcomes of choices, each with `repeats` costs; in every round all choices run, one after the other."""
         count = len(choices)
         outcomes = [
             self.one(f"{k} of {counted(count, 'choice')}, {choice.name}", choice.case)
@@ -232,7 +232,7 @@ class _Runs:
         return outcomes
 
     def one(self, name: str, case: Case, inside: Box | None = None) -> Run:
-        """The outcome of a case, without costs if it has to be run; inside : where its findings are looked for."""
+        """The outcome of a case, without costs if it has to be run; inside : box where its findings are looked for."""
         monitors = [monitor.name for monitor in case.monitor]
         known = self._record.get(digest(case), monitors, self._quantity)
         if known is not None:  # damage ends the chart, and is no failed choice

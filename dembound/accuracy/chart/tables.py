@@ -68,9 +68,9 @@ def write_results(charted: Charted, path: Path) -> None:
 
 
 def _write_reference(group: h5py.Group, charted: Charted) -> None:
-    """Write the name of the reference, what errors beside it are, and its histories.
+    """Write the name of the reference, which errors it measures, and its histories.
 
-    Those of an exact solution are at the monitors of the first choice.
+    Histories of an exact solution are written at the monitors of the first choice.
     """
     reference = charted.reference
     own = np.array(reference.own, dtype=int)
@@ -83,7 +83,7 @@ def _write_reference(group: h5py.Group, charted: Charted) -> None:
 
 
 def _write_line(group: h5py.Group, charted: Charted, number: int, line: Line) -> None:
-    """A choice: its name and changes, the digest of its run, and the errors of its monitors."""
+    """Write a choice: its name and changes, the digest of its run, and the errors of its monitors."""
     group.attrs.update(
         {
             "name": line.choice.name,
@@ -129,8 +129,8 @@ def _numbers(charted: Charted, number: int, line: Line) -> list[Any]:
 
 
 def _found(charted: Charted, line: Line, names: list[str]) -> Iterator[float | None]:
-    """The findings of a choice, each with its difference from the reference's."""
+    """The findings of a choice, each followed by its difference from the finding of the reference."""
     for name in names:
-        found, wanted = line.outcome.findings.get(name), charted.reference.findings.get(name)
+        found, expected = line.outcome.findings.get(name), charted.reference.findings.get(name)
         yield None if found is None else found.value
-        yield None if found is None or wanted is None else found.value - wanted
+        yield None if found is None or expected is None else found.value - expected

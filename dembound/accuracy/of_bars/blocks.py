@@ -1,7 +1,7 @@
 """Blocks of unknowns in a row, each joined to its neighbours only, at many frequencies at once.
 
 A link joins two blocks: with their velocities v₁ and v₂ it needs the forces F₁ = A v₁ + B v₂ and F₂ = C v₁ + D v₂. All
-between two blocks can be eliminated, which leaves one link; a uniform row of N equal blocks takes log₂N eliminations.
+blocks between two can be eliminated, which leaves one link; a row of N equal blocks takes log₂N eliminations.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Link(NamedTuple):
 
 
 def joined(first: Link, middle: np.ndarray, second: Link) -> Link:
-    """Two links as one, without the block between them, whose own matrix is middle (f, b, b)."""
+    """Two links as one, with the block between them, of the matrix middle (f, b, b), eliminated."""
     answer = solve(middle + first.d + second.a, np.concatenate([first.c, second.b], axis=2))
     by_left, by_right = np.split(answer, 2, axis=2)
     return Link(
@@ -41,7 +41,7 @@ class Row:
         self._powers = [link]  # of 1, 2, 4 ... links
 
     def links(self, count: int) -> Link:
-        """So many links, at least 1, as one, without the blocks between them."""
+        """`count` ≥ 1 links as one, with the blocks between them eliminated."""
         found: Link | None = None
         for bit in range(count.bit_length()):
             if bit == len(self._powers):
@@ -55,7 +55,7 @@ class Row:
 def velocities(own: Sequence[np.ndarray], links: Sequence[Link], force: np.ndarray) -> np.ndarray:
     """Velocities (f, k, b) of the k blocks of a row under forces (f, k, b).
 
-    own : the matrices (f, b, b) of the blocks without links; links : of each with the next one.
+    own : the matrices (f, b, b) of the blocks without links; links : between each block and the next.
     """
     whole = [np.array(matrix) for matrix in own]
     for k, link in enumerate(links):

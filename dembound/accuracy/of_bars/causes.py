@@ -1,26 +1,26 @@
-"""The error of a bar: what its ends, its nodes and its steps add to the motion at its monitors.
+"""The error of a bar: contributions of its ends, nodes and steps to the motion at its monitors.
 
 Up to the first change of its bonds a bar is linear, and its motion is known at every frequency, without a run:
 
 - own: the bar as it is stepped, with its own ends (chain.py).
 - endless: the same nodes and steps, but beyond an absorbing end the bar goes on, and the wave that enters there is the
   one that the case gives.
-- exact time: the endless one, but with Δt = 0.
-- exact: rods without nodes (rods.py), whose absorbing ends take all. The stress of a node at an end is that of the
-  plane half a spacing inside, and is compared with the exact one there.
+- exact time: the endless bar with Δt = 0.
+- exact: rods without nodes (rods.py), whose absorbing ends absorb everything. The stress of a node at an end is taken
+  half a spacing inside, and compared with the exact stress there.
 
-Own less endless is the error of the ends, endless less exact time that of the time step, the rest that of the grid. So
-all ways of a wave, there and back, are included, and so are ends that are softer than the bar, and what is lost at
-interfaces between ranges. Where nodes lie beside the places of monitors, the exact motion at both is compared, too.
+The difference own − endless is the error of the ends, endless − exact time the error of the time step, exact time −
+exact the error of the grid. So all reflections are included, also of ends softer than the bar, and losses at
+interfaces between ranges. Where nodes are not at the places of monitors, the exact motion at both is compared, too.
 
 At Courant number 1 finite differences are exact: with h = sΔt/2 the half node and the spring at the end of an endless
-row need the force ρcA (sinh h + e^{−h}) v = ρcA cosh h v, and pass on e^{−2h} of it from node to node. Recorded is the
-mean of two half steps, μv = cosh h v, so that a force F on the end makes the velocity F/ρcA, that of a rod. A dashpot
-ρcA takes ρcA μv, all that arrives, and interfaces between ranges return what those of rods do. What remains is the
+row need the force ρcA (sinh h + e^{−h}) v = ρcA cosh h v, and pass on e^{−2h} of it from node to node. The recorded
+velocity is the mean of two half steps, μv = cosh h v, so that a force F on the end makes the velocity F/ρcA of a rod. A
+dashpot ρcA takes ρcA μv, all that arrives, and interfaces between ranges reflect as those of rods. What remains is the
 displacement, a sum of steps: Δt/sinh 2h in place of 1/s, another one by (ωΔt)²/6.
 
-Whether the bar was linear is seen in the record itself: at a monitor whose record is not that of `own`, as a method has
-changed the bonds, nothing is said.
+Whether the bar was linear is checked against the record: where the record differs from `own`, as the method has changed
+bonds, the error is unknown.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ FACTOR = 1.05
 """Factor of these errors: true ones differ by up to 3 % (tests/unit/accuracy/of_bars/test_causes.py)."""
 
 HOW = "from the waves of the linear bar at each frequency"
-"""How its errors are found."""
+"""How these errors are found, in words."""
 
 NO_GRID = "exact: at Courant number 1 finite differences pass a wave on by one spacing in each step"
 NO_ECHO = "exact: at Courant number 1 dashpots ρcA take all of a wave that comes to them through finite differences"
@@ -86,9 +86,9 @@ def causes_of_bar(case: BarCase, recorded: Motions, time_step: float) -> Causes:
 
 
 def split(motions: BarMotions, own: Motions, exact: Motions, recorded: Motions) -> list[Cause]:
-    """What the grid, the time step, absorbing ends and places add, by the motions as it is stepped and of rods.
+    """Causes: grid, time step, absorbing ends and places, from the motions of the stepped bar and of rods.
 
-    exact : at the nodes of the monitors.
+    own, exact : motions at the nodes of the monitors, by monitor.
     """
     step = motions.window.step
     endless = motions.endless(step)
@@ -103,7 +103,7 @@ def split(motions: BarMotions, own: Motions, exact: Motions, recorded: Motions) 
 
 
 def _inside(motions: BarMotions, endless: Motions, exact: Motions, recorded: Motions) -> Iterator[Cause]:
-    """What grid and time step add, where they do not cancel out."""
+    """Errors of grid and time step, where they do not cancel out."""
     if not _passes_all(motions):
         exact_time = motions.endless(0.0)
         yield difference(GRID, exact_time, exact, recorded)
@@ -118,7 +118,7 @@ def _inside(motions: BarMotions, endless: Motions, exact: Motions, recorded: Mot
 
 
 def _passes_all(motions: BarMotions) -> bool:
-    """Whether grid and time step together pass on all waves as they are: finite differences at Courant number 1."""
+    """Whether grid and time step together transmit all waves exactly: finite differences at Courant number 1."""
     rod = motions.scene.rod
     return not motions.case.method.begin(rod).bond.any() and all(
         part.drag_rate == 0.0 and math.isclose(motions.window.step * part.speed, part.spacing, rel_tol=EQUAL)
@@ -127,7 +127,7 @@ def _passes_all(motions: BarMotions) -> bool:
 
 
 def _takes_all(motions: BarMotions) -> bool:
-    """Whether nothing comes back from ends that absorb: dashpots alone, with the impedance of the bar, see above."""
+    """Whether absorbing ends reflect nothing: dashpots with the bar's impedance at Courant number 1, see above."""
     return _passes_all(motions) and all(
         math.isclose(dashpot, part.density * part.speed * part.section, rel_tol=EQUAL)
         for dashpot, part in motions.dashpots
@@ -149,7 +149,7 @@ def difference(cause: str, of: Motions, less: Motions, recorded: Motions) -> Cau
 
 
 def not_linear(case: BarCase) -> list[str]:
-    """Why nothing can be estimated; empty if something can."""
+    """Reasons why no error can be estimated, as the bar is not linear; empty if it is."""
     bar = case.bar
     if any(given.interface == "contact" for given in bar.range):
         return ["bars with contacts, which open and close"]
@@ -161,7 +161,7 @@ def not_linear(case: BarCase) -> list[str]:
 
 
 def _unknown(case: BarCase, recorded: History, own: History, exact: History) -> str:
-    """Why nothing is known at a monitor: its record is that of no linear bar, or of rest; empty otherwise."""
+    """Why the error at a monitor is unknown: the bar is not linear, or the monitor at rest; empty if it is known."""
     worst, largest = 0.0, largest_motion(case, float(recorded.time[-1]))
     for quantity, values in recorded.values.items():
         seen = values[:, 0]
@@ -176,7 +176,7 @@ def _unknown(case: BarCase, recorded: History, own: History, exact: History) -> 
 
 
 def largest_motion(case: BarCase, last: float) -> dict[str, float]:
-    """By quantity the sum of the largest motions that the sources make, up to a time (s)."""
+    """By quantity the sum of the largest motions that the sources cause up to a time (s)."""
     impedance = max(part.density * part.speed for part in case.bar.parts)
     waves = [case.wave[name].peak() for driven in case.driving.values() for name in driven.values()]
     loads = [abs(load.pressure) * case.wave[load.wave].peak() / impedance for load in case.load]

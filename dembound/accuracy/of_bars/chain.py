@@ -37,14 +37,14 @@ class Frequencies:
 
     @classmethod
     def of(cls, s: np.ndarray, step: float) -> Frequencies:
-        """For steps of so many seconds; 0 stands for exact time."""
+        """Frequencies s (f,) rad/s for time steps `step` (s); 0 stands for exact time."""
         if step == 0.0:
             return cls(step, s, s, np.ones_like(s))
         half = 0.5 * step * s
         return cls(step, s, 2.0 / step * np.sinh(half), np.cosh(half))
 
     def part(self, chosen: slice) -> Frequencies:
-        """The clock at some of its frequencies."""
+        """A slice of the frequencies."""
         return Frequencies(self.step, self.s[chosen], self.change[chosen], self.mean[chosen])
 
 
@@ -106,7 +106,7 @@ class Chain:
         return self.mass.shape[1]
 
     def matrices(self, block: int, clock: Frequencies) -> tuple[np.ndarray, np.ndarray]:
-        """The matrix (f, b, b) of a block with all its bonds, and that (f, b, b) of the next one's velocities in it."""
+        """The matrix (f, b, b) of a block with all its bonds, and its coupling (f, b, b) to the next block."""
         wide, change, mean = self.wide, clock.change, clock.mean
         own = np.zeros((len(change), wide, wide), dtype=complex)
         across = np.zeros_like(own)
@@ -128,12 +128,12 @@ class Chain:
         return own, across
 
     def stiffness(self, block: int, i: int, length: int, clock: Frequencies) -> np.ndarray:
-        """Force over difference of velocities (f,) N·s/m of a bond by its first node and its length."""
+        """Force over velocity difference (f,) N·s/m of a bond, given its block, first node `i` and length."""
         k, decay = self.bond[block, i, length - 1], self.decay[block, i, length - 1]
         return np.asarray(k / (clock.change + decay * clock.mean))
 
     def mobility(self, side: str, clock: Frequencies) -> np.ndarray:
-        """Velocity (f,) m/s of a node under 1 N in a bar that goes on on both sides like the layer at an end."""
+        """Velocity (f,) m/s of a node under 1 N in a bar that continues on both sides like the layer at an end."""
         block = (
             self.first // self.wide // 2 if side == "left" else (self.first + self._bar + self.count) // self.wide // 2
         )
@@ -145,7 +145,7 @@ class Chain:
 
     @property
     def kinds(self) -> np.ndarray:
-        """(blocks,) numbers, equal for blocks in a row that are alike in their nodes and in all their bonds."""
+        """(blocks,) numbers, equal for neighbouring blocks with equal nodes and bonds."""
         blocks = len(self.mass)
         rows = np.concatenate(
             [each.reshape(blocks, -1) for each in (self.mass, self.damping, self.ground, self.bond, self.decay)], axis=1
@@ -157,7 +157,7 @@ class Chain:
 
 
 class Response:
-    """What forces on some nodes of a chain do at some of its nodes; uniform parts between them are not solved for.
+    """Velocities of some nodes of a chain under forces on some; uniform parts between them are eliminated.
 
     nodes : of the bar, that are pushed or observed.
     """
@@ -188,12 +188,12 @@ class Response:
         return velocities([row.middle for row in own], links, force)
 
     def at(self, moved: np.ndarray, place: int) -> np.ndarray:
-        """Velocity (f,) of a node of the chain; moved : what `velocities` has returned."""
+        """Velocity (f,) of a node of the chain; moved : the result of `velocities`."""
         block, i = divmod(place, self.chain.wide)
         return np.asarray(moved[:, self._index[block], i])
 
     def tension(self, moved: np.ndarray, clock: Frequencies, plane: int) -> np.ndarray:
-        """Force (f,) N through the plane between this node of the chain and the next, of all bonds that cross it."""
+        """Force (f,) N through the plane between a node of the chain and the next, of all bonds that cross it."""
         chain, total = self.chain, np.zeros(len(clock.s), dtype=complex)
         for length in range(1, chain.wide + 1):
             for i in range(max(0, plane - length + 1), min(plane, chain.count - 1 - length) + 1):
@@ -205,12 +205,12 @@ class Response:
 
 
 def _row(matrix: np.ndarray, across: np.ndarray) -> Row:
-    """Blocks like one, by its matrices."""
+    """Equal blocks in a row, from the matrices of one."""
     none = np.zeros_like(across)
     return Row(Link(none, across, across.swapaxes(1, 2), none), matrix)
 
 
 def observed_near(chain: Chain, nodes: Sequence[int]) -> set[int]:
-    """Nodes, numbered as those of the bar, on which the stress at some of these depends."""
+    """Nodes, numbered as in the bar, on which the stress at the given nodes depends."""
     low, high = -chain.first, chain.count - chain.first - 1
     return {near for node in nodes for near in range(max(low, node - chain.wide), min(high, node + chain.wide) + 1)}

@@ -21,7 +21,7 @@ STEP_KEYS = ("time_step", "safety", "courant")
 def bar_choices(case: BarCase) -> Named:
     """The case itself, every method with every spacing at its automatic step, and finite differences at ν = 1.
 
-    A given step would suit one method and spacing only.
+    A given step is dropped, as it would suit one method and spacing only.
     """
     yield OWN, {}
     spacing, run = case.bar.spacing, case.run.given()
@@ -38,7 +38,10 @@ def bar_choices(case: BarCase) -> Named:
 
 
 def _methods(case: BarCase) -> Iterator[dict[str, Any]]:
-    """The methods, the case's own first if it is another package's; those that wait for a break if it can break."""
+    """The methods to chart; a method of another package that the case uses comes first.
+
+    Methods that wait for a break are included only if the bar can break.
+    """
     kinds: list[type[Method]] = [FiniteDifference, Peridynamics]
     if case.bar.least_strength < math.inf:
         kinds += [Switch, Patch]
@@ -48,7 +51,7 @@ def _methods(case: BarCase) -> Iterator[dict[str, Any]]:
 
 
 def _method(case: BarCase, kind: type[Method]) -> dict[str, Any]:
-    """The table of a method, with all keys of the case's own method that it has, too."""
+    """The table of a method, with the case's values of all keys that both methods have."""
     (name,) = get_args(kind.model_fields["type"].annotation)
     horizon = {"horizon": max(case.method.largest_horizon, HORIZON)} if "horizon" in kind.model_fields else {}
     own = {key: value for key, value in case.method.given().items() if key in kind.model_fields and key != "type"}

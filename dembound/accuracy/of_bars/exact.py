@@ -28,7 +28,7 @@ CLEARLY = 2.0
 class ExactMotion:
     """The motion of rods at the places of the monitors of a scene's case.
 
-    The stress at the ends of the bar is that half a spacing of this scene inside.
+    The stress at the ends of the bar is taken half a spacing of this scene inside.
     """
 
     def __init__(self, scene: BarScene) -> None:
@@ -42,11 +42,11 @@ class ExactMotion:
 
     @cached_property
     def places(self) -> dict[str, float]:
-        """Monitor -> m, where the case has it, which need not be at a node."""
+        """Monitor -> its place in the case, m, which need not be at a node."""
         return places_of(self._scene.case)
 
     def at(self, window: Window) -> Motions:
-        """At the times of a window; computed once for all windows whose steps are between two powers of 2 s."""
+        """The motions at the times of a window; computed once for all steps between two powers of 2 s."""
         octave = math.floor(math.log2(window.step))
         if octave not in self._found:
             self._found[octave] = self._splines(2.0**octave)
@@ -62,7 +62,7 @@ class ExactMotion:
     def surely_counted(self, window: Window) -> dict[str, set[str]]:
         """By monitor the quantities that count for all choices.
 
-        Left out are those that almost do not count, as they are small, and stresses that may be those of end nodes.
+        Nearly negligible quantities are left out, and stresses that some choices record at end nodes.
         """
         motion, found = self.at(window), {name: set[str]() for name in self.places}
         for quantity in QUANTITIES:
@@ -80,7 +80,7 @@ class ExactMotion:
         return all(away[side] > reach * rod.end(side).spacing for side in ENDS)
 
     def _splines(self, step: float) -> dict[str, dict[str, CubicSpline]]:
-        """For times of steps (s) of up to twice this length, of which the last may begin before the end of the run."""
+        """Splines of the motions for steps (s) of up to twice this length; the last may begin before the end."""
         from scipy.interpolate import CubicSpline
 
         window = Window.up_to(self._scene.case.run.duration + 2.0 * step, step)

@@ -16,7 +16,7 @@ from dembound.motion.silence import monitored
 
 
 def extended_bar(case: BarCase, most: int) -> Extended:
-    """A bar with more spacings; parameters and errors as of `extended`."""
+    """A bar with more spacings beyond its ends; parameters and errors as of `accuracy.extended.extended`."""
     scene = build_bar(case)
     bar, step = case.bar, choose_step(scene)[0]
     moving = movable(case, [load.side for load in case.load])

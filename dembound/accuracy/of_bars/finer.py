@@ -3,10 +3,10 @@
 At Courant number 1 central differences are d'Alembert's solution at the nodes, whatever the spacing, between loaded,
 free, held and absorbing ends. With attenuation or a prescribed velocity the error is of second order in the spacing;
 the place of the first spall is one of the planes between nodes. Loads act on the last node alone, as in the exact
-solution: the nodes over which a case spreads them are a matter of its method.
+solution: the nodes over which a case spreads them belong to its method.
 
-Its nodes lie where those of all choices do, if a spacing down to 1/MOST of the finest one can do so, and it records at
-the nodes of every choice's monitors: no error is that of a monitor at another place.
+Its nodes coincide with those of all choices, if a spacing down to 1/MOST of the finest one allows it, and it records at
+the nodes of every choice's monitors, so that no error is due to a monitor at another place.
 """
 
 import math
@@ -31,14 +31,14 @@ FINER, MOST = 4, 8
 
 @dataclass(frozen=True)
 class Finer:
-    """The case of the reference, with a monitor ``node_<number>`` wherever a choice has one; spacing m, and cells."""
+    """The case of the reference, with a monitor ``node_<number>`` wherever a choice has one; spacing (m), and cells."""
 
     case: Case
     spacing: float
     cells: int
 
     def motions(self, run: Run, choice: Run) -> dict[str, History]:
-        """Histories at the monitors of a choice; run : of this case, or of that with ends farther away."""
+        """Histories at the monitors of a choice, from a run of this case, which may have been extended."""
         nodes = {name: _node(history, self.spacing, self.cells) for name, history in choice.motions.items()}
         return {
             name: replace(run.motions[_name(node)], place=np.array([node * self.spacing, 0.0]))
@@ -70,14 +70,14 @@ def finer(case: BarCase, choices: Sequence[Choice[BarCase]], outcomes: Sequence[
 
 
 def _cells(of_choices: set[int]) -> int:
-    """Number of its spacings in the length of the bar, given those of the choices."""
+    """Number of spacings in the length of the bar, given the numbers of the choices."""
     most, common = max(of_choices), math.lcm(*of_choices)
     cells = common * math.ceil(FINER * most / common)
     return cells if cells <= MOST * most else FINER * most
 
 
 def _node(history: History, spacing: float, cells: int) -> int:
-    """Number of the node nearest to that of a history; the last one for motions of longer bars."""
+    """Number of the node nearest to a history's place; the last node for histories beyond it."""
     return min(nearest_number(float(history.place[0]) / spacing), cells)
 
 

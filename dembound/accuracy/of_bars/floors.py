@@ -1,15 +1,15 @@
-"""What the errors of choices for a bar are at least, by those of others, so that most need not be computed.
+"""Lower bounds of the errors of choices for a bar, from errors of others, so that most need not be computed.
 
-Two rules, of choices with the same method and Courant number:
+Two rules, for choices with the same method and Courant number:
 
-- Spacings. What nodes, steps and ends add falls with the square of the spacing at most, as all schemes of bars are of
+- Spacings. Errors of nodes, steps and ends fall with the square of the spacing at most, as all schemes of bars are of
   second order. So an error e at the spacing Δx is at least e (Δx'/Δx)² at a finer Δx'; coarser nodes are not better.
-- Ends. Up to the time at which something may come back from an end that absorbs, ends of all kinds move alike. What is
-  wrong until then follows the rule of spacings with any ends, and with coarser nodes it is at least as large.
+- Ends. Until something may come back from an absorbing end, ends of all kinds move alike. The error until then follows
+  the rule of spacings with any ends, and with coarser nodes it is at least as large.
 
-Errors that vary otherwise are left out: of monitors that are not at their places, and near the Courant number at which
-nodes do not disperse waves, as only those of corners of waves remain there, which may coincide with steps. The error of
-an endless bar is no such floor: where a wave enters, what the end adds may have the opposite sign of what nodes add.
+Two kinds of errors vary otherwise and are left out: at monitors that are not at nodes, and near the Courant number at
+which nodes do not disperse waves, where only errors of corners of waves remain, which may coincide with steps. The
+error of an endless bar is no lower bound: where a wave enters, errors of ends and nodes may have opposite signs.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ Kind = tuple[str, ...]
 
 
 class Floors:
-    """Errors that choices have at least."""
+    """Lower bounds of the errors of choices."""
 
     def __init__(self) -> None:
         self._known: dict[Kind, list[tuple[float, float]]] = defaultdict(list)
 
     def add(self, choice: BarOption, error: float, without_echo: float) -> None:
-        """A choice whose error is known; without_echo : the part of it before `first_echo`."""
+        """Add a choice whose error is known; without_echo : its error before `first_echo`."""
         for kind, size in zip(_kinds(choice), (error, without_echo), strict=True):
             self._known[kind].append((choice.spacing, size))
 
     def of(self, choice: BarOption) -> float:
-        """What the error of a choice is at least; 0 where nothing is known."""
+        """Lower bound of the error of a choice; 0 where no bound is known."""
         same, alike = (self._known[kind] for kind in _kinds(choice))
         finer = [error * (choice.spacing / at) ** 2 / MARGIN for at, error in same if choice.spacing <= at]
         coarser = [error for at, error in same if choice.spacing > at]
@@ -56,7 +56,7 @@ class Floors:
 
 
 def _kinds(choice: BarOption) -> tuple[Kind, Kind]:
-    """Choices of which errors are compared: those with the same ends, and with any."""
+    """Keys of the choices that are comparable: with the same ends, and with any ends."""
     same = choice.method, f"{choice.courant:.2f}"
     return (choice.ends, *same), same
 
@@ -84,7 +84,7 @@ def _undispersed(scene: BarScene) -> Iterator[tuple[Range, float]]:
 
 
 def first_echo(scene: BarScene) -> dict[str, float]:
-    """By monitor the time (s) at which something may first come back from an end that absorbs; infinite without one."""
+    """By monitor the time (s) at which a wave may first come back from an absorbing end; infinite without one."""
     case, rod = scene.case, scene.rod
     ends = {"left": 0, "right": rod.count - 1}
     pushed = {ends[side] for side in case.driving}
@@ -99,7 +99,7 @@ def first_echo(scene: BarScene) -> dict[str, float]:
 
 
 def _time(scene: BarScene, first: int, last: int) -> float:
-    """The time (s) of waves from one node to another."""
+    """Travel time (s) of waves from one node to another."""
     low, high = sorted((first, last))
     return sum(
         max(0, min(high, part.last) - max(low, part.first)) * part.spacing / part.speed for part in scene.rod.ranges

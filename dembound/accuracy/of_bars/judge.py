@@ -1,4 +1,4 @@
-"""Errors of bars: their causes are known at every frequency, without a run."""
+"""Errors of bars: causes are computed at every frequency, without a run."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class BarJudge(Judge[BarCase, BarScene]):
     quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement", "stress")
 
     def causes(self, case: BarCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
-        """Ends, nodes and steps, from the waves of the linear bar."""
+        """Errors of ends, nodes and steps, from the waves of the linear bar."""
         return causes_of_bar(case, recorded, time_step)
 
     def advise(
@@ -46,11 +46,11 @@ class BarJudge(Judge[BarCase, BarScene]):
         return extended_bar(case, most)
 
     def exact(self, case: BarCase) -> PulseInBar | None:
-        """A pulse at the left end of a bar without attenuation."""
+        """The exact motion under a pulse at the left end of a bar without attenuation; None for other bars."""
         return PulseInBar.of(case)
 
     def finer(self, case: BarCase, choices: Sequence[Choice[BarCase]], outcomes: Sequence[Run]) -> Finer:
-        """Finite differences at Courant number 1."""
+        """The bar by finite differences at Courant number 1."""
         return finer(case, choices, outcomes)
 
     def chart_choices(self, case: BarCase) -> Named:

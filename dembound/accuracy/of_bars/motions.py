@@ -39,7 +39,7 @@ AT_PLACE = 1e-9
 
 
 def places_of(case: BarCase) -> dict[str, float]:
-    """Monitor -> m, where the case has it."""
+    """Monitor -> its place in the case, m."""
     return {monitor.name: monitor.position for monitor in case.monitor}
 
 
@@ -59,12 +59,12 @@ class BarMotions:
 
     @property
     def nodes(self) -> dict[str, int]:
-        """The node of every monitor."""
+        """Monitor -> number of its node."""
         return {name: self.scene.monitors[name] for name in self.times}
 
     @property
     def places(self) -> dict[str, float]:
-        """Monitor -> m, where the case has it."""
+        """Monitor -> its place in the case, m."""
         given = places_of(self.case)
         return {name: given[name] for name in self.times}
 
@@ -77,7 +77,7 @@ class BarMotions:
 
     @property
     def dashpots(self) -> list[tuple[float, Range]]:
-        """Of ends that absorb the dashpot, N·s/m, nan with anything else, and the range there."""
+        """For each absorbing end its dashpot (N·s/m; nan if the end is of another type) and the range there."""
         found = []
         for side in self.absorbing:
             rows = end_supports(self.case, side)
@@ -132,7 +132,7 @@ class BarMotions:
         return {name: self._history(self.window, np.concatenate(each, axis=1), name) for name, each in found.items()}
 
     def _forces(self, scene: BarScene, chain: Chain, clock: Frequencies) -> dict[int, np.ndarray]:
-        """Node -> transform of the force on it (f,) N; where a velocity is prescribed that on its dashpot."""
+        """Node -> transform (f,) N of its force, or of the force on its dashpot where a velocity is prescribed."""
         supports, forces = scene.supports, dict[int, np.ndarray]()
         for row, drive, number in zip(supports.drive_row, supports.drive, supports.drive_signal, strict=True):
             node, rigid = int(supports.node[row]), bool(supports.prescribed[row])
@@ -142,9 +142,9 @@ class BarMotions:
         return forces
 
     def _running(self, clock: Frequencies, pushed: Iterable[int], wide: int) -> int:
-        """How many of the frequencies, from the lowest on, count: above that of the shortest wave nothing runs.
+        """How many frequencies, from the lowest, count: above that of the shortest wave no wave propagates.
 
-        It moves the nodes near those that are pushed; of monitors there all frequencies count.
+        Higher frequencies only move nodes near forces; with monitors there all frequencies count.
         """
         near = max(NEAR, 4 * wide)
         if any(abs(node - push) <= near for node in self.nodes.values() for push in pushed):
@@ -153,7 +153,7 @@ class BarMotions:
         return max(1, int(np.count_nonzero(np.abs(clock.change) <= ABOVE * highest)))
 
     def exact(self, places: Mapping[str, float] | None = None) -> Motions:
-        """The motion of rods without nodes and steps; places : m, by monitor, by default those of its nodes."""
+        """The motion of rods without nodes and steps at places (m, by monitor); None: at the nodes of the monitors."""
         finer = self.window.finer(FINER)
         pushed: dict[str, np.ndarray] = {}
         for load in self.case.load:
@@ -179,7 +179,7 @@ class BarMotions:
         return {name: self._history(finer, motion[:, :, k], name) for k, name in enumerate(self.nodes)}
 
     def _wave(self, side: str) -> Signal:
-        """The velocity of the wave of an end along the bar."""
+        """Velocity history, positive along the bar, of the wave that enters at an end."""
         return self.case.wave[self.case.side(side).waves["p"]].velocity
 
     def _history(self, window: Window, transforms: np.ndarray, name: str) -> History:
@@ -197,7 +197,7 @@ class BarMotions:
 
 
 def _stress(scene: BarScene, response: Response, moved: np.ndarray, clock: Frequencies, node: int) -> np.ndarray:
-    """Stress (f,) Pa at a node, as kernels/bar.node_stress computes it."""
+    """Stress (f,) Pa at a node, as `kernels.bar.node_stress` computes it."""
     planes = [plane for plane in (node - 1, node) if 0 <= plane < scene.count - 1]
     tension = sum(response.tension(moved, clock, response.chain.first + plane) for plane in planes)
     return np.asarray(tension / scene.rod.sections[planes].sum())

@@ -46,10 +46,10 @@ Changes = dict[str, Any]
 
 @dataclass(frozen=True)
 class BarOption:
-    """A choice.
+    """A choice of nodes, time step, ends and method of a bar.
 
-    scene : of the case. step : s, steps : of the run. ends, method : these in words. cost : predicted CPU time of the
-    steps, s.
+    scene : of the case. step : s, steps : of the run. ends, method : in words. cost : predicted CPU time of the steps,
+    s.
     """
 
     scene: BarScene
@@ -91,7 +91,7 @@ class BarOption:
 
 
 def bar_options(case: BarCase, kept: Sequence[str]) -> Iterator[BarOption]:
-    """All choices that keep the values of some keys, those with fewer changes first; none that cannot run."""
+    """All runnable choices that keep the values of the keys `kept`, those with fewer changes first."""
     if may_break(case):
         yield from _options(case, kept, [("", {})], [{}])
         return
@@ -103,14 +103,14 @@ def bar_options(case: BarCase, kept: Sequence[str]) -> Iterator[BarOption]:
 
 
 def other_options(case: BarCase, kept: Sequence[str]) -> Iterator[BarOption]:
-    """Choices of finite differences for a bar that may break, which breaks otherwise with them; as `bar_options`."""
+    """Finite-difference choices for a bar that may break, which would break differently; otherwise as `bar_options`."""
     return _options(case, kept, [_differences(case)], _spacings(case))
 
 
 def _options(
     case: BarCase, kept: Sequence[str], methods: Sequence[tuple[str, Changes]], spacings: Sequence[Changes]
 ) -> Iterator[BarOption]:
-    """All ends and steps with some methods, in words and as changes, and some spacings."""
+    """Choices with all ends and steps for some methods (words and changes) and some spacings."""
     for ends, of_ends in _ends(case, kept):
         for method, of_method in methods:
             for spacing in spacings:
@@ -118,19 +118,19 @@ def _options(
 
 
 def may_break(case: BarCase) -> bool:
-    """Whether bonds may change, after which nodes and method are part of what happens."""
+    """Whether bonds may change; then nodes and method affect how the bar breaks."""
     return math.isfinite(case.bar.least_strength)
 
 
 def _moves_alike(case: BarCase, kept: Sequence[str]) -> bool:
-    """Whether finite differences, which may be taken, do in a bar that cannot break what its method does."""
+    """Whether finite differences are allowed and move the bar as its method does, as it cannot break."""
     if isinstance(case.method, FiniteDifference) or any(f"{key}.".startswith("method.") for key in kept):
         return False
     return not case.method.begin(build_bar(case).rod).bond.any()
 
 
 def _ends(case: BarCase, kept: Sequence[str]) -> Iterator[tuple[str, Changes]]:
-    """What may stand in for more of the bar, in words and as changes; all ends alike that are not kept."""
+    """Types of absorbing ends, in words and as changes; all ends that are not kept get the same type."""
     yield GIVEN_ENDS, {}
     free = [side for side, table in case.boundary.items() if table.is_artificial and not _is_kept(side, kept)]
     if not free:
@@ -161,7 +161,7 @@ def _methods(case: BarCase) -> Iterator[tuple[str, Changes]]:
 
 
 def _differences(case: BarCase) -> tuple[str, Changes]:
-    """Finite differences with loads on the last node, where they act on a bar without nodes; no changes if so given."""
+    """Finite differences with loads on the last node, as on a bar without nodes; no changes if so given."""
     changes: Changes = {f"load.{load.name}.nodes": 1 for load in case.load if load.nodes > 1}
     words = ", loads on the last node" if changes else ""
     if isinstance(case.method, FiniteDifference):
@@ -170,23 +170,26 @@ def _differences(case: BarCase) -> tuple[str, Changes]:
 
 
 def _spacings(case: BarCase) -> list[Changes]:
-    """Spacings near `FACTORS` times the given ones, which come first; of ranges those of equal travel times, too."""
+    """Spacings near `FACTORS` times the given ones, which come first; for several ranges also equal travel times."""
     parts = case.bar.parts
     unit = min(part.length / part.cells / part.speed for part in parts)
     given = [part.length / part.cells for part in parts]
-    wanted = [[factor * spacing for spacing in given] for factor in FACTORS]
+    requested = [[factor * spacing for spacing in given] for factor in FACTORS]
     if len(parts) > 1:
-        wanted += [[factor * unit * part.speed for part in parts] for factor in FACTORS]
-    found = [_near(case, each, at_monitors) for each in wanted for at_monitors in (True, False)]
+        requested += [[factor * unit * part.speed for part in parts] for factor in FACTORS]
+    found = [_near(case, each, at_monitors) for each in requested for at_monitors in (True, False)]
     return [each for number, each in enumerate(found) if each not in found[:number]]
 
 
-def _near(case: BarCase, wanted: Sequence[float], at_monitors: bool) -> Changes:
-    """The spacings nearest to some (m, by range) that divide their ranges; at_monitors : with nodes at all of these."""
+def _near(case: BarCase, requested: Sequence[float], at_monitors: bool) -> Changes:
+    """The spacings nearest to the requested ones (m, by range) that divide their ranges.
+
+    at_monitors : with a node at every monitor.
+    """
     bar = case.bar
     keys = [f"bar.range.{each.name}.spacing" for each in bar.range] or ["bar.spacing"]
     changes: Changes = {}
-    for key, part, start, spacing in zip(keys, bar.parts, bar.starts, wanted, strict=True):
+    for key, part, start, spacing in zip(keys, bar.parts, bar.starts, requested, strict=True):
         given = part.length / part.cells
         if math.isclose(spacing, given, rel_tol=AT_NODE):
             continue
@@ -197,7 +200,7 @@ def _near(case: BarCase, wanted: Sequence[float], at_monitors: bool) -> Changes:
 
 
 def _equal_parts(length: float, places: Sequence[float]) -> int:
-    """The smallest number of equal parts of a length (m) between which places (m) are; 1 if it is too large."""
+    """The smallest number of equal parts of a length (m) with borders at all places (m); 1 if it is too large."""
     for count in range(1, MOST_PARTS + 1):
         steps = [place / length * count for place in places]
         if all(abs(step - round(step)) <= AT_NODE for step in steps):
@@ -206,7 +209,7 @@ def _equal_parts(length: float, places: Sequence[float]) -> int:
 
 
 def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequence[str]) -> Iterator[BarOption]:
-    """Choices with several time steps for the nodes that changes give; words : of the ends and of the method."""
+    """Choices with several time steps for given changes; words : of the ends and of the method."""
     try:
         other = changed(case, changes)
         scene = build_bar(other)

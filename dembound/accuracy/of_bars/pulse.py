@@ -20,7 +20,7 @@ from dembound.waves import Triangle, Wave
 class PulseInBar(Exact[BarCase]):
     """A pulse on the left end of a bar without attenuation, up to the first spall.
 
-    pressure : Pa, factor of the wave; far_end : what reflects it.
+    pressure : Pa, factor of the wave; far_end : its type, which determines the reflection.
     """
 
     bar_length: float

@@ -7,7 +7,7 @@ their velocities,
 
     k = (s/c) √(1 + γ/s),    Z = ρcA √(1 + γ/s),
 
-γ = 2αc by attenuation. An end that absorbs is a dashpot Z, which takes all of a wave.
+with γ = 2αc for attenuation α. An absorbing end is a dashpot Z, which reflects nothing.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ EQUAL = 1e-9
 
 @dataclass(frozen=True)
 class Rods:
-    """A bar of bonded ranges, cut at all places that are asked for.
+    """A bar of bonded ranges, cut at its ends, its interfaces and given places.
 
-    places : (k,) m, beside which its ends and interfaces are cut, too. s : (f,) rad/s.
+    places : (k,) m. s : (f,) rad/s.
     """
 
     case: BarCase
@@ -43,7 +43,7 @@ class Rods:
 
     @cached_property
     def cuts(self) -> np.ndarray:
-        """All places (q,) m at which it is cut, from end to end."""
+        """All places (q,) m at which the bar is cut, from end to end."""
         end = self.rod.ranges[-1].end
         cuts = np.unique([*self.places, *(part.start for part in self.rod.ranges), end])
         return cuts[np.concatenate([[True], np.diff(cuts) > EQUAL * end])]
@@ -56,7 +56,7 @@ class Rods:
 
     @cached_property
     def links(self) -> list[Link]:
-        """What joins each cut to the next one (q − 1)."""
+        """The link between each cut and the next one (q − 1)."""
         return [self._link(part, length) for part, length in zip(self.parts, np.diff(self.cuts), strict=True)]
 
     def motion(
@@ -64,8 +64,9 @@ class Rods:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Velocities (f, k) m/s and stresses (f, k) Pa, tension positive, at the places.
 
-        forces : (f,) N to the right on ends, by side. waves : by side (f,) m/s, the velocity of the wave that enters
-        at an end, or of an end that is prescribed.
+        forces : by side (f,) N to the right on ends. waves : by side (f,) m/s, the velocity of the wave that enters at
+        an end,
+        or the prescribed velocity of an end.
         """
         own = [np.zeros((len(self.s), 1, 1), dtype=complex) for _ in self.cuts]
         force = np.zeros((len(self.s), len(self.cuts), 1), dtype=complex)
@@ -84,7 +85,7 @@ class Rods:
         return moved[:, nearest], stress[:, nearest]
 
     def _stress(self, moved: np.ndarray, k: int) -> np.ndarray:
-        """Stress (f,) at a cut; between different sections the force over their mean."""
+        """Stress (f,) at a cut; between different sections the force over the mean section."""
         section = np.mean([part.section for part in self.parts[max(0, k - 1) : k + 1]])
         if k < len(self.links):
             link = self.links[k]
@@ -95,14 +96,14 @@ class Rods:
         return np.asarray(force / section)
 
     def _impedance(self, part: Range) -> np.ndarray:
-        """Z (f,) N·s/m."""
+        """Impedance Z (f,) N·s/m of a range."""
         return part.density * part.section * part.speed * self._root(part)
 
     def _root(self, part: Range) -> np.ndarray:
         return np.sqrt(1.0 + part.drag_rate / self.s)
 
     def _link(self, part: Range, length: float) -> Link:
-        """A rod of so many m."""
+        """The link of a rod of a length (m)."""
         way, impedance = self.s * self._root(part) * (length / part.speed), self._impedance(part)
         faded = -np.expm1(-2.0 * way)
         diagonal = (impedance * (2.0 - faded) / faded)[:, None, None]

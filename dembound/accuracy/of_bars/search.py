@@ -3,8 +3,8 @@
 The motion of a linear bar is known without a run, as it is stepped and exactly (motions.py), for every choice: the
 error is their difference at each monitor. Choices are tried in the order of their predicted cost.
 
-Of a bar that may break the nodes and the method remain, as they are part of how it breaks; its error is that of the
-motion until bonds change. Where it is too large, finite differences that would do are named.
+Nodes and method of a bar that may break are not changed, as they affect how it breaks; its error is estimated until
+bonds change. Where it is too large, sufficient finite-difference choices are named.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ ALONG = "; its nodes and method remain, as it may break, and the error is that b
 
 
 def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str], longest: float | None = None) -> Advice:
-    """The errors of a bar, and for every bound the cheapest choice that keeps it, or that with the smallest error.
+    """The errors of a bar, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
     kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: `COSTLIEST`.
 
     Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
-    keeps those values; the errors of building a scene.
+    keeps the values of `kept`; the errors of building a scene.
     """
     if refused := not_linear(case):
         raise CaseError([f"advise: nothing is known of {line}" for line in refused], case.name)
@@ -79,14 +79,14 @@ def given_motion(case: BarCase) -> Motion:
 
 
 def affordable(own: Motion, options: Iterable[BarOption], longest: float | None = None) -> list[Motion]:
-    """Motions of choices that take at most `longest` s, or `COSTLIEST` times as long as a case; the cheapest first."""
+    """Motions of choices that take at most `longest` s, or `COSTLIEST` times the CPU time of `own`; cheapest first."""
     choices = sorted(options, key=lambda each: each.cost)
     most = COSTLIEST * own.choice.cost if longest is None else longest
     return [Motion(each, own.exact) for each in choices if each.cost <= most]
 
 
 def _otherwise(own: Motion, bound: float, kept: Sequence[str], longest: float | None) -> str:
-    """The cheapest choice of finite differences that keeps a bound, for a bar that may break; empty without one."""
+    """The cheapest finite-difference choice that keeps a bound, in words, for a bar that may break; or ""."""
     motions = affordable(own, other_options(own.choice.scene.case, kept), longest)
     best = cheapest(motions, bound)[0] if motions else None
     if best is None or not best.holds(bound):
@@ -97,9 +97,9 @@ def _otherwise(own: Motion, bound: float, kept: Sequence[str], longest: float | 
 
 
 def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
-    """The first whose error is below a bound, else the one with the smallest, and how many errors were computed.
+    """The first motion whose error is below a bound, else the most accurate, and the number of computed errors.
 
-    Those whose errors are larger by what is known of others (bar_floors.py) are left out.
+    Choices whose lower bounds (floors.py) exceed the bound are skipped.
     """
     floors, found, left = Floors(), list[Motion](), list[Motion]()
     for motion in motions:
@@ -121,23 +121,24 @@ def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
 
 @dataclass(frozen=True)
 class Motion:
-    """The motion of a choice beside the exact one."""
+    """The motion of a choice compared with the exact motion."""
 
     choice: BarOption
     exact: ExactMotion
 
     def add_to(self, floors: Floors) -> None:
-        """Add the error to those by which others are excluded, where the rules for this hold."""
+        """Add the error to the lower bounds, where their rules hold."""
         if is_regular(self.choice, self.exact.places):
             counted, echo = self._surely_counted, first_echo(self.choice.scene)
             floors.add(self.choice, self._error_of(counted), self._error_of(counted, echo))
 
     @cached_property
     def unseen(self) -> float:
-        """What a history with longer steps than those of the case does not show, RMS over RMS.
+        """Error by motion between the steps of the choice, where they are longer than those of the case, RMS over RMS.
 
-        It is the difference of the exact motion from the cubic curve through its values at the steps: a pulse of a few
-        samples may be exact at each of them, and not be seen between.
+        The difference between the exact motion and the cubic spline through its values at the steps: a pulse of a few
+        samples
+        may be exact at each of them, and missed between.
         """
         if self.choice.step <= (1.0 + EQUAL) * self.exact.step:
             return 0.0
@@ -153,11 +154,11 @@ class Motion:
 
     @cached_property
     def error(self) -> float:
-        """The error at the worst monitor, with what is not seen between steps."""
+        """The error at the worst monitor, including motion missed between steps."""
         return math.hypot(self._error_of(self.recorded), self.unseen)
 
     def _error_of(self, recorded: Motions, last: Mapping[str, float] | None = None) -> float:
-        """The error of what is recorded; last : s, by monitor, up to which it counts."""
+        """The error of recorded motions; last : time (s) by monitor up to which they are compared."""
         own, exact = self._own, self._exact
         if last is not None:
             own = {
@@ -174,7 +175,7 @@ class Motion:
 
     @property
     def _surely_counted(self) -> dict[str, History]:
-        """The part of what is recorded that counts for all choices."""
+        """The recorded monitors and quantities that count for all choices."""
         counted = self.exact.surely_counted(self._motions.window)
         return {
             name: replace(own, values={q: values for q, values in own.values.items() if q in counted[name]})
@@ -182,14 +183,14 @@ class Motion:
         }
 
     def holds(self, bound: float) -> bool:
-        """Whether the error is below a bound, with a reserve; also that by causes, which takes longer to find."""
+        """Whether the error is below a bound, with a reserve, directly and as the sum of causes (slower to find)."""
         return FACTOR * self.error <= bound and self.budget.worst().share.upper <= bound
 
     @cached_property
     def budget(self) -> Budget:
-        """The error as an estimate gives it, and its causes; grid and steps have opposite signs.
+        """The error and its causes as an estimate gives them; grid and steps have opposite signs.
 
-        It differs from `error` by the exact motion, too, which that one takes between the samples of another window.
+        It differs from `error` also by its exact motion, which is sampled in another window.
         """
         unseen = {name: dict.fromkeys(own.values, self.unseen) for name, own in self.recorded.items()}
         between = [Cause("between steps", "by the exact motion", unseen, "bound")] if self.unseen else []
@@ -197,7 +198,7 @@ class Motion:
 
     @cached_property
     def causes(self) -> list[Cause]:
-        """What ends, nodes, steps and places of monitors beside nodes add to the motion."""
+        """Errors by ends, nodes, steps, and monitors that are not at nodes."""
         return split(self._motions, self._own, self._motions.exact(), self.recorded)
 
     @property
@@ -223,7 +224,7 @@ class Motion:
 
     @cached_property
     def recorded(self) -> dict[str, History]:
-        """The motion as a run records it; without the stress of end nodes, which is that half a spacing inside."""
+        """The motion as a run records it, without the stress of end nodes, which is recorded half a spacing inside."""
         ends = (0, self.choice.scene.count - 1)
         at_ends = [name for name, node in self._motions.nodes.items() if node in ends]
         return {

@@ -1,7 +1,7 @@
 """Histories from transforms at complex frequencies: a damped discrete Fourier transform, as in exact/transform.py.
 
-The window is `LONGER` times as long as the history, and what happens beyond it returns to its beginning multiplied by
-e^{−ηW}. Signals fade out beyond the history, so that they do not jump there.
+The window W is `LONGER` times as long as the history; motion after it aliases to its beginning multiplied by e^{−ηW}.
+Signals fade out beyond the history, so that they do not jump there.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ class Window:
 
     @property
     def time(self) -> np.ndarray:
-        """(steps + 1,) s."""
+        """Times (steps + 1,) s."""
         return self.step * np.arange(self.steps + 1)
 
     @property
     def rate(self) -> float:
-        """η, 1/s."""
+        """Damping rate η, 1/s."""
         return DAMPING / (self.samples * self.step)
 
     @property
@@ -77,7 +77,7 @@ class Window:
 
 
 def needed(transforms: list[np.ndarray]) -> int:
-    """How many of the frequencies (f,), from the lowest on, these signals have; at least one."""
+    """How many of the frequencies (f,), from the lowest on, represent these signals; at least one."""
     most = 1
     for values in transforms:
         energy = np.cumsum(np.abs(values[::-1]) ** 2)[::-1]

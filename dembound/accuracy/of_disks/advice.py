@@ -1,4 +1,4 @@
-"""The errors of a case of disks, and the cheapest choices for bounds, of its own law or an elastic one in its place."""
+"""The errors of a case of disks, and the cheapest choices for bounds, under its own law or an elastic one."""
 
 from __future__ import annotations
 
@@ -28,14 +28,16 @@ from dembound.running import plan
 def advice_for_disks(
     case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None = None
 ) -> Advice:
-    """The errors of a case, and for every bound the cheapest choice that keeps it, or that with the smallest error.
+    """The errors of a case, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
-    of : the truth that errors are those of; where these are the disks, they remain. kept : keys that do not change.
-    longest : CPU seconds that the steps of a choice may take; None: as many as by default.
-    Where one bound is asked for, which the case keeps in less time than a search takes, this is the choice.
+    of : truth to which errors are relative; with "disks" the disks do not change. kept : keys that do not change.
+    longest :
+    CPU seconds that the steps of a choice may take; None: the default. A case that keeps the only bound in less time
+    than a
+    search takes is the choice itself.
 
-    Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
-    the companions.
+    Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building and
+    running the companions.
     """
     _require_known(case)
     kept = [*kept, "packing.radius"] if of == "disks" else kept
@@ -63,7 +65,7 @@ def advice_for_disks(
 
 
 def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
-    """The case as it is."""
+    """The proposal of the unchanged case."""
     scene = companions.scene
     causes = causes_of_choice(companions, scene, companions.time_step, 0.0) + Causes([], [], entry_notes(scene))
     budget = Budget(companions.recorded(scene), causes, of)
@@ -71,7 +73,7 @@ def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
 
 
 def _best(given: Proposal, case: DiskCase, searches: Sequence[Search], bound: float) -> Proposal:
-    """The best choice of several searches, the second one only where the first finds none; at least the case given."""
+    """The best choice of several searches, at least the given case; the second runs only if the first finds none."""
     found = [given]
     for search in searches:
         found.append(search.proposal(case, bound))
@@ -86,7 +88,7 @@ def _best(given: Proposal, case: DiskCase, searches: Sequence[Search], bound: fl
 
 
 def _require_known(case: DiskCase) -> None:
-    """Raise CaseError where errors, or the body itself, depend on what is not known for other disks and sides."""
+    """Raise CaseError where errors, or the body itself, depend on unknown properties of other disks and sides."""
     problems = []
     if case.static is not None and case.static.from_ is not None:
         problems.append("static.from: is the body of the given disks and sides; must be left out for advice")
@@ -100,7 +102,7 @@ def _require_known(case: DiskCase) -> None:
 
 
 def _is_reached(planned: Plan[DiskScene]) -> bool:
-    """Whether the fastest waves come to any monitor within the run."""
+    """Whether the fastest waves reach any monitor within the run."""
     scene, duration = planned.scene, planned.scene.case.run.duration
     front, places = planned.kind.front(scene, planned.time_step), monitored(scene)
     return any(

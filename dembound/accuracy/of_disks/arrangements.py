@@ -1,4 +1,4 @@
-"""What may stand in for the ground beyond a scene of disks: its own sides, dashpots, springs, a continuum."""
+"""Arrangements of sides that stand in for the ground beyond a scene: the case's own, dashpots, springs, a continuum."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ROUNDING = 1e-9
 
 
 def may_widen(arrangement: Choice[DiskCase]) -> bool:
-    """Whether sides of a choice reflect and may be farther away: not where disks fill only a box of the ground."""
+    """Whether the sides of a choice reflect and may be farther away; not where disks fill only a box of the ground."""
     reflecting = [side for side, table in _silent(arrangement.case).items() if not table.absorber]
     return bool(reflecting) and arrangement.case.ground.size is None
 
@@ -35,9 +35,9 @@ def _silent(case: DiskCase) -> dict[str, Boundary]:
 
 
 def arrangements(case: DiskCase, ground: PackedMaterial, bound: float) -> Iterator[Choice[DiskCase]]:
-    """Choices of sides for a case, its own first: those whose tables are valid, none of which has been built.
+    """Choices of sides for a case, its own first: with valid tables, none of them built yet.
 
-    ground : of the case. bound : error asked for.
+    ground : of the case. bound : error bound.
     """
     silent = _silent(case)
     yield Choice("sides as given", {}, case)
@@ -48,7 +48,7 @@ def arrangements(case: DiskCase, ground: PackedMaterial, bound: float) -> Iterat
 
 
 def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice[DiskCase]]:
-    """Matched dashpots, alone and with springs towards what makes waves."""
+    """Matched dashpots, without springs and with springs towards the sources."""
     if any(table.needs_column for table in silent.values()):
         return  # the motion of the ground is not zero beyond them
     kinds: dict[str, dict[str, Any]] = {"viscous": {}}
@@ -67,7 +67,7 @@ def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Choice
 def _continuum(
     case: DiskCase, ground: PackedMaterial, silent: Mapping[str, Boundary], bound: float
 ) -> Iterator[Choice[DiskCase]]:
-    """A continuum beyond all artificial sides, or those without waves, and round boxes of disks."""
+    """Choices with a continuum beyond all artificial sides, or beyond those without waves, and round boxes of disks."""
     coarse = CONTINUUM_SHARE * bound
     accuracies: dict[str, dict[str, Any]] = {"": {}} | (
         {"coarse ": {"outside.accuracy": coarse}} if coarse > case.outside.accuracy else {}
@@ -92,8 +92,8 @@ def _boxes(
     """Boxes of disks of several sizes in a continuum."""
     if not may_be_boxed(case):
         return
-    wanted = changed(case, accuracy)
-    small = [*rectangles(wanted, ground)]
+    requested = changed(case, accuracy)
+    small = [*rectangles(requested, ground)]
     for box in dict.fromkeys([*small, *(_with_monitors(case, each) for each in small)]):
         tables = box_tables(case, box)
         kept = {key: value for key, value in case.packing.given().items() if key != "bricks"}
@@ -112,7 +112,7 @@ def _if_valid(words: str, case: DiskCase, changes: Mapping[str, Any]) -> Iterato
 
 
 def _with_monitors(case: DiskCase, box: Box) -> Box:
-    """The smallest box of whole bricks round another one that has all monitors and regions of loads inside."""
+    """The smallest box of whole bricks that contains another box, all monitors and regions of loads."""
     places = [monitor.position for monitor in case.monitor]
     places += [corner for load in case.load if load.region for corner in (load.region[:2], load.region[2:])]
     low, high = np.array(box[:2]), np.array(box[2:])

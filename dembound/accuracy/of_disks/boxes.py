@@ -1,4 +1,4 @@
-"""Boxes of disks round the holes and loads of a scene, with a continuum round them, and the cheapest one."""
+"""Boxes of disks round the holes and loads of a scene, with a continuum round them, and the cheapest box."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ BAND = 4.0
 
 
 class BoxOfDisks(NamedTuple):
-    """A box: its rectangle (m), its disks and those of its free-field column, nodes, and nanoseconds of a step."""
+    """A box: rectangle (m), numbers of its disks, of column disks and of nodes, and nanoseconds of a step."""
 
     box: Box
     disks: int
@@ -43,7 +43,7 @@ class BoxOfDisks(NamedTuple):
 
 
 def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
-    """The keys of a case with disks in a box (m) only, by table; those of the packing that it keeps are left out."""
+    """Changed keys, by table, of a case with disks in a box (m) only; unchanged packing keys are left out."""
     left, bottom, right, top = box
     size, origin = ([round(length, 10) for length in each] for each in ((right - left, top - bottom), (left, bottom)))
     outside = {f"boundary.{side}": continuum_beyond(case.side(side)) for side in _sides_beyond(case, box)}
@@ -53,7 +53,7 @@ def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
 
 
 def _sides_beyond(case: DiskCase, box: Box) -> Sequence[str]:
-    """The sides of a box (m) beyond which a continuum goes on: the top of one below the surface, too."""
+    """The sides of a box (m) beyond which a continuum goes on, with the top if the box is below the surface."""
     return SIDES if box[3] < case.box[3] else SIDES[:3]
 
 
@@ -69,12 +69,12 @@ def cheapest_box(scene: DiskScene) -> BoxOfDisks | None:
 
 
 def _cost(scene: DiskScene) -> float:
-    """Nanoseconds of a step of a scene, but for the forces of a wave at an angle, which boxes have as well."""
+    """Nanoseconds of a step of a scene, without forces of an oblique wave, which boxes need as well."""
     return sum(cost for part, cost in step_cost.of_scene(scene).items() if part != "incident wave")
 
 
 def may_be_boxed(case: DiskCase) -> bool:
-    """Whether all that makes waves, but for those from below, is in one place, and the ground could go on beyond."""
+    """Whether all sources but waves from below are in one place, and the ground could go on beyond it."""
     plain = not any(case.periodic) and not case.motion.held and (case.static is None or case.static.stress is None)
     beyond = all(case.side(side).is_artificial for side in ("left", "right", "bottom"))
     at_top = case.side("top").is_free or case.side("top").is_outside
@@ -91,7 +91,7 @@ def may_be_boxed(case: DiskCase) -> bool:
 
 
 def _ends_level(case: DiskCase) -> bool:
-    """Whether holes reach neither left nor right side, or leave a level floor there and nothing moves all ground."""
+    """Whether holes end within the sides, or as level floors at them, with no body-wide loads."""
     left, _, right, _ = case.packing.box
     reached = {side for hole in case.hole for side in ("left", "right") if _reaches(hole.box, side, left, right)}
     if not reached:
@@ -107,7 +107,7 @@ def _reaches(hole: Box, side: str, left: float, right: float) -> bool:
 
 
 def boxes(scene: DiskScene) -> Iterator[BoxOfDisks]:
-    """Boxes of disks with elements of different sizes round them, in place of a scene that `may_be_boxed`."""
+    """Boxes of disks with elements of different sizes round them, for a scene that `may_be_boxed`."""
     for box in rectangles(scene.case, scene.ground):
         try:
             yield _with_continuum(scene, box)
@@ -116,7 +116,7 @@ def boxes(scene: DiskScene) -> Iterator[BoxOfDisks]:
 
 
 def rectangles(case: DiskCase, ground: PackedMaterial) -> Iterator[Box]:
-    """The boxes (m) of disks of a ground in place of a case that `may_be_boxed`, with larger and smaller elements."""
+    """Boxes (m) of disks of a ground for a case that `may_be_boxed`, for different sizes of elements."""
     diameter, order, accuracy = ground.brick.mean_diameter, case.outside.order, case.outside.accuracy
     side = choice.element_size(signals_of(case), medium_of(ground), order, accuracy)
     beside_a_force = NearField((0.0, 0.0, 0.0, 0.0), 1.0, "force").largest_side(order, accuracy)
@@ -144,7 +144,7 @@ def _round(case: DiskCase, clearance: float, diameter: float) -> Box:
 
 
 def _with_continuum(scene: DiskScene, box: Box) -> BoxOfDisks:
-    """A box with its continuum and column."""
+    """A box with its counts and cost, including continuum and column."""
     case, ground = scene.case, scene.ground
     sides = _sides_beyond(case, box)
     settings = settings_of(case, medium_of(ground), ground.brick.mean_diameter, box, sides)

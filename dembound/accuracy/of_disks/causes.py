@@ -29,21 +29,21 @@ PLACES = "places"
 
 
 HELD = "how much earlier waves come back from disks that are held at their centres: {}"
-"""What is not known of sides that hold disks, with the reason."""
+"""Text on the unknown error of sides that hold disks, with the reason."""
 
 HELD_FACTOR = 1.6
-"""Factor of what sides of the problem add that hold disks: true errors were 0.54 to 1.47 times as large at 14 monitors
-of five scenes with a force, fixed sides and rollers (of a fixed side with 0.64 D in place of D/2 for P and 0.77 D
-for S waves)."""
+"""Factor of errors of problem sides that hold disks: true errors were 0.54 to 1.47 times as large at 14 monitors of
+five scenes with a force, fixed sides and rollers (for a fixed side with 0.64 D in place of D/2 for P and 0.77 D for
+S waves)."""
 
 CONTACTS_FACTOR = 1.8
-"""Factor of what the time step adds where contacts open or slide, in gravel under weight on a shaken base: true errors
-of 30 velocities were 0.78 to 2.0 times as large as by the given disks, one of them above 1.8, and 0.13 to 2.05 times as
-large as by larger ones, two of them above 1.8 (lattices and random packings, friction of 0.2 and 0.6)."""
+"""Factor of time-step errors where contacts open or slide, in gravel under weight on a shaken base: true errors of 30
+velocities were 0.78 to 2.0 times as large as found by the given disks, one above 1.8, and 0.13 to 2.05 times as
+large as found by larger disks, two above 1.8 (lattices and random packings, friction of 0.2 and 0.6)."""
 
 
 def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
-    """The causes of the error of a run: of the far companion's motion where there is one, else of that recorded.
+    """The causes of the error of a run, from the far companion's motion if there is one, else from the recorded motion.
 
     case : to the end of the run. recorded : by monitor. time_step (s), work (particle-steps) : of the run. most :
     particle-steps that companions may take.
@@ -69,9 +69,9 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
 def _of_ground_of_run(
     case: DiskCase, scene: DiskScene, recorded: Motions, time_step: float, most: float
 ) -> tuple[list[Cause], float]:
-    """Causes without companions for other sides, at the times recorded, and the work of companions for the rest.
+    """All causes but artificial sides, at the recorded times, and the work (particle-steps) of their companions.
 
-    These are for sides that hold disks, and for contacts that open or slide.
+    Companions are needed for sides that hold disks, and for contacts that open or slide.
     """
     known = Formulas(scene, time_step).causes(recorded)
     sides = HeldSides(scene).among_others
@@ -99,7 +99,7 @@ def _of_ground_of_run(
 
 
 def _at_times(cause: Cause, time: np.ndarray, at: Mapping[str, np.ndarray]) -> Cause:
-    """A cause whose parts are at times (k,) s, at others by monitor."""
+    """A cause given at times (k,) s, interpolated at the times of each monitor."""
     parts = {
         name: {quantity: at_times(time, np.asarray(part), at[name]) for quantity, part in parts.items()}
         for name, parts in cause.parts.items()
@@ -109,7 +109,7 @@ def _at_times(cause: Cause, time: np.ndarray, at: Mapping[str, np.ndarray]) -> C
 
 
 def entry_notes(scene: DiskScene) -> list[str]:
-    """By how much all motion is earlier or later than that of waves through the planes of sides, which is no error."""
+    """Lines on the shift of all motion relative to waves through the planes of sides, which is no error."""
     late = late_by(scene)
     if abs(late) < LEAST_LATE * scene.case.run.duration:
         return []
@@ -120,7 +120,7 @@ def entry_notes(scene: DiskScene) -> list[str]:
 
 
 def quick_causes(scene: DiskScene) -> Causes:
-    """Causes that are known without the motion of the monitors, and those that are not, as unknown."""
+    """Causes of errors of a scene; those that need the motion of the monitors are unknown."""
     names = [monitor.name for monitor in scene.case.monitor]
     found = Formulas(scene, math.nan).without_motion(names)
     if sides := sides_of_pair(scene.case):
@@ -133,7 +133,7 @@ def causes_of_choice(
 ) -> Causes:
     """The causes of the error of a choice, from the far companion's motion; see `Companions.of_sides`.
 
-    ground : those of `of_ground`, if they are known.
+    ground : the result of `of_ground`, if known.
     """
     ground = ground or of_ground(companions, scene, time_step)
     found = Causes(ground, _not_counted(scene), motions=companions.recorded(scene))
@@ -144,7 +144,7 @@ def causes_of_choice(
 
 
 def of_ground(companions: Companions, scene: DiskScene, time_step: float) -> list[Cause]:
-    """Causes of the error of a choice that are known without companions of its own: all but sides."""
+    """All causes of the error of a choice but artificial sides, which would need companions of its own."""
     motions = companions.recorded(scene)
     words = "by the motion between the disks of companions"
     places = Cause(PLACES, words, companions.moved(scene), of_disks=True, factor=USUAL)
@@ -157,9 +157,9 @@ def of_ground(companions: Companions, scene: DiskScene, time_step: float) -> lis
 def _with_steps_of_contacts(
     causes: list[Cause], companions: Companions, scene: DiskScene, time_step: float
 ) -> list[Cause]:
-    """The causes, with the time step by companions where contacts open or slide; its formula is that of elastic ones.
+    """The causes, with the time step's error from companions where contacts open or slide.
 
-    A companion that cannot run leaves it unknown.
+    The formula for the time step holds for elastic contacts only; if a companion cannot run, the error is unknown.
     """
     if not scene.has_history:
         return causes
@@ -176,7 +176,7 @@ def _with_steps_of_contacts(
 
 
 def _held(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
-    """What sides of the problem itself add that hold disks at their centres, under waves from all directions."""
+    """Errors of problem sides that hold disks at their centres, under waves from all directions."""
     for side in HeldSides(scene).among_others:
         words = "by companions whose disks are held elsewhere"
         try:
@@ -188,7 +188,7 @@ def _held(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
 
 
 def of_sides(companions: Companions, scene: DiskScene, time_step: float, wider: float) -> Cause:
-    """What sides that absorb add; see `Companions.of_sides`."""
+    """Errors of absorbing sides; see `Companions.of_sides`."""
     parts = companions.of_sides(scene.case, scene, time_step, wider)
     return Cause(SIDES, companions.words, parts, "companion", factor=USUAL)
 
@@ -201,14 +201,14 @@ def _not_counted(scene: DiskScene) -> list[str]:
 
 
 def _breaks(companions: Companions) -> list[str]:
-    """Up to when sides are compared, if bonds break in the companion."""
+    """A line with the time up to which sides are compared, if bonds break in the companion."""
     if not math.isfinite(companions.first_break):
         return []
     return [f"{SIDES} after {companions.first_break:.3g} s, when bonds break in the companion"]
 
 
 def _echoes(companions: Companions) -> list[str]:
-    """A sentence that the larger companion is not large enough, where it is not."""
+    """A line that the far companion is too small to be free of echoes, where it is."""
     if companions.echo_free:
         return []
     return [f"{SIDES}: the larger scene, {companions.far_size}, has echoes of its own"]

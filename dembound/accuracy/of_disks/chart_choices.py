@@ -39,7 +39,7 @@ def disk_choices(case: DiskCase) -> Named:
 
 
 def _matched_factors(case: DiskCase) -> Named:
-    """Matched factors β for all sides that have others; where a wave enters, it would change."""
+    """Matched factors β for all sides with other factors, but not for sides where a wave enters, which would change."""
     absorbing = {side: table for side, table in case.boundary.items() if table.factors and not table.waves}
     if not absorbing:
         return
@@ -51,7 +51,7 @@ def _matched_factors(case: DiskCase) -> Named:
 
 
 def _unmatched(scene: DiskScene, side: str) -> Iterator[Motion]:
-    """Kinds of waves whose factor of a side differs from the matched one, which is nan where the motion is held."""
+    """Kinds of waves (P, S) for which a side's factor differs from the matched one, nan where the motion is held."""
     for motion, beta in factors_in(scene, side).items():
         matched = homogenised_beta(scene, side, motion)
         if abs(matched - beta) > UNMATCHED * matched:
@@ -59,7 +59,7 @@ def _unmatched(scene: DiskScene, side: str) -> Iterator[Motion]:
 
 
 def _other_sides(case: DiskCase) -> Named:
-    """Other types for all sides that absorb without a wave, if they may have them; those with factors β keep them."""
+    """Other types for all absorbing sides without waves, where allowed; types with factors β keep them."""
     absorbing = _absorbing(case)
     silent = {side: table for side, table in absorbing.items() if not table.waves}
     tables: dict[str, dict[str, Any]] = {
@@ -85,7 +85,7 @@ def _absorbing(case: DiskCase) -> dict[str, Boundary]:
 
 
 def _continuum(case: DiskCase, *choices: Mapping[str, Boundary]) -> Named:
-    """A continuum beyond the first of these sides beyond which the case may have one; waves enter as in the case."""
+    """A continuum beyond the first of several sets of sides that allows one; waves enter as in the case."""
     for sides in choices:
         changes = {f"boundary.{side}": continuum_beyond(table) for side, table in sides.items()}
         if not all(table.is_outside for table in sides.values()) and is_valid(case, changes):
@@ -94,7 +94,7 @@ def _continuum(case: DiskCase, *choices: Mapping[str, Boundary]) -> Named:
 
 
 def _box(case: DiskCase) -> Named:
-    """The smallest box of disks round holes and loads, if that saves much and all monitors may be around it."""
+    """The smallest box of disks round holes and loads, if it saves much and all monitors may lie around it."""
     if not may_be_boxed(case) or (best := cheapest_box(build(case))) is None:
         return
     tables = box_tables(case, best.box)

@@ -1,11 +1,11 @@
 """A case of disks with larger particles: the same ground, sides, loads, holes and monitors on a coarser lattice.
 
-What artificial sides do to a run, echoes, drift and waves along the surface, hardly depends on the particles as long as
-they resolve the waves. Their error is therefore found from two runs with larger ones, which cost a small share of the
-run itself: k times larger disks are k² times fewer, with steps k times longer.
+Effects of artificial sides (echoes, drift, surface waves) hardly depend on the particles as long as they resolve the
+waves. Their error is therefore found from two runs with larger ones, which cost a small share of the run itself: k
+times larger disks are k² times fewer, with steps k times longer.
 
-The coarser packing is always a square lattice. That of a random packing has its wave speeds along x, its density, and
-dashpots that reflect as much of plane waves along their normal as those of the case, and as stiff springs.
+The coarser packing is always a square lattice. In place of a random packing it has the same wave speeds along x, the
+same density, dashpots that reflect as much of plane waves along their normal, and springs as stiff.
 """
 
 from __future__ import annotations
@@ -48,8 +48,9 @@ def largest_diameter(case: DiskCase, shortest: float) -> float:
 class Coarser:
     """A case with larger particles.
 
-    weight : of what its sides add as whole cells to what they add as half cells. That is the reflection of a mass too
-    much, out of phase, which cells k times larger have k times; 0 where it need not be known.
+    weight : ratio of the error of its sides in the case to the error added by whole cells at the sides. The latter is
+    the
+    reflection by excess mass, out of phase, which k times larger cells have k times; 0 where it need not be known.
     """
 
     case: DiskCase
@@ -92,7 +93,7 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
 
 
 def _cells(size: tuple[float, float], diameter: float) -> tuple[int, int, float]:
-    """Columns, rows and width (m) of the cells, at most this diameter wide, whose rows fit the height best."""
+    """Columns, rows and width (m) of cells of at most this diameter whose rows fit the height best."""
     fewest = math.ceil(size[0] / diameter - 1e-9)
     most = max(fewest + 1, min(fewest + TRIED, int(1.15 * fewest)))
     tried = [(columns, size[1] * columns / size[0]) for columns in range(fewest, most + 1)]
@@ -106,7 +107,7 @@ def _middle(box: tuple[float, float, float, float]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Sides:
-    """How places move with the sides.
+    """The mapping of places when sides move.
 
     stretch : of lengths along x and y, from the lower left corner. box : left, bottom, right and top (m) afterwards,
     which rounding must not exceed.
@@ -116,12 +117,12 @@ class _Sides:
     box: Box
 
     def moved(self, place: np.ndarray) -> tuple[float, float]:
-        """How far (m) a place moves."""
+        """Displacement (m) of a place."""
         x, y = ((place - self.box[:2]) * (self.stretch - 1.0)).tolist()
         return x, y
 
     def at(self, place: np.ndarray) -> tuple[float, float]:
-        """Where (m) a place is afterwards."""
+        """New position (m) of a place."""
         x, y = self.within((place - self.box[:2]) * self.stretch + self.box[:2]).tolist()
         return x, y
 
@@ -137,7 +138,7 @@ def _run(case: DiskCase) -> Any:
 
 
 def _material(case: DiskCase, ground: PackedMaterial) -> Material:
-    """The material, by which the lattice has the wave speeds along x of the ground."""
+    """The material with which the lattice has the ground's wave speeds along x."""
     if is_square_lattice(ground):
         return case.material
     tensor, density = ground.material_tensor, ground.density
@@ -158,7 +159,7 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
 
 
 def _static(case: DiskCase, moduli: Moduli) -> Static | None:
-    """The static stage; instead of a locked-in stress a given one under which the contacts carry that pressure."""
+    """The static stage; a locked-in stress becomes a given stress with the same contact pressure."""
     if case.static is None:
         return None
     update: dict[str, Any] = {"from_": None}
@@ -170,7 +171,7 @@ def _static(case: DiskCase, moduli: Moduli) -> Static | None:
 
 
 def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:
-    """A load with the same force in all, on the disks of a region at least one cell wide and high."""
+    """A load with the same total force, on the disks of a region at least one cell wide and high."""
     if load.pressure is not None or load.is_everywhere:
         return load
     update: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""Runs with larger disks that show what sides do to the motion of the monitors: with far sides, and with others."""
+"""Runs with larger disks that show effects of sides on the motion of the monitors: with far sides, and with others."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ LESS = 0.9
 """Step of all companions over that of the pair, so that it is stable with the springs and half cells of any sides."""
 
 OFTEN = 3.0
-"""Work of a run and of one with half its step, over its own."""
+"""Work of a run and of one with half its step, over the work of the run."""
 
 OF_LARGER = 2.2
 """Errors of the time step where contacts open or slide, over those of disks 1.6 times as large: 0.3 to 4.6 times (30
@@ -52,7 +52,8 @@ velocities)."""
 class Companions:
     """Companions of a case of disks.
 
-    case, scene, time_step (s) : those given. most : particle-steps that the first two may take. runner : runs them.
+    case, scene, time_step (s) : of the given case. most : particle-steps that the first two may take. runner : runs
+    them.
     """
 
     case: DiskCase
@@ -91,16 +92,16 @@ class Companions:
 
     @property
     def far(self) -> Motions:
-        """The motion of the disks of all patches without what sides send back, until bonds break."""
+        """The motion of the disks of all patches without reflections of sides, until bonds break."""
         return self._until_break(self._far.motions)
 
     @property
     def first_break(self) -> float:
-        """Time (s) at which the first bond breaks there, infinite without one."""
+        """Time (s) at which the first bond breaks in the run with far sides, infinite without one."""
         return self._far.finding(BREAK_TIME)
 
     def _until_break(self, motions: Motions) -> Motions:
-        """The histories before the first bond breaks with far sides."""
+        """The histories, cut before the first bond breaks with far sides."""
         return {name: each.before(self.first_break) for name, each in motions.items()}
 
     @cached_property
@@ -114,19 +115,19 @@ class Companions:
 
     @cached_property
     def _lattice(self) -> DiskScene:
-        """The scene of the companion of the given case."""
+        """The scene of the given case with larger disks."""
         if self.pair is not None:
             return self.pair.smaller
         return build(self._coarser(self.case, self.scene, self.time_step).case)
 
     @cached_property
     def _patches(self) -> dict[str, np.ndarray]:
-        """By monitor, the places (k, 2) m of the disks round it in that scene."""
+        """By monitor, the places (k, 2) m of the disks around it in the scene with larger disks."""
         return {name: patch_around(self._lattice, place) for name, place in self._places(self.scene).items()}
 
     @cached_property
     def _own(self) -> DiskCase:
-        """The companion of the given case, with monitors at the disks of all patches."""
+        """The given case with larger disks, and monitors at the disks of all patches."""
         case = self._lattice.case
         monitors = {monitor.name: monitor for monitor in case.monitor}
         return replace(
@@ -140,7 +141,7 @@ class Companions:
 
     @cached_property
     def _needed(self) -> dict[str, int]:
-        """Bricks of the companion's disks beyond each side that may move, with which nothing returns."""
+        """By side that may move, the bricks of larger disks beyond it with which nothing returns."""
         return needed_by(build(self._own))
 
     @property
@@ -156,22 +157,24 @@ class Companions:
 
     @property
     def words(self) -> str:
-        """How errors are found with them."""
+        """How errors are found with companions, in words."""
         ratio = self.diameter / self.scene.ground.brick.mean_diameter
         return f"from companions with particles {ratio:.3g} times as large, {self.far_size}"
 
     def recorded(self, scene: DiskScene) -> dict[str, History]:
-        """The far companion's motion at the places of the monitors in a scene, seen from the loads."""
+        """The far companion's motion at the places of a scene's monitors relative to the loads."""
         time = next(iter(self.far.values())).time
         motion = self._motion(self.far, self._places(scene))
         return {name: History(scene.monitored[name], time, values) for name, values in motion.items()}
 
     def moved(self, scene: DiskScene) -> dict[str, dict[str, np.ndarray | float]]:
-        """How that motion differs from that at the places asked for, (k, 2), by monitor and quantity.
+        """Error (k, 2) by monitors and loads that are not at the requested places, by monitor and quantity.
 
-        Monitors and loads have the nearest disks. Of several loads, of whose motion only the sum is known, the one by
-        which the motion differs most counts. A load at another place has other distances from surfaces, too, from which
-        its waves return earlier or later.
+        Monitors and loads act at the nearest disks. Of several loads, of whose motion only the sum is known, the one
+        with the
+        largest error counts. A load at another place also has other distances from surfaces, from which its waves
+        return
+        earlier or later.
         """
         there = self._places(scene)
         asked = {monitor.name: monitor.position - scene.monitored[monitor.name] for monitor in self.case.monitor}
@@ -184,10 +187,9 @@ class Companions:
         }
 
     def _unmoved(self, places: Mapping[str, np.ndarray], shift: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
-        """Motion (k, 2) at places (2,) m, by monitor, as it is where they and the loads were before a shift.
+        """Motion (k, 2) at places (2,) m, by monitor, before they and the loads were shifted relative to fixed sides.
 
-        shift : (2,) m; sides that return waves have stayed. To the first order, by what one more row of disks there
-        changes.
+        shift : (2,) m. To the first order, from the change by one more row of disks at these sides.
         """
         far, cell = self._motion(self.far, places), self._lattice.ground.brick.mean_diameter
         found = {name: dict(own) for name, own in far.items()}
@@ -202,13 +204,17 @@ class Companions:
         return found
 
     def of_held(self, scene: DiskScene, side: str) -> dict[str, dict[str, np.ndarray | float]]:
-        """What a side adds that holds disks at a depth s inside of its plane, (k, 2), by monitor and quantity.
+        """Error (k, 2) of a side that holds disks at a depth s inside of its plane, by monitor and quantity.
 
         Companions are lattices, which hold disks of the diameter D' at D'/2. One more row of them puts these as far
         outside of the plane, so that the difference v(D'/2) - v(-D'/2) is the change over D' about the plane. Where
-        motion along the side is free, mass begins at the plane and must stay there: a mirror plane holds what the side
-        holds, at the plane, and the difference is that of D'/2. To the first order the error is s over that of it, with
-        the mean s of P and S waves, of which motion is the sum: on a lattice D/2 and 0.77 D at a fixed side.
+        motion along the side is free, mass begins at the plane and must stay there: a mirror plane holds the same
+        components
+        at the plane, and the difference is the change over D'/2. To the first order the error is s over that distance
+        times
+        the difference, with the mean s of P and S waves, of which motion is the sum: on a lattice D/2 and 0.77 D at a
+        fixed
+        side.
         """
         places, table = self._places(scene), self.case.side(side)
         far, cell = self._motion(self.far, places), self._lattice.ground.brick.mean_diameter
@@ -222,12 +228,14 @@ class Companions:
         return {name: {q: share * (own[q] - there[name][q]) for q in QUANTITIES} for name, own in far.items()}
 
     def of_steps(self, scene: DiskScene, time_step: float) -> dict[str, dict[str, np.ndarray | float]]:
-        """What the time step (s) adds where contacts open or slide, (k, 2), by monitor and quantity: a random sample.
+        """Error (k, 2) of the time step (s) where contacts open or slide, by monitor and quantity: a random sample.
 
         A contact opens, slides or closes up to a step late, and others follow, so errors are random and grow with the
-        first power of the step: the difference e from half the step has the RMS of √(1 + 1/4) times them. It is that of
-        the given case where this can be run so often, else of its companion. Steps count over their limit, which grows
-        as the diameter. Nothing where the law remains elastic.
+        first power of the step: the difference to a run with half the step has √(1 + 1/4) times their RMS. The given
+        case is
+        run with both steps if that is affordable, else its companion, whose error scales with the step over its limit,
+        which
+        is proportional to the diameter. Empty where the law remains elastic.
         """
         is_own = OFTEN * self.scene.count * self.case.run.duration / self.time_step <= self.most
         case, step = (self.case, self.time_step) if is_own else (self._own, self.step)
@@ -266,7 +274,7 @@ class Companions:
         return self._behind[side]
 
     def _places(self, scene: DiskScene) -> dict[str, np.ndarray]:
-        """Where (2,) m in the lattice of the companion the monitors of a scene are, seen from the middle of loads."""
+        """By monitor of a scene, its place (2,) m in the companion's lattice, relative to the middle of loads."""
         seen, own = (middle_of_loads(each) for each in (scene, self._lattice))
         low, stretch = np.array(self.case.box[:2]), np.array(self._lattice.case.size) / self.case.size
         names = [monitor.name for monitor in self.case.monitor]
@@ -292,9 +300,9 @@ class Companions:
     def of_sides(
         self, case: DiskCase, scene: DiskScene, time_step: float, wider: float
     ) -> dict[str, dict[str, np.ndarray | float]]:
-        """What sides add to the motion of a scene's monitors, by monitor and quantity, (k, 2) at those times.
+        """Errors (k, 2) of sides at a scene's monitors, by monitor and quantity.
 
-        wider : how much farther away than in the case they are, over the scene's length across them.
+        wider : distance of the sides beyond their place in the case, over the scene's length across them.
         """
         given = self._coarser(case, scene, time_step)
         own = self._with_sides(given.case.boundary, scene, wider)
@@ -317,7 +325,7 @@ class Companions:
     def _with_sides(
         self, sides: Mapping[str, Boundary], scene: DiskScene, wider: float
     ) -> dict[str, dict[str, np.ndarray]]:
-        """The motion at the monitors of a scene with other sides of the companion, so much farther away."""
+        """Motion at a scene's monitors in a companion with given sides, moved outwards by `wider` of its length."""
         own = replace(self._own, boundary=sides)
         case = enlarged(build(own), farther(own.packing, self._needed, wider)) if wider else own
         return self._motion(self._run(case), self._places(scene))
@@ -332,7 +340,7 @@ class Companions:
 
 
 def _stays(case: DiskCase, side: str) -> bool:
-    """Whether a side returns waves, and stays where it is: a surface or the end of a block."""
+    """Whether a side reflects and cannot move: a surface or the end of a block."""
     table = case.side(side)
     return not (table.is_artificial or table.is_periodic or table.waves)
 
@@ -343,7 +351,7 @@ def _named(monitor: str, number: int) -> str:
 
 
 def farther(packing: Packing, needed: Mapping[str, int], wider: float) -> dict[str, int]:
-    """Bricks by which sides move that become so much farther away, over the length across them.
+    """Bricks by which sides move outwards by `wider` times the length across them.
 
     needed : by side, the most that it moves, see `needed_by`.
     """
@@ -353,7 +361,7 @@ def farther(packing: Packing, needed: Mapping[str, int], wider: float) -> dict[s
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:
-    """By side that may move, the bricks beyond it with which nothing returns; none where no side may."""
+    """By side that may move, the bricks beyond it with which nothing returns; empty where no side may."""
     try:
         return bricks_needed(scene, movable(scene.case))
     except CaseError:

@@ -1,7 +1,7 @@
-"""What a run of a case of disks costs, counted from its tables in a few milliseconds: nothing is built for it.
+"""Cost of a run of disks, counted from the case's tables in a few milliseconds, without building it.
 
-Disks are those of whole bricks less the area of holes, nodes those of the mesh that the tables ask for, ties the
-contacts that the sides of bricks cut, and the time step that of `steps.Steps`.
+Disks are those of whole bricks less the area of holes, nodes those of the mesh in the tables, ties the contacts cut by
+the sides of bricks, and the time step is computed by `steps.Steps`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ SAMPLES = 64
 class Cost:
     """The cost of a run.
 
-    time_step : s; steps : their number. disks : that are stepped, column : those of the free-field column among them.
+    time_step : s; steps : their number. disks : stepped disks, column : those of the free-field column among them.
     nodes, ties : of the continuum. seconds : CPU time of the steps, s.
     """
 
@@ -59,7 +59,7 @@ def planned_cost(planned: Plan[DiskScene]) -> Cost:
 
 @dataclass
 class Counted:
-    """Counts the costs of cases that differ in disks, sides and continuum from a given one, which is planned."""
+    """Counts the costs of cases that differ from a given, planned case in disks, sides and continuum."""
 
     given: Plan[DiskScene]
 
@@ -97,7 +97,7 @@ class Counted:
         return float(count_disks(self.given.scene.ground.brick, (1, case.column_rows[1]), (True, False)))
 
     def _grid(self, case: DiskCase) -> tuple[GridSizes, tuple[float, float]]:
-        """Numbers of the continuum, and width and height (m) of its elements beside the disks."""
+        """Numbers of nodes and ties of the continuum, and width and height (m) of its elements beside the disks."""
         packing, sides = case.packing, case.outside_sides
         box, diameter = packing.box, self._diameter * packing.radius / self.given.scene.case.packing.radius
         settings = settings_of(case, self._medium, diameter, box, sides)
@@ -114,11 +114,11 @@ class Counted:
         return grid, element
 
     def _step(self, case: DiskCase, element: tuple[float, float] | None) -> float:
-        """The time step, s; that of the plan scaled where only the size of the disks differs."""
+        """The time step, s; the planned one scaled where only the size of the disks differs."""
         return self._steps.of(case, element)
 
     def _drives(self, ties: float) -> float:
-        """Nanoseconds of the forces by which a wave at an angle enters, as many for each tie as in the plan."""
+        """Nanoseconds per step of the forces by which an oblique wave enters, in proportion to the ties."""
         scene = self.given.stepped
         if scene.ground_waves is None:
             return 0.0
@@ -127,7 +127,7 @@ class Counted:
 
     @cached_property
     def _rows_alike(self) -> int | None:
-        """The axis across identical rows, of which one is stepped; None without any."""
+        """The axis across identical rows, of which only one is stepped; None if rows differ."""
         stepped = self.given.stepped
         return stepped.axis if isinstance(stepped, OneRow) else None
 

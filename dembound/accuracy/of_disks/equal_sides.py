@@ -25,8 +25,8 @@ differ by so much reflect half as much more or less."""
 def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dict[str, Boundary], float]:
     """Sides of a coarser case that reflect as much, with springs as stiff, as those of the scene of the finer case.
 
-    time_step : s, of the finer case. Returns also the weight of what whole cells add, see `coarser.Coarser`. Raises
-    CaseError for dampers, springs or forces of waves that are not known on disks of another size.
+    time_step : s, of the finer case. Also returns `Coarser.weight`. Raises CaseError for dampers, springs or forces of
+    waves that are not known on disks of another size.
     """
     scene = with_plain_sides(scene)
     case = replace(case, boundary={side: scene.case.boundary[side] for side in case.boundary})
@@ -42,7 +42,7 @@ def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dic
 
 
 def with_whole_cells(case: DiskCase) -> DiskCase:
-    """A case with whole cells at its sides, but for those that let waves in: what they return is known by formula."""
+    """A case with whole cells at its sides, except where waves enter, whose reflection is known by formula."""
     boundary = {
         side: table.with_half_cells(False) if _may_be_whole(table) else table for side, table in case.boundary.items()
     }
@@ -55,10 +55,10 @@ def _may_be_whole(table: Boundary) -> bool:
 
 
 def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: DiskScene, time_step: float) -> float:
-    """What sides of a finer scene reflect out of phase, over what whole cells of the lattice do, see `coarser.Coarser`.
+    """Out-of-phase reflection of a finer scene's sides over that of whole cells of the lattice, see `coarser.Coarser`.
 
-    time_step : s, with which lattices are stable that have larger disks. The mean over sides and motions; 0 where the
-    dashpots reflect more in phase.
+    time_step : s, stable with larger disks too. Mean over sides and motions; 0 where the dashpots reflect more in
+    phase.
     """
     finer = [share for both in shares.values() for share in both.values()]
     if sum(share.out_of_phase**2 for share in finer) <= sum(share.dashpots**2 for share in finer):
@@ -76,7 +76,10 @@ def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: Dis
 def _equal_dashpots(
     table: Boundary, side: str, shares: Mapping[Motion, Reflected], mass_apart: bool, own: DiskScene
 ) -> Boundary:
-    """A side with other factors, its disks half cells; mass_apart : whether what is out of phase is found apart."""
+    """A side of half cells with factors for equal reflection.
+
+    mass_apart : whether the out-of-phase part is found separately.
+    """
     factors = {
         motion: homogenised_beta(own, side, motion)
         * factor_for(share.dashpots if mass_apart and table.may_halve else share.signed)
@@ -88,7 +91,7 @@ def _equal_dashpots(
 def _equal_supports(table: Boundary, side: str, own: DiskScene, finer: DiskScene) -> Boundary:
     """A side whose springs, and forces of waves, are as strong per length as those of the finer scene.
 
-    Raises CaseError where what the type says is none, or its dampers differ.
+    Raises CaseError where the type gives no equally strong side, or its dampers differ.
     """
     if side not in own.edges:
         return table
@@ -97,11 +100,11 @@ def _equal_supports(table: Boundary, side: str, own: DiskScene, finer: DiskScene
     answered = table.equal_supports(here, there)
     found = table if answered is None else answered
     ratios = np.array([_impedances(own, axis), _impedances(finer, axis)])
-    given, wanted = per_metre(own, side, found), per_metre(finer, side, table)
-    for kind, component, number in sorted({*given, *wanted}):
+    given, required = per_metre(own, side, found), per_metre(finer, side, table)
+    for kind, component, number in sorted({*given, *required}):
         if kind != "dampers" and answered is not None:
             continue  # the type knows, such as those of mirror images, which are stiffer per length
-        larger, smaller = (each.get((kind, component, number), 0.0) for each in (given, wanted))
+        larger, smaller = (each.get((kind, component, number), 0.0) for each in (given, required))
         allowed = [smaller]
         if kind != "springs" and component < 2:
             allowed.append(smaller * ratios[0, component] / ratios[1, component])

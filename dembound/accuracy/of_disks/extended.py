@@ -33,7 +33,7 @@ AROUND = 65
 
 
 def extended_disks(case: DiskCase, most: int) -> Extended:
-    """A scene of disks with more bricks; parameters and errors as of `extended`."""
+    """A scene of disks with more bricks; parameters and errors as of `accuracy.extended.extended`."""
     if case.ground.size is not None:
         reason = "its disks fill a box of the ground only, and are not continued beyond"
         filled = "packing.size = [{:g}, {:g}], packing.origin = [{:g}, {:g}], no [ground]".format(*case.size, *case.box)
@@ -64,7 +64,7 @@ def bricks_needed(scene: DiskScene, moving: Sequence[str]) -> dict[str, int]:
 def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
     """The case of a scene with so many more bricks beyond its sides; all places keep their coordinates.
 
-    Only monitors and loads to which one of the new disks is nearer are given the place of their own disk.
+    Monitors and loads to which a new disk would be nearer are moved to the centre of their own disk.
 
     Raises CaseError where a hole reaches beyond a side that moves.
     """
@@ -85,13 +85,13 @@ def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
 
 
 def _run_of(scene: DiskScene) -> Run:
-    """The ``[run]`` table of an enlarged scene; beside a continuum its step has a limit of its own."""
+    """The ``[run]`` table of an enlarged scene; its step beside a continuum has its own limit."""
     case = scene.case
     return case.run if case.outside_sides else same_step(case.run, choose_step(scene)[0])
 
 
 def _with_more(case: DiskCase, bricks: Mapping[str, int]) -> Packing:
-    """The packing with so many more bricks beyond its sides, which begins farther left and below."""
+    """The packing with `bricks` more bricks beyond its sides, and its origin farther left and below."""
     (across, up), more = case.packing.copies, {side: bricks.get(side, 0) for side in SIDES}
     (left, bottom), (wide, high) = case.packing.origin, case.packing.brick_size
     larger = case.packing.with_copies(across + more["left"] + more["right"], up + more["bottom"] + more["top"])
@@ -99,7 +99,7 @@ def _with_more(case: DiskCase, bricks: Mapping[str, int]) -> Packing:
 
 
 def _at_own_disk(table: T, scene: DiskScene, larger: Packing) -> T:
-    """A load or monitor at its place, or where one of the disks that the scene gets is nearer, at that of its disk."""
+    """A load or monitor at its place, or, where a new disk is nearer, at the centre of its own disk."""
     if table.position is None:
         return table
     brick, low = scene.ground.brick, np.array(larger.origin)
@@ -128,7 +128,7 @@ def _bricks_beyond(scene: DiskScene, side: str, sources: list[Source], front: Fr
 
 
 def _targets(scene: DiskScene) -> np.ndarray:
-    """Places (k, 2) m to which nothing may return: those of monitors, or without monitors all around the scene."""
+    """Places (k, 2) m to which nothing may return: the monitors, or without monitors the border of the scene."""
     if scene.case.monitor:
         return monitored(scene)
     along, zero = np.linspace(0.0, 1.0, AROUND), np.zeros(AROUND)

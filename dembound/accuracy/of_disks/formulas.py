@@ -1,4 +1,4 @@
-"""Causes of the error of disks that are known without runs: by formulas, from the motion at the monitors."""
+"""Causes of the error of disks computed by formulas from the motion at the monitors, without further runs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Formulas:
     time_step: float
 
     def causes(self, motions: Motions) -> list[Cause]:
-        """All causes but sides that absorb and let no waves in; motions : by monitor."""
+        """All causes but absorbing sides without waves; motions : by monitor."""
         return [
             *self.of_waves_in(motions),
             *self._delays(motions),
@@ -65,7 +65,7 @@ class Formulas:
                 yield Cause(f"{side} side", words, parts, factor=USUAL)
 
     def _continuum(self, places: Mapping[str, np.ndarray]) -> Iterator[Cause]:
-        """The continuum beyond sides, at places (2,) m of monitors."""
+        """Errors of the continuum beyond sides, at places (2,) m of monitors."""
         if self.scene.outside is None:
             return
         if (sizes := expected_errors(self.scene, places)) is None:
@@ -81,11 +81,14 @@ class Formulas:
 
     @property
     def _contacts_open(self) -> bool:
-        """Whether contacts beside a continuum may be open, at rest or under any wave.
+        """Whether contacts beside a continuum may be open, at rest or under a wave.
 
-        Without stress disks just touch. A stage leaves those of a lattice closed; in a random packing it opens some: of
-        pattern B 10 % under a locked-in stress that has relaxed upwards, where waves 40 m long in a box of 15 m err by
-        13 %, in place of 1 % with contacts closed for good, or with a tenth of their stiffness; 1.9 % under weight, and
+        Without stress disks just touch. A static stage leaves the contacts of a lattice closed; in a random packing it
+        opens
+        some: in pattern B 10 % under a locked-in stress that has relaxed upwards, where waves 40 m long in a box of 15
+        m have
+        an error of 13 %, but 1 % with contacts closed for good, or with a tenth of their stiffness; 1.9 % under weight,
+        and
         67 % without stress.
         """
         case = self.scene.case
@@ -93,7 +96,7 @@ class Formulas:
         return self.scene.has_history and self.scene.ground.moduli.emod > 0.0 and not at_rest
 
     def _walls(self, names: Iterable[str]) -> Iterator[Cause]:
-        """Walls of holes, which are made of disks."""
+        """Errors by walls of holes, which are made of disks."""
         case = self.scene.case
         if not case.hole:
             return
@@ -103,13 +106,13 @@ class Formulas:
         yield Cause(WALLS, words, parts, of_disks=True, factor=WALL_FACTOR)
 
     def _near(self, motions: Motions) -> Iterator[Cause]:
-        """Disks near forces."""
+        """Errors by coarse disks near forces."""
         sizes = {name: errors_near_loads(self.scene, own) for name, own in motions.items()}
         if any(size for each in sizes.values() for size in each.values()):
             yield Cause(NEAR, "by its measured size", sizes, of_disks=True, factor=NEAR_FACTOR)
 
     def _edges(self, motions: Motions) -> Iterator[Cause]:
-        """Monitors at absorbing sides of random packings, or at uneven ones, of whose disks nothing is known."""
+        """Unknown errors of monitors at absorbing sides of random packings, or at uneven sides."""
         case = self.scene.case
         packing, box = case.packing, case.packing.box
         reach = 2.0 * self.scene.ground.brick.mean_diameter
@@ -132,12 +135,15 @@ class Formulas:
     def _returned(
         self, own: History, side: str, waves: Mapping[Motion, str], shares: Mapping[Motion, Reflected]
     ) -> dict[str, np.ndarray | float]:
-        """What a driven side keeps back of its waves, and sends back of what returns to it.
+        """Error of a driven side that withholds part of its wave, and reflects waves that return to it.
 
-        A side that reflects R lets 1 − R of its wave in. What is sent back is the motion again, after the way to the
-        far side, if that is a free surface or another one that sends back everything, with its sign; else nothing that
-        counts comes back. What is kept back out of phase is the time at which the wave enters, which is no error
-        (entry.py).
+        A side that reflects R lets 1 − R of its wave in. Its reflection is the recorded motion again, delayed by the
+        way to the
+        far side, with the sign of that side's reflection, if that side is a free surface or otherwise reflects
+        everything;
+        else nothing that counts comes back. The out-of-phase part of what is withheld is a shift of the entry time,
+        which is
+        no error (entry.py).
         """
         axis = normal_axis(side)
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
@@ -161,7 +167,7 @@ class Formulas:
         return HeldSides(self.scene)
 
     def _delays(self, motions: Motions) -> Iterator[Cause]:
-        """The dispersion of the packing, and of the time step."""
+        """Errors by dispersion of the packing, and of the time step."""
         if not any(self.ways(own) for own in motions.values()):
             yield Cause.unknown("grid and time step", "waves start everywhere")
             return
@@ -177,7 +183,7 @@ class Formulas:
         yield Cause(STEP, words, steps, factor=USUAL)
 
     def _delayed(self, own: History, step: float) -> dict[str, np.ndarray]:
-        """What dispersion adds with steps of this length (s)."""
+        """Errors by dispersion, with time steps of this length (s)."""
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
         for way in self.ways(own):
             if not math.isfinite(way.path * way.speed):
@@ -198,14 +204,14 @@ class Formulas:
 
     @cached_property
     def _sources(self) -> list[Source]:
-        """Where waves start."""
+        """Places and sides where waves start."""
         return sources_of(self.scene.case, self.scene.ground)
 
     def ways(self, own: History) -> list[Way]:
-        """The ways of P and S waves to a monitor: from a driven side, or from the nearest load or hole.
+        """Paths of P and S waves to a monitor: from a driven side, or from the nearest load or hole.
 
-        A wave at an angle comes through a continuum, which delays it less: its way is the longer side of the disks.
-        None where waves start everywhere.
+        An oblique wave comes through a continuum, which delays it less: its path is the longer side of the disks.
+        Empty where waves start everywhere.
         """
         sources, ground = self._sources, self.scene.ground
         driving = list(self.scene.case.driving)
@@ -231,9 +237,9 @@ class Formulas:
 
 @dataclass(frozen=True)
 class Way:
-    """The way of a kind of waves.
+    """The path of P or S waves.
 
-    motion : of the waves. moves : (2,) unit vector along which they move disks. path : m. speed : m/s, of long waves.
+    motion : kind of the waves. moves : (2,) unit vector of their particle motion. path : m. speed : m/s, of long waves.
     directions : in which they may run.
     """
 
@@ -247,7 +253,7 @@ class Way:
 def _both_ways(
     along: np.ndarray, path: float, speeds: tuple[float, float], directions: Sequence[Direction]
 ) -> list[Way]:
-    """The ways of P and S waves, of these speeds (m/s), along a unit vector."""
+    """The paths of P and S waves, of these speeds (m/s), along a unit vector."""
     across = np.array([-along[1], along[0]])
     p, s = speeds
     return [Way("p", along, path, p, directions), Way("s", across, path, s, directions)]
@@ -256,7 +262,7 @@ def _both_ways(
 def reflected_motion(own: History, column: int, share: Reflected) -> dict[str, np.ndarray]:
     """Velocity and displacement (k,) that a side reflects of a recorded motion along x or y (column 0 or 1).
 
-    In phase R/(1 − R) of the motion, as 1 − R of it has come in; what is out of phase has the shape of a mass's force,
+    In phase R/(1 − R) of the motion, as 1 − R of it has come in; the out-of-phase part has the shape of a mass's force,
     the acceleration, and no lasting displacement.
     """
     velocity, displacement = (own.values[quantity][:, column] for quantity in MOTIONS)

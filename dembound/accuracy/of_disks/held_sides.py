@@ -1,20 +1,21 @@
-"""Waves that come back early from sides of the problem itself that hold disks, at their centres.
+"""Waves that return early from sides of the problem itself that hold disks at their centres.
 
-The rock is held at the plane of a side, long waves on disks meet it at a depth s inside (entry.py; D/2 for P waves on a
-square lattice), so that what comes back at normal incidence has gone 2s less. Where a side lets motion free, as a
-roller does along itself, mass begins at the plane and nothing is early.
+The rock is held at the plane of a side, but long waves on disks are reflected at a depth s inside (entry.py; D/2 for P
+waves on a square lattice), so that the path of waves at normal incidence is 2s shorter. Where a side leaves motion
+free, as a roller does along itself, mass begins at the plane and nothing is early.
 
 Plane waves between a driven side at x = 0 and the far one at H, which reflect r₀ and r₁ of the velocity, −1 where they
-hold it and 1 where they let it free: with T = 2H/c and the wave a(t) as it comes to a monitor at x for the first time,
+hold it and 1 where they leave it free: with T = 2H/c and the wave a(t) as it comes to a monitor at x for the first
+time,
 
     v(t) = Σ_k (r₀r₁)^k [a(t − kT) + r₁ a(t' − kT)],   t' = t − 2(H − x)/c.
 
-On disks the way to the far side and back is shorter by 2s₁, a round trip by 2(s₀ + s₁). The error of one side is what
-its s changes alone; to the first order both add. That a is early by s₀/c is no error (entry.py). Dashpots and a
-continuum at x = 0 have r₀ = 0: what they send back is another cause.
+On disks the way to the far side and back is shorter by 2s₁, a round trip by 2(s₀ + s₁). The error of one side is the
+change by its s alone; to the first order both add. That a is early by s₀/c is no error (entry.py). Dashpots and a
+continuum at x = 0 have r₀ = 0: their reflection is another cause.
 
-Other waves, of loads, scattered by holes or along a side, come back from all directions: what one row of larger disks
-more, or a mirror plane, changes there is found with companions (`Companions.of_held`).
+Other waves, of loads, scattered by holes or along a side, come back from all directions: their error is found with
+companions that have one more row of larger disks, or a mirror plane, there (`Companions.of_held`).
 """
 
 from __future__ import annotations
@@ -52,12 +53,12 @@ class HeldSides:
 
     @property
     def driven_under_loads(self) -> list[str]:
-        """Sides that move their disks and meet waves of loads, too, whose early return has no formula."""
+        """Driven sides that meet waves of loads, too, whose early return has no formula."""
         is_loaded = any(load.wave for load in self.scene.case.load)
         return [side for side in self.names if side in self.scene.case.driving and is_loaded]
 
     def causes(self, motions: Motions) -> Iterator[Cause]:
-        """The errors of held sides that plane waves come back from, by formula."""
+        """The errors of held sides that reflect plane waves, by formula."""
         for side in self.names:
             if self._returns_plane_waves(side):
                 parts = {name: self._of_plane_waves(own, side) for name, own in motions.items()}
@@ -72,13 +73,13 @@ class HeldSides:
         return bool(moving & {*self._prescribed(side)}) and not self.scene.case.side(side).is_artificial
 
     def _returns_plane_waves(self, side: str) -> bool:
-        """Whether plane waves come back between it and the side across, and its error is not found with companions."""
+        """Whether plane waves run between a side and the opposite one, and its error is not found with companions."""
         if side in self.among_others:
             return False
         return any(not self.scene.case.side(OPPOSITE[driven]).is_artificial for driven in self._driven(side))
 
     def _meets_only_plane_waves(self, side: str) -> bool:
-        """Whether all motion is that of waves that enter at this side or across, or which it does not hold."""
+        """Whether all waves enter at a side or its opposite, or are such as it does not hold."""
         case = self.scene.case
         if not case.driving or case.incident is not None or case.hole or any(load.wave for load in case.load):
             return False
@@ -89,7 +90,7 @@ class HeldSides:
         )
 
     def _driven(self, side: str) -> list[str]:
-        """Which are driven of a side and that across."""
+        """The driven sides among a side and the opposite one."""
         return [each for each in (side, OPPOSITE[side]) if each in self._entries]
 
     @cached_property
@@ -101,7 +102,7 @@ class HeldSides:
         return {side: depths_held(self.scene, side) for side in self.names}
 
     def reflects(self, side: str, motion: Motion) -> float:
-        """Reflection of the velocity of waves along the normal: of sides that send back all, 0 of others."""
+        """Reflection coefficient (velocity) of waves along the normal: ±1 of sides that reflect all, 0 of others."""
         table = self.scene.case.side(side)
         if table.is_artificial or table.factors:
             return 0.0
@@ -109,7 +110,7 @@ class HeldSides:
         return -1.0 if held else 1.0
 
     def _of_plane_waves(self, own: History, side: str) -> dict[str, np.ndarray | float]:
-        """What the depth of a side adds to plane waves between it and that across."""
+        """Error of plane waves between a side and the opposite one by the depth of the side."""
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
         for driven in self._driven(side):
             for motion, entry in self._entries[driven].items():
@@ -120,7 +121,7 @@ class HeldSides:
     def _add_plane_wave(
         self, errors: dict[str, np.ndarray], own: History, side: str, driven: str, motion: Motion, entry: Entry
     ) -> None:
-        """Add what the depth of a side does to a wave that enters at this side, or at that across."""
+        """Add the error by the depth of `side` of a wave that enters at the side `driven`."""
         axis, far, case = normal_axis(driven), OPPOSITE[driven], self.scene.case
         column, wave = axis_of_motion(driven, motion), case.wave[case.driving[driven][motion]]
         early, round_trip = (2.0 * way / entry.speed for way in (self._depths[side][motion], case.size[axis]))

@@ -38,12 +38,12 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
     first_break = BREAK_TIME
 
     def causes(self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
-        """Sides, by companions; dispersion, steps, continuum and walls, by formulas."""
+        """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
         require_linear(case.material.law)
         return causes_of_run(case, recorded, time_step, work, most)
 
     def truth(self, case: DiskCase) -> Truth:
-        """These disks where the packing is random or bonds may break, else the rock."""
+        """ "disks" where the packing is random or bonds may break, else "rock"."""
         is_grid = case.packing.is_lattice and not LAWS[case.material.law].has_history
         return "rock" if is_grid else "disks"
 
@@ -52,7 +52,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return cause_of_packing(case, motions, seeds)
 
     def notes(self, case: DiskCase, summary: Mapping[str, Any]) -> Iterator[str]:
-        """How near the motion came to the limit of the elastic law."""
+        """A line on the ratio of the motion to the limit of the elastic law."""
         if not LAWS[case.material.law].is_linear:
             return
         limit = summary.get("load_factor")
@@ -75,7 +75,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return extended_disks(case, most)
 
     def exact(self, case: DiskCase) -> Exact[DiskCase] | None:
-        """A plane wave, or one of the problems of `exact`; raises CaseError if loads are none of them."""
+        """A plane wave, or one of the problems of `exact`; raises CaseError if the loads match none of them."""
         if (plane := ExactPlaneWave.of(case)) is not None:
             return plane
         return ExactContinuum.of(case) if case.load or case.incident else None
@@ -85,7 +85,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return disk_choices(case)
 
     def hides_sides(self, case: DiskCase) -> bool:
-        """Whether it has holes, whose walls consist of disks."""
+        """Whether the case has holes, whose walls consist of disks."""
         return bool(case.hole)
 
     def has_input_continuum(self, case: DiskCase) -> bool:
@@ -93,7 +93,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return case.ground.size is None and any(case.side(side).waves for side in case.outside_sides)
 
     def cautions(self, cases: Sequence[DiskCase]) -> tuple[str, ...]:
-        """A warning that packings differ at random, if there are different bricks, and random ones among them."""
+        """A warning that packings differ at random, if bricks differ and some are random."""
         packings = [case.packing for case in cases]
         bricks = {repr(packing.with_copies(1, 1).model_copy(update={"origin": (0.0, 0.0)})) for packing in packings}
         if len(bricks) < 2 or all(packing.is_lattice for packing in packings):

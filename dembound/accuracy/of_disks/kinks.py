@@ -1,10 +1,10 @@
-"""What grid and time step do to frequencies that companions with larger disks do not have: those of kinks and jumps.
+"""Errors of grid and time step at frequencies that companions with larger disks do not have: from kinks and jumps.
 
-The spectrum of a velocity with a kink falls as 1/ω², that of the errors of a delay, which grow as ω³, rises as ω, up to
-the highest frequency of the disks. Companions of the diameter D' have only that below their own, 2c/D' of P waves, and
-from 0.87 of it on their waves run at less than half of c (cos qD'/2 = 1/2) and come late. What the wave of the source
-has above that frequency is taken to come as the rest of it does: of plane waves with the spectrum of the wave, from a
-place in a plane with that times √ω, as waves of a line source have in the far field.
+The spectrum of a velocity with a kink falls as 1/ω²; the spectrum of the errors of a delay, which grow as ω³, rises as
+ω up to the highest frequency of the disks. Companions of the diameter D' only have frequencies below 2c/D' of P waves,
+and above 0.87 of that their waves run at less than half of c (cos qD'/2 = 1/2) and come late. The part of the source's
+wave above that frequency is assumed to arrive like the rest: of plane waves with the spectrum of the wave, from a
+place in a plane with that times √ω, as waves of a line source in the far field.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ KINK_FACTOR = 1.6
 in plane waves of a velocity, dashpots and a force, and round a force in rock."""
 
 KINKS = "kinks"
-"""What the causes are called, after the grid and the time step."""
+"""Name of these causes, after the grid and the time step."""
 
 Signal = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Times (k,) s, velocities (k,) of a wave at them, and the part (k,) that companions do not have."""
 
 
 def causes_of_kinks(formulas: Formulas, motions: Motions, diameter: float) -> Iterator[Cause]:
-    """Errors, as sizes, of grid and time step at frequencies that companions with disks of a diameter (m) do not have.
+    """Errors, as sizes, of grid and time step at frequencies above those of companions with disks of `diameter` (m).
 
     motions : of the companions, by monitor.
     """
@@ -63,7 +63,7 @@ def causes_of_kinks(formulas: Formulas, motions: Motions, diameter: float) -> It
 
 @dataclass
 class _Kinks:
-    """The errors of one scene, of whose motion companions with disks of a diameter (m) are known."""
+    """The errors of one scene whose motion is known from companions with disks of a diameter (m)."""
 
     formulas: Formulas
     diameter: float
@@ -72,7 +72,7 @@ class _Kinks:
     def sizes(self, own: History) -> tuple[dict[str, float], dict[str, float]]:
         """Errors of the grid and of the time step at one monitor, RMS over RMS, by quantity.
 
-        P and S waves count by their shares of the squares of the motion.
+        P and S waves are weighted by their shares of the squared motion.
         """
         ways = [way for way in self.formulas.ways(own) if math.isfinite(way.path * way.speed)]
         squares = [float(np.sum((own.values["velocity"] @ way.moves) ** 2)) for way in ways]
@@ -86,7 +86,7 @@ class _Kinks:
         return grid, step
 
     def _of_way(self, way: Way) -> dict[str, tuple[float, float]]:
-        """Errors of grid and time step, by quantity, of the wave on this way whose errors are largest."""
+        """Errors of grid and time step, by quantity, of the wave on this path with the largest errors."""
         formulas, most = self.formulas, dict.fromkeys(MOTIONS, (0.0, 0.0))
         about = way.motion, way.directions, way.path, way.speed
         for name, power in sorted(_waves(formulas.scene.case, way)):
@@ -104,7 +104,7 @@ class _Kinks:
         return most
 
     def _signal(self, name: str, power: float, speed: float) -> Signal | None:
-        """A wave of a speed (m/s) with its spectrum times ω^power; None if companions have all of it."""
+        """A wave of a speed (m/s) with its spectrum times ω^power; None if companions contain all of it."""
         key = name, power, speed
         if key not in self._signals:
             case, step = self.formulas.scene.case, self.formulas.time_step
@@ -121,7 +121,7 @@ class _Kinks:
 
 
 def _waves(case: DiskCase, way: Way) -> set[tuple[str, float]]:
-    """The names of the waves that run on a way, and the power of ω by which their spectrum changes."""
+    """The names of the waves on a path, each with the power of ω that multiplies its spectrum."""
     loads = [load for load in case.load if load.wave is not None]
     if loads:
         return {(str(load.wave), 0.0 if _is_plane(case, load.region) else 0.5) for load in loads}

@@ -1,9 +1,9 @@
-"""The elastic law in place of one with a history, on lattices where nothing opens, slides or breaks.
+"""The elastic law in place of a history-dependent one, on lattices where no contact opens, slides or breaks.
 
-Whether it does is found with a companion of larger disks under the elastic law, whose load factor is the multiple of
+Whether none does is found with a companion of larger disks under the elastic law, whose load factor is the multiple of
 these waves up to which it holds. In two dimensions the stress under a point force falls as 1/r, and that at a sharp
 corner more slowly, so that the largest stress between disks grows at most as 1/D: with disks smaller by a factor
-contacts and bonds are at most so many times nearer to their limits. At rest this does not hold beside a hole, where
+contacts and bonds are nearer to their limits by at most that factor. At rest this does not hold beside a hole, where
 stress at rest is higher the smaller the disks are; nor on random packings, whose contacts are all loaded differently.
 
 A law whose contacts follow the motion (`geometry = "updated"`) differs from the elastic one all the same, if a body has
@@ -58,8 +58,9 @@ EQUAL = 1e-9
 class ElasticTwin:
     """A case under the elastic law.
 
-    planned : its plan. factor : up to how many times the waves it holds with disks of `diameter` (m); infinite if under
-    any. stress : Pa, at rest, that would turn with the disks.
+    planned : its plan. factor : multiple of its waves up to which the law holds with disks of `diameter` (m); infinite
+    if
+    under any. stress : at rest, Pa, that rotates with the disks.
     """
 
     case: DiskCase
@@ -75,7 +76,7 @@ class ElasticTwin:
         return self.factor * min(1.0, diameter / self.diameter) > RESERVE
 
     def causes(self, scene: DiskScene, recorded: Motions) -> list[Cause]:
-        """The error by the law, if there is a stress at rest. scene : of a choice; recorded : its motion."""
+        """The error by the elastic law under a stress at rest. scene : of a choice; recorded : its motion."""
         if self.stress == 0.0:
             return []
         ground, sources = scene.ground, sources_of(scene.case, scene.ground)
@@ -102,7 +103,7 @@ class ElasticTwin:
 def elastic_twin(
     case: DiskCase, planned: Plan[DiskScene], most: float, kept: Sequence[str], runner: Runner
 ) -> ElasticTwin | None:
-    """The case under the elastic law if this holds with its own disks; None if not, or if it is not known.
+    """The case under the elastic law if that holds with the case's disks; None if not, or if it is not known.
 
     planned : of the case. most : particle-steps that the companion should take. kept : keys that do not change.
     """
@@ -129,12 +130,12 @@ def elastic_twin(
 
 
 def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
-    """The way (m) of waves from a source to a place; through the scene if they enter on all sides."""
+    """Path (m) of waves from a source to a place; the whole scene if they enter on all sides."""
     return math.hypot(*size) if source.box == EVERYWHERE else float(source.distance(place[None])[0])
 
 
 def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
-    """Whether the law has a history, of whose limits something is known with disks of other sizes."""
+    """Whether the law is history-dependent, with limits that are known for disks of other sizes."""
     if not LAWS[case.material.law].has_history or not case.material.elastic_start:
         return False
     pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
@@ -142,16 +143,16 @@ def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
 
 
 def _without_stage(case: DiskCase) -> list[dict[str, None]]:
-    """Changes that leave out a static stage, if that is possible, and none.
+    """Changes to try: first without the static stage, if possible, then none.
 
-    A given stress does nothing to the motion of an elastic body about its rest; steady loads have to be balanced.
+    A given stress does not affect the motion of an elastic body about its rest; steady loads have to be balanced.
     """
     is_steady = any(load.wave is None for load in case.load)
     return [{}] if case.static is None or is_steady else [{"static": None}, {}]
 
 
 def _turning_stress(case: DiskCase) -> float:
-    """The largest stress (Pa) at rest that contacts turn with them, of loads on the edges and of the weight."""
+    """The largest stress (Pa) at rest, by loads on the edges and weight, that rotates with the contacts."""
     if case.static is None or case.material.geometry == "reference":
         return 0.0
     weight = np.zeros(2)
@@ -168,7 +169,7 @@ def _diameter(planned: Plan[DiskScene]) -> float:
 
 
 def _factor(case: DiskCase, planned: Plan[DiskScene], most: float, runner: Runner) -> tuple[float, float]:
-    """The load factor, and the diameter (m) of the disks with which it was found: as small as can be afforded."""
+    """The load factor, and the diameter (m) of the disks with which it was found: the smallest affordable."""
     own, scene = _diameter(planned), planned.scene
     quiet = replace(case, output=case.output.model_copy(update={"snapshots": 0}))
     for ratio in (1.0, *ratios(case, scene)):

@@ -1,8 +1,8 @@
-"""How dashpots reflect plane waves along the normal of a side, on the packing of a case: measured without a run.
+"""Reflection of plane waves along the normal of a side by its dashpots, on the packing of a case, without a run.
 
-A coarser lattice with dashpots of half cells reflects (β0 − β)/(β0 + β) of such waves, next to nothing at β0. It has
-the β with which it reflects as much as the side of the case does, which random packings, single rows of whole cells,
-and factors that are not calibrated decide.
+A coarser lattice with dashpots of half cells reflects (β0 − β)/(β0 + β) of such waves, next to nothing at β0. It gets
+the β with which it reflects as much as the side of the case, whose reflection is due to random packings, single rows of
+whole cells, and factors that are not calibrated.
 """
 
 from __future__ import annotations
@@ -42,15 +42,16 @@ class Reflected:
 
     @property
     def out_of_phase(self) -> float:
-        """Part of the size in quadrature to the dashpots, such as a mass too much at the side reflects."""
+        """Part of the size in quadrature to the dashpots, as reflected by excess mass at the side."""
         return math.sqrt(max(self.size**2 - self.dashpots**2, 0.0))
 
 
 def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Reflected]:
-    """What a side with dashpots reflects of P and S waves along its normal, springs left out.
+    """Reflection of P and S waves along the normal by a side with dashpots, without its springs.
 
-    Waves that cannot run are left out; where the packing has no such wave at the frequencies of the case, what its
-    homogenised stiffness makes of it.
+    Waves that cannot run are left out; where the packing has no such wave at the frequencies of the case, the
+    reflection
+    of its homogenised stiffness is given.
     """
     case = scene.case
     table = case.side(side).dashpots_alone()
@@ -73,7 +74,7 @@ def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Ref
 
 
 def _energies(scene: DiskScene, end: DiskScene, side: str, time_step: float) -> dict[Motion, float]:
-    """Shares of the energy that come back, means over the case's frequencies; those that are known."""
+    """Shares of reflected energy, means over the case's frequencies; unknown ones are left out."""
     try:
         frequencies = frequencies_of(scene.case, scene.ground, FREQUENCIES)
         found = Meter.of(side, time_step, end).measure(frequencies, [0.0])[0]
@@ -84,5 +85,5 @@ def _energies(scene: DiskScene, end: DiskScene, side: str, time_step: float) -> 
 
 
 def factor_for(share: float) -> float:
-    """β over that of matched dashpots that reflects this share of the velocity."""
+    """β over the matched β with which dashpots reflect this share of the velocity."""
     return (1.0 - share) / (1.0 + share)

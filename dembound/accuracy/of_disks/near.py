@@ -1,9 +1,9 @@
-"""Errors beside what is smaller than a wave, where a lattice of disks is coarse: near forces and beside holes.
+"""Errors near features smaller than a wave, where a lattice of disks is coarse: near forces and beside holes.
 
 Plane waves on a lattice of diameter D with the wave number k have errors of the order (kD)². Near a force motion varies
-over its distance r, too, and P and S waves are not apart: along the ray S waves, which a lattice disperses more, carry
-as much of it as P waves. Beside a region of half a side b that forces are spread over it varies less: (r/(r + b))² as
-much. Walls of holes consist of disks, so that their shape is known to a diameter.
+over its distance r, too, and P and S waves are not separate: along the ray S waves, which a lattice disperses more,
+carry as much of it as P waves. Beside a region of half-width b over which forces are spread it varies less: (r/(r +
+b))² as much. Walls of holes consist of disks, so that their shape is known to a diameter.
 """
 
 from __future__ import annotations
@@ -31,36 +31,36 @@ with friction and without (benchmarks/near_loads.py). In random packings single 
 by 4 to 40 % of the motion there, whatever the force: that is the cause `packing`."""
 
 RANDOM = 0.75
-"""Error of the motion that a pressure makes beside a hole of any shape in a random packing, times the disks along its
-smaller half: beside exact solutions 0.41 to 2.1, the median 0.74, of five seeds each of patterns B and C with 4, 6 and
-10 disks along a radius, at 1 to 2.5 radii (benchmarks/walls.py). Walls there are never between disks."""
+"""Error of the motion by a pressure in a hole of any shape in a random packing, times the disks along its smaller
+half: compared with exact solutions 0.41 to 2.1, the median 0.74, for five seeds each of patterns B and C with 4, 6
+and 10 disks along a radius, at 1 to 2.5 radii (benchmarks/walls.py). Walls there are never between disks."""
 
 OF_WAVES = 1.7
-"""The same of waves that pass a hole over that of a pressure in it, by kL, the RMS wave number of the slowest waves in
-velocity or displacement times the smaller half of the hole: what a hole scatters, and its error, is that part of the
-motion. Circles of 5 and 8 disks along the radius in lattices under SV waves, at 1.5 radii: 1.3 to 2.4 of velocities
-with kL of 0.09 to 1.25, 1.6 to 2.6 of displacements with kL of 0.04 to 0.26; 1.2 times that at the wall (1.4 times with
-kL of 1.25), 0.7 at 2.5 radii (benchmarks/walls.py)."""
+"""Error beside a hole under waves that pass it, over kL times the error under a pressure in it; kL is the RMS wave
+number of the slowest waves in velocity or displacement times the smaller half of the hole, as scattered motion, and
+its error, are that part of the motion. Circles of 5 and 8 disks along the radius in lattices under SV waves, at 1.5
+radii: 1.3 to 2.4 of velocities with kL of 0.09 to 1.25, 1.6 to 2.6 of displacements with kL of 0.04 to 0.26; 1.2
+times that at the wall (1.4 times with kL of 1.25), 0.7 at 2.5 radii (benchmarks/walls.py)."""
 
 BETWEEN = 0.65
-"""That of rectangles in lattices, whose walls are between disks, over that of others, and its largest size: beside
-disks three times smaller, at 1.5 radii, velocities have 0.9 to 1.3 of kL where that is below 0.4, at most 0.7 up to
-1.9, displacements 1.2 to 1.7 of kL from 0.04 to 0.33."""
+"""Factor for rectangles in lattices, whose walls are between disks, relative to other holes, and the largest kL:
+compared with disks three times smaller, at 1.5 radii, velocities have 0.9 to 1.3 of kL where that is below 0.4, at
+most 0.7 up to 1.9, displacements 1.2 to 1.7 of kL from 0.04 to 0.33."""
 
 LONGEST = 1.5
 """Largest kL that counts, as of waves that jump: shorter waves were not measured."""
 
 WALL_FACTOR = 2.0
-"""95 % of true errors beside holes are at most so many times as large as `wall_errors`: of means over 12 directions 1.4
-times in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), under waves
+"""95 % of true errors beside holes are at most this factor times `wall_errors`: of means over 12 directions 1.4 times
+in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), under waves
 2.0 times beside circles (137, at most 2.7) and 1.8 beside squares in lattices (89, at most 2.3), and 1.3 times in
 random packings (203, at most 2.0; benchmarks/walls.py). Single directions scatter more."""
 
 
 def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
-    """The error at one monitor by quantity, RMS over RMS of its larger component; 0 without forces in places.
+    """The error at one monitor by quantity, RMS over RMS of its larger component; 0 without localised forces.
 
-    own : the motion, whose RMS frequency and part along the ray from the nearest force count.
+    own : the motion; its RMS frequency and its part along the ray from the nearest force determine the error.
     """
     rays = [(_nearest(own.place - place, scene), wide) for place, wide in _places(scene)]
     if not rays:
@@ -78,7 +78,7 @@ def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
 
 
 def _places(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
-    """The middle (2,) m of each force with a wave in a place, and half the longer side of its region, m."""
+    """The middle (2,) m of each localised force with a wave, and half the longer side of its region, m."""
     loads = [load for load in scene.case.load if load.wave is not None and load.pressure is None]
     found = []
     for load in loads:
@@ -95,7 +95,7 @@ def _nearest(ray: np.ndarray, scene: DiskScene) -> np.ndarray:
 
 
 def _along(values: np.ndarray, column: int, ray: np.ndarray) -> float:
-    """Part of a component (column) of a motion (k, 2) that is due to motion along a unit vector (2,), RMS over RMS."""
+    """Share of a component (column) of a motion (k, 2) due to motion along a unit vector (2,), RMS over RMS."""
     size = _norm(values[:, column])
     return _norm(values @ ray) * abs(float(ray[column])) / size if size > 0.0 else 0.0
 
@@ -107,7 +107,7 @@ def _norm(values: np.ndarray) -> float:
 def wall_errors(case: DiskCase, ground: PackedMaterial, diameter: float) -> dict[str, float]:
     """Errors of the motion beside the holes of a case by quantity, RMS over RMS, with disks of a diameter (m).
 
-    ground : what waves run in, with disks of any diameter. 0 without holes.
+    ground : medium of the waves, with disks of any diameter. 0 without holes.
     """
     if not case.hole:
         return dict.fromkeys(MOTIONS, 0.0)
@@ -123,14 +123,14 @@ def wall_errors(case: DiskCase, ground: PackedMaterial, diameter: float) -> dict
 
 
 def _scattered(case: DiskCase, hole: Hole, number: float) -> float:
-    """The part of a pressure's error that waves with a wave number (1/m) have round a hole."""
+    """Error under waves of a wave number (1/m) round a hole, over the error under a pressure in it."""
     part = OF_WAVES * min(number * hole.smaller_half, LONGEST)
     is_between = isinstance(hole, Rectangle) and case.packing.is_lattice
     return BETWEEN * min(part, 1.0) if is_between else part
 
 
 def _wall_error(case: DiskCase, hole: Hole, diameter: float) -> float:
-    """Error of the motion that a pressure makes beside the wall of one hole."""
+    """Error of the motion by a pressure in one hole, beside its wall."""
     if case.packing.is_lattice:
         return hole.wall_error(diameter, case.packing.apart)
     return RANDOM / (hole.smaller_half / diameter)

@@ -1,4 +1,4 @@
-"""The choices that a case of disks leaves open, each with its cost, which is counted: nothing is built for them."""
+"""The choices that a case of disks leaves open, each with its cost, which is counted without building it."""
 
 from __future__ import annotations
 
@@ -58,8 +58,9 @@ EQUAL = 1e-6
 class DiskOption:
     """A choice before it is built.
 
-    case : with its sides where they are in the `arrangement` of this name, if they are `wider`, too. factor, shorter :
-    its diameter and its time step over those given. cost : counted, in seconds of CPU time of the steps.
+    case : with sides in place, in the `arrangement` of this name; `wider` : whether they are to be moved outwards.
+    factor,
+    shorter : its diameter and its time step over those given. cost : counted CPU seconds of the steps.
     """
 
     case: DiskCase
@@ -81,8 +82,9 @@ class DiskOption:
 class Built:
     """A choice that can run.
 
-    case : with its sides where they are to be. planned : with its sides where they are in its arrangement. cost : CPU
-    time of the steps by this plan, s.
+    case : with its sides moved outwards if wider. planned : with sides in place. cost : CPU time of the steps by this
+    plan,
+    s.
     """
 
     option: DiskOption
@@ -95,7 +97,7 @@ class Built:
 class Options:
     """The choices of a case.
 
-    given : the case, planned. bound : error asked for. kept : keys that do not change.
+    given : the case, planned. bound : error bound. kept : keys that do not change.
     """
 
     given: Plan[DiskScene]
@@ -113,7 +115,7 @@ class Options:
         return DiskOption(self._case, "sides as given", 1.0, 0.0, planned_cost(self.given).seconds)
 
     def of(self, factor: float) -> list[DiskOption]:
-        """The choices with disks of one diameter; none if the case may not have them, or its tables have mistakes."""
+        """The choices with disks of one diameter; none if the case does not allow it, or its tables have mistakes."""
         if (found := self._with_diameter(factor)) is None:
             return []
         case, ground = found
@@ -125,7 +127,7 @@ class Options:
         ]
 
     def build(self, option: DiskOption) -> Built | None:
-        """A choice, built and planned; None if it cannot run, changes a key that is kept, or has other forces."""
+        """A choice, built and planned; None if it cannot run, or changes a kept key or the total forces of loads."""
         try:
             planned: Plan[DiskScene] = plan(option.case)
             case = planned.scene.case
@@ -143,7 +145,7 @@ class Options:
 
     @cached_property
     def _may_change_diameter(self) -> bool:
-        """Whether disks only stand for the ground, on a lattice under a linear law, and their radius is not kept."""
+        """Whether disks only discretise the ground, on a lattice under a linear law, and their radius is not kept."""
         case = self._case
         sizes = {"packing", *(f"packing.{key}" for key in case.packing.scaled(1.0))}
         return case.packing.is_lattice and LAWS[case.material.law].is_linear and sizes.isdisjoint(self.kept)
@@ -155,7 +157,7 @@ class Options:
         return (1.0,) if self._may_change_diameter or not kept.isdisjoint(self.kept) else SHORTER
 
     def _with_diameter(self, factor: float) -> tuple[DiskCase, PackedMaterial] | None:
-        """The given case with larger or smaller disks, and their ground; None if its scene cannot be made of them."""
+        """The given case with another diameter, and its ground; None if its scene cannot be made of such disks."""
         if factor == 1.0:
             return self._case, self.given.scene.ground
         try:
@@ -168,7 +170,7 @@ class Options:
         return case, ground
 
     def _each(self, case: DiskCase, arrangement: str, factor: float, wider: bool) -> Iterator[DiskOption]:
-        """A case with its sides where they are, and if they may be there farther away, up to where nothing returns."""
+        """Options of a case with its sides in place, and, if allowed, farther away, up to where nothing returns."""
         try:
             cost = self._counted.of(case).seconds
         except CaseError:  # no mesh
@@ -184,7 +186,7 @@ class Options:
             yield DiskOption(case, arrangement, factor, more, cost * copies[0] * copies[1] / (across * up))
 
     def _copies(self, case: DiskCase, wider: float) -> tuple[int, int]:
-        """Numbers of bricks with sides so much farther away."""
+        """Numbers of bricks along x and y with sides moved outwards by `wider` of the length."""
         copies, brick = list(case.packing.copies), case.packing.brick_size
         for side, needed in self._needed.items():
             if side in case.boundary and case.boundary[side].may_move:
@@ -195,7 +197,7 @@ class Options:
 
     @cached_property
     def _needed(self) -> Mapping[str, float]:
-        """By side that may move, how much farther away (m) nothing returns from it; the same for disks of all sizes."""
+        """By side that may move, distance (m) by which it must move so that nothing returns, for disks of all sizes."""
         brick = self._case.packing.brick_size
         return {side: count * brick[normal_axis(side)] for side, count in needed_by(self.given.scene).items()}
 
@@ -204,7 +206,7 @@ class Options:
         return Counted(self.given)
 
     def _wider(self, scene: DiskScene, wider: float) -> DiskCase:
-        """The case of a scene with sides farther away, up to where nothing returns; CaseError if its tables cannot."""
+        """The case of a scene with sides farther away, up to where nothing returns; CaseError if that is invalid."""
         own = scene.case
         case = enlarged(scene, farther(own.packing, needed_by(scene), wider))
         extent, origin = (
@@ -215,7 +217,7 @@ class Options:
 
 
 def _with_step(case: DiskCase, shorter: float) -> DiskCase:
-    """A case with a time step so many times as long as its tables ask for."""
+    """A case with its automatic or given time step times `shorter`."""
     key = "safety" if case.run.time_step == "auto" else "time_step"
     return case if shorter == 1.0 else with_changes(case, {f"run.{key}": shorter * getattr(case.run, key)})
 
@@ -226,7 +228,7 @@ def _area(case: DiskCase) -> float:
 
 
 def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
-    """The table of a packing of larger disks in the same place."""
+    """The packing table with larger disks in the same place."""
     packing: dict[str, Any] = {key: value for key, value in case.packing.given().items() if key != "bricks"}
     size = [round(length, 10) for length in case.packing.extent]
     sizes = {key: float(f"{length:.15g}") for key, length in case.packing.scaled(factor).items()}
@@ -234,7 +236,7 @@ def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
 
 
 def _is_narrow(case: DiskCase, ground: PackedMaterial) -> bool:
-    """Whether a body is so narrow that its stiffness depends on its disks: those of free edges turn more easily."""
+    """Whether a body is so narrow that its stiffness depends on its disks, as those of free edges turn more easily."""
     if ROTATION in ground.held:
         return False
     across = [length for axis, length in enumerate(case.size) if not case.periodic[axis]]
@@ -242,13 +244,13 @@ def _is_narrow(case: DiskCase, ground: PackedMaterial) -> bool:
 
 
 def _same_ground(given: PackedMaterial, ground: PackedMaterial) -> bool:
-    """Whether disks of another size make a ground of the same stiffness, as they need not under any law."""
+    """Whether disks of another size make a ground of the same stiffness, which not every law ensures."""
     own, other = given.material_tensor, ground.material_tensor
     return np.allclose(own, other, rtol=0.0, atol=EQUAL * float(np.abs(own).max()))
 
 
 def _same_forces(given: DiskScene, scene: DiskScene) -> bool:
-    """Whether loads have the same forces in all, as accelerations of disks do not on any lattice."""
+    """Whether loads have the same total forces, which prescribed accelerations of disks ensure on no lattice."""
     for load in given.case.load:
         if load.acceleration is None or load.is_everywhere:
             continue

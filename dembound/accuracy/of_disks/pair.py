@@ -1,4 +1,4 @@
-"""Two scenes with larger particles, with the sides of the case and with sides so far away that nothing returns."""
+"""Two scenes with larger particles: with the sides of the case, and with sides so far away that nothing returns."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Pair:
     """Two scenes with larger particles that differ in their sides.
 
     given : the case with larger particles; ratio : their diameter over that of the case. smaller, larger : with the
-    sides of the case, and with far ones. bricks : that the larger scene has more beyond its sides; echo_free : whether
+    sides of the case, and with far ones. bricks : by side, additional bricks of the larger scene; echo_free : whether
     nothing returns from there.
     """
 
@@ -46,7 +46,7 @@ class Pair:
 
     @cached_property
     def scenes(self) -> list[DiskScene]:
-        """The scenes that are run: if it matters, also the smaller one with whole cells at its sides, see `Coarser`."""
+        """The scenes to run; where needed also the smaller one with whole cells at its sides, see `Coarser`."""
         whole = [build(self.given.with_whole_cells)] if self.given.weight > 0.0 else []
         return [self.smaller, self.larger, *whole]
 
@@ -80,7 +80,7 @@ def pair_of(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> 
 
 
 def sides_of_pair(case: DiskCase) -> list[str]:
-    """The sides whose error a pair gives: those that may be farther away and send waves back."""
+    """The sides whose error a pair gives: those that may be farther away and reflect."""
     return [side for side, table in case.boundary.items() if table.may_move and not table.absorber]
 
 
@@ -107,7 +107,7 @@ def _with_far_sides(given: Coarser, ratio: float, most: float) -> Pair:
 
 
 def _limit(case: DiskCase, side: str, times: float) -> float:
-    """Most bricks beyond a side of a scene that becomes that many times as long as it is."""
+    """Most bricks beyond a side with which the scene becomes `times` times as long."""
     axis = normal_axis(side)
     return math.inf if math.isinf(times) else math.ceil((times - 1.0) * case.packing.copies[axis])
 

@@ -24,7 +24,7 @@ FARTHEST = 2.0
 def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     """Places (k, 2) m of the patch of disks whose middle is nearest to a place (2,) m, in the order of `PATCHES`.
 
-    Nine disks, three in a column or row where no nine stand together around it, or only the nearest disk.
+    Nine disks, or three in a column or row where nine are not available, or only the nearest disk.
     """
     first = 0 if scene.seam is None else scene.seam.count
     disks = scene.positions[first : scene.disk_count]
@@ -41,10 +41,11 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
 
 
 def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Weights (k,) of the motion of the disks of a patch (k, 2) m in that at a place (2,) m.
+    """Interpolation weights (k,) at a place (2,) m of the motion of a patch of disks (k, 2) m.
 
-    They are exact for quadratic motion: Lagrange's polynomials through three places along x, times those along y, or
-    one of them where a patch is one disk wide or high. Beyond `FARTHEST` they are those there, as in a continuum beyond
+    Exact for quadratic motion: Lagrange's polynomials through three places along x, times those along y, or
+    one of them where a patch is one disk wide or high. Beyond `FARTHEST` cells they are constant, as in a continuum
+    beyond
     the disks.
     """
     middle = patch[len(patch) // 2]
@@ -57,7 +58,7 @@ def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
 
 
 class LoadPlace(NamedTuple):
-    """Where a load starts waves: the middle of its disks by force, and that asked for, both (2,) m; its force, N."""
+    """A load as a source: force-weighted middle of its disks and requested middle, both (2,) m; its force, N."""
 
     middle: np.ndarray
     asked: np.ndarray
@@ -65,7 +66,7 @@ class LoadPlace(NamedTuple):
 
 
 def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
-    """The middle (2,) m of the places where loads start waves, by force; None if waves enter through sides."""
+    """The force-weighted middle (2,) m of the loads that start waves; None if waves enter through sides."""
     found = places_of_loads(scene)
     return (
         np.average([each.middle for each in found], axis=0, weights=[each.force for each in found]) if found else None
@@ -75,7 +76,7 @@ def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
 def places_of_loads(scene: DiskScene) -> list[LoadPlace]:
     """The places of the loads that start waves; none if they enter through sides.
 
-    A load without a wave starts them by its sudden beginning, but not if a static stage comes before.
+    A load without a wave starts them by its sudden beginning, but not after a static stage.
     """
     case = scene.case
     if case.driving and not any(load.wave for load in case.load):
@@ -105,7 +106,7 @@ def _asked(load: Load, scene: DiskScene) -> np.ndarray:
 
 
 def middle_of_forces(load: Load, scene: DiskScene) -> tuple[np.ndarray, float]:
-    """The middle (2,) m of the disks on which a load acts, by force, and the sum of these forces, N."""
+    """The force-weighted middle (2,) m of the disks on which a load acts, and its total force, N."""
     nodes, forces = forces_of(load, scene)
     strength = np.hypot(*forces[:, :2].T)
     return np.average(scene.positions[nodes], axis=0, weights=strength), float(strength.sum())

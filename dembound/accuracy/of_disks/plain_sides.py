@@ -1,8 +1,8 @@
-"""Artificial sides that hold by dampers and springs of their own, as sides of this package that hold as strongly.
+"""Artificial sides of other packages' types, replaced by sides of this package with equal dampers and springs.
 
 A type of another package may have coefficients per disk, and may not know half cells. On larger disks it would hold
-less per metre, and its cells would reflect more. So there it has as strong dampers and springs per metre as its support
-table says here.
+less per metre, and its cells would reflect more. So there it gets dampers and springs as strong per metre as in its
+support table on the given disks.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ EVEN = 1e-6
 
 
 def with_plain_sides(scene: DiskScene) -> DiskScene:
-    """The scene with artificial sides that hold evenly in a way of their own as "viscous" or "viscoelastic" ones.
+    """The scene with artificial sides of unknown types replaced by equivalent "viscous" or "viscoelastic" ones.
 
-    All others stay as they are: those by whose methods dashpots and springs are known, those that let waves in or
-    follow a column, and those whose dampers or springs differ along the side.
+    Other sides do not change: types whose methods give their dashpots and springs, sides that let waves in or
+    follow a column, and sides whose dampers or springs vary along the side.
     """
     plain = {side: _plain(table, side, scene) for side, table in scene.case.boundary.items()}
     if plain == scene.case.boundary:
@@ -34,7 +34,7 @@ def with_plain_sides(scene: DiskScene) -> DiskScene:
 
 
 def _plain(table: Boundary, side: str, scene: DiskScene) -> Boundary:
-    """One side."""
+    """The equivalent table of one side."""
     if side not in scene.edges or not table.may_move or table.needs_column:
         return table
     edge, supports = scene.edges[side], supports_of(scene, side)
@@ -56,7 +56,7 @@ def _plain(table: Boundary, side: str, scene: DiskScene) -> Boundary:
 
 
 def _is_known(table: Boundary, supports: Supports, place: tuple[Edge, BoundaryMedium], scene: DiskScene) -> bool:
-    """Whether the methods of a type give its dashpots and springs on disks of any size, or there are none."""
+    """Whether the methods of a type give its dashpots and springs on disks of any size, or it has none."""
     edge, medium = place
     if supports.stiffness.any() and table.equal_supports(place, place) is None:
         return False
@@ -72,7 +72,7 @@ def _is_known(table: Boundary, supports: Supports, place: tuple[Edge, BoundaryMe
 
 
 def _is_even(supports: Supports, edge: Edge) -> bool:
-    """Whether there are only dampers and springs, equal for all disks of a side or in proportion to their widths."""
+    """Whether a side has only dampers and springs, equal for all its disks or in proportion to their widths."""
     alone = supports.component < 2
     if not alone.all() or supports.prescribed.any() or supports.follow.any() or len(supports.drive):
         return False

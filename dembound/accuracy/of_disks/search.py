@@ -1,7 +1,7 @@
 """The cheapest choice of disks and sides that keeps the error of all monitors within a bound.
 
 Choices are tried in the order of their counted cost, first those whose errors formulas give, then cheaper ones with
-companions, and only those are built whose error is to be found. None of them is run: what their sides send back is
+companions; a choice is built only when its error is to be found. None of them is run: reflections of their sides are
 found with companions of larger disks, the rest by formulas.
 """
 
@@ -41,10 +41,10 @@ PER_FACTOR, PER_REFUSED, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.02,
 one that can, of finding its error, of building it by disk, and of its companions by particle-step."""
 
 CUT = "; the search ended early, as it had taken long beside the run"
-"""Words on a choice that does not keep a bound, where others were left out for their time."""
+"""Note on a choice that does not keep a bound, where the search ended for lack of time."""
 
 HELD = 30_000
-"""Disks up to which a choice remains in memory, for other bounds."""
+"""Most disks of a choice that is kept for other bounds."""
 
 COSTLIEST, AFFORDABLE = 64.0, 60.0
 """Cost up to which choices are tried: so many times that of the given case, as disks of a quarter of the diameter have,
@@ -58,7 +58,7 @@ costs, by which they are in order, are not nearer to it."""
 
 @dataclass(frozen=True)
 class _Found:
-    """A choice with its error; budget : beside the motion without it."""
+    """A choice with its error; budget : relative to the motion without the error."""
 
     built: Built
     budget: Budget
@@ -70,13 +70,13 @@ class _Found:
 
     @cached_property
     def upper(self) -> float:
-        """The largest error that it may have; infinite where a cause is not known."""
+        """Its largest possible error; infinite where a cause is unknown."""
         share = self.budget.worst().share
         return math.inf if share.at_least else share.upper
 
     @property
     def motion(self) -> dict[str, History]:
-        """The motion with what the sides add to it."""
+        """The motion including the errors of the sides."""
         sides = [cause.parts for cause in self.budget.causes.found if cause.name == SIDES]
         return {
             name: replace(own, values={q: own.values[q] + sum(parts[name][q] for parts in sides) for q in own.values})
@@ -86,7 +86,7 @@ class _Found:
 
 @dataclass
 class _Tried:
-    """Choices with their errors, those left out as part of their error is too large, and those that take too long."""
+    """Choices whose errors were found, those left out for part of their error, and those that take too long."""
 
     found: list[_Found] = field(default_factory=list)
     left: list[DiskOption | Built] = field(default_factory=list)
@@ -97,15 +97,22 @@ class _Tried:
 class Search:
     """The search for a choice.
 
-    planned : the case; own_cost : CPU time (s) of its steps. twin : its case, if its law is not that given. longest :
-    CPU time (s) of steps that a choice may have; None: by `COSTLIEST` and `AFFORDABLE`. tried :
-    number of choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut :
-    whether choices were left out for that. waiting : by cost, what may come next: diameters, their choices, and those
-    that are built and cost more than others may. of_sides : by arrangement and distance the largest error of its sides
-    alone. of_disks : by factors of diameter and step, with a continuum and without, the smallest error of disks.
-    of_given_disks : that of the given disks. known : choices whose error was found for another bound, by the digest of
-    their case. made : those that were built, or that cannot run, by the text of their case and how much farther away
-    their sides are. counted : factors of the diameter for which the time steps of continua have been found.
+    planned : the case; own_cost : CPU time (s) of its steps. twin : the case under the elastic law, if that replaces
+    its
+    own. longest : CPU time (s) of steps that a choice may have; None: by `COSTLIEST` and `AFFORDABLE`. tried : number
+    of
+    choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut : whether
+    choices were left out for that. waiting : queue by cost: diameters, their choices, and built choices that cost more
+    than
+    others may. of_sides : by arrangement and distance the largest error of its sides. of_disks : by factors of diameter
+    and
+    step, with a continuum and without, the smallest error of disks. of_given_disks : the error of the given disks.
+    known :
+    choices whose error was found for another bound, by the digest of their case. made : built choices, and None for
+    those
+    that cannot run, by the text of their case and how much farther away their sides are. counted : factors of the
+    diameter
+    for which the time steps of continua have been found.
     """
 
     companions: Companions
@@ -144,9 +151,9 @@ class Search:
         return found if until else ended_earlier(found, given, bound, best.motion, self.kept)
 
     def know(self, given: Budget) -> None:
-        """Take the errors of the given case: of its sides, which disks of other sizes hardly change, and of its disks.
+        """Take over the errors of the given case: of its sides, nearly equal for all disk sizes, and of its disks.
 
-        That of disks, without the places of monitors, which may fit any, grows at least with the diameter.
+        Errors of disks, without those by places of monitors, which vary, grow at least with the diameter.
         """
         sides = Causes([cause for cause in given.causes.found if cause.name == SIDES])
         if sides.found:
@@ -156,10 +163,9 @@ class Search:
             self.of_given_disks = Budget(given.motions, disks, self.of).worst().share.upper
 
     def best(self) -> _Found:
-        """The cheapest choice that keeps the bound, or the one with the smallest error.
+        """The cheapest choice that keeps the bound, or else the one with the smallest error.
 
-        Those whose errors are known by formulas are tried first, then those with companions of their own that cost less
-        than the one found.
+        Choices whose errors are known by formulas are tried first, then cheaper ones with companions of their own.
         """
         tried, most = _Tried(), math.inf
         for with_companions in (False, True):
@@ -169,9 +175,9 @@ class Search:
         return self._most_accurate(tried.found, tried.left, tried.too_long)
 
     def _cheapest(self, with_companions: bool, most: float, tried: _Tried) -> float:
-        """Cost of the first choice that keeps the bound of those with or without companions; `most` if all cost more.
+        """Cost of the first choice, with or without companions, that keeps the bound; `most` if all cost more.
 
-        What was tried is added to `tried`.
+        All choices that were tried are added to `tried`.
         """
         self.waiting = []
         for item in self._by_cost():
@@ -201,10 +207,11 @@ class Search:
     def _most_accurate(
         self, found: list[_Found], left: list[DiskOption | Built], too_long: list[DiskOption | Built]
     ) -> _Found:
-        """The choice with the smallest error of those found and those left out, as none keeps the bound.
+        """The choice with the smallest error of those found and those left out, where none keeps the bound.
 
-        These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
-        below the smallest one found. Those that take too long come last, the cheapest first, where there is no other.
+        Choices left out are tried in the order of the error that is known for their sides or disks, as long as that is
+        below the smallest error found. Choices that take too long come last, the cheapest first, where there is no
+        other.
         """
         while left:
             left.sort(key=self._alone)
@@ -226,7 +233,7 @@ class Search:
         return min(found, key=lambda each: each.upper)
 
     def _affords(self, item: DiskOption | Built) -> bool:
-        """Whether the search may go on with a choice; the work of companions leaves its time to those without any."""
+        """Whether the search has time left for a choice; choices with companions leave time to those without."""
         option = _option(item)
         packing = option.case.packing
         most = max(LONGEST, PART * max(self.own_cost, self.longest or 0.0))
@@ -238,7 +245,7 @@ class Search:
         return spent <= most
 
     def _alone(self, item: DiskOption | Built) -> float:
-        """The largest one of the errors that sides, disks and walls of a choice are known to have alone."""
+        """The largest known single error of a choice: of its sides, its disks, or walls."""
         option = _option(item)
         case = option.case
         walls = 0.0
@@ -253,7 +260,7 @@ class Search:
         return error <= self.bound
 
     def _by_cost(self) -> Iterator[DiskOption | Built]:
-        """Choices by cost; those with the next smaller disks are only counted when their cost has been reached."""
+        """Choices by cost; choices with the next smaller disks are only counted when their cost has been reached."""
         factors, least = self.options.factors, 0.0
         most = max(COSTLIEST * self.own_cost, AFFORDABLE) if self.longest is None else self.longest
         self._wait(least, factors.pop(0))
@@ -272,7 +279,7 @@ class Search:
                 self._wait(least, factors.pop(0))
 
     def _wait(self, cost: float, item: DiskOption | Built | float) -> None:
-        """Put a choice, or the choices of a diameter, where its cost is reached."""
+        """Put a choice, or a diameter whose choices are not counted yet, into the queue at its cost."""
         heapq.heappush(self.waiting, (cost, next(self._numbers), item))
 
     @cached_property
@@ -309,7 +316,7 @@ class Search:
         return self._options[factor]
 
     def _know_sides(self, option: DiskOption) -> None:
-        """Find the error of the sides of a choice with smaller disks by the given ones, which take less to build."""
+        """Find the error of a choice's sides with smaller disks from the given disks, which are quicker to build."""
         if _sides(option) in self.of_sides or option.factor >= 1.0:
             return
         given = (each for each in self._of(1.0) if _sides(each) == _sides(option) and each.shorter == 1.0)
@@ -322,15 +329,17 @@ class Search:
             self._note_sides(option, [of_sides(self.companions, scene, built.planned.time_step, option.wider)], scene)
 
     def _note_sides(self, option: DiskOption, causes: Sequence[Cause], scene: DiskScene) -> None:
-        """Take the error of the sides of a choice from its causes."""
+        """Store the error of the sides of a choice from its causes."""
         sides = Causes([cause for cause in causes if cause.name == SIDES])
         alone = Budget(self.companions.recorded(scene), sides, self.of).worst().share.upper
         self.of_sides[_sides(option)] = max(alone, self.of_sides.get(_sides(option), 0.0))
 
     def _with_error(self, built: Built, left: list[DiskOption | Built] | None) -> list[_Found]:
-        """A choice with its error; nothing if a companion of it cannot run.
+        """A choice with its error; empty if a companion of it cannot run.
 
-        left : where it is left, without its companions, if the error of its disks alone is too large; None: nowhere.
+        left : list to which the choice is added, without running companions, if the error of its disks is too large;
+        None:
+        companions are always run.
         """
         if (known := self.known.get(key := digest(built.case))) is not None:
             return known
@@ -361,17 +370,17 @@ def _option(item: DiskOption | Built) -> DiskOption:
 
 
 def _sides(option: DiskOption) -> tuple[str, float]:
-    """What the sides of a choice are, and how much farther away."""
+    """Key of the sides of a choice: arrangement, and how much farther away they are."""
     return option.arrangement, option.wider
 
 
 def _disks(option: DiskOption) -> tuple[float, float, bool]:
-    """The size of the disks of a choice and its time step over those given, and whether they are in a continuum."""
+    """Key of the disks of a choice: diameter and time step over those given, and whether they are in a continuum."""
     return option.factor, option.shorter, bool(option.case.outside_sides)
 
 
 def before_breaks(companions: Companions) -> str:
-    """Words that errors are those before bonds break, where they do."""
+    """Words that errors hold before bonds break; empty if none breaks."""
     breaks = companions.first_break
     if breaks >= companions.case.run.duration:
         return ""

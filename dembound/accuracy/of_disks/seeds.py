@@ -1,4 +1,4 @@
-"""How much the motion depends on the seed of a random packing, of which every one is another sample of the rock."""
+"""Scatter of the motion between random packings: each seed is another sample of the rock."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ MOTIONS: tuple[Quantity, ...] = ("velocity", "displacement")
 
 
 def cause_of_packing(case: DiskCase, motions: Motions, seeds: int) -> Causes:
-    """What the seed of a random packing adds to the motion of its monitors, from runs with several seeds.
+    """The scatter of the monitors' motion between random packings, from runs with several seeds.
 
-    The motion of one less the mean of all, times √(n/(n − 1)), has the size of an independent error of each. motions :
+    The difference of one motion from the mean of n, times √(n/(n − 1)), has the size of the error of a packing. motions
+    :
     by monitor, at the times at which it is found. Raises CaseError for a packing without a seed, and the errors of
     runs.
     """

@@ -1,8 +1,8 @@
-"""The time step of a case of disks by its numbers: from small pieces of the same ground, which serve all cases.
+"""The time step of a case of disks, from small pieces of the same ground, which serve all cases.
 
 A lattice of larger disks has steps longer by the ratio of the diameters, as all stiffnesses and masses of a plane body
 scale alike. Beside a continuum the light nodes at the edges of its elements limit the step, by the ties that pull them:
-by how much depends on the sides of the elements in bricks alone, and on where bricks meet the nodes. It is found on a
+by how much depends only on the sides of the elements in bricks, and on where bricks meet the nodes. It is found on a
 box of a few elements.
 """
 
@@ -49,7 +49,7 @@ class Along(NamedTuple):
     elements: int
 
     def shorter(self, brick: float) -> Along:
-        """The numbers along a piece in which bricks, so many diameters long, meet nodes in the same way."""
+        """The numbers along a short piece in which bricks, `brick` diameters long, meet nodes in the same way."""
         ratio = Fraction(self.bricks, self.elements)
         if (side := float(ratio) * brick) > FINE:
             side = min(FINE * COARSE ** round(math.log(side / FINE, COARSE)), WIDE)
@@ -70,9 +70,9 @@ def _beside(number: Fraction) -> range:
 
 @dataclass
 class Steps:
-    """Time steps of cases that differ in the size of their disks, their sides and continuum from a given one.
+    """Time steps of cases that differ from a given one in the size of their disks, their sides and continuum.
 
-    case, ground : given. limits : s, of pieces of the given ground, by what they depend on.
+    case, ground : given. limits : stability limits of pieces of the given ground, s, by properties of the piece.
     """
 
     case: DiskCase
@@ -140,7 +140,7 @@ class Steps:
         sides: Mapping[str, Boundary],
         outside: OutsideTable | None = None,
     ) -> float:
-        """Stability limit (s) of so many bricks of the given ground, found once; infinite if they make no scene."""
+        """Stability limit (s) of `copies` bricks of the given ground, found once; infinite if they make no scene."""
         if key not in self.limits:
             piece = replace(
                 self.case,

@@ -1,7 +1,7 @@
-"""How late plane waves come on the disks of a packing, by the exact dispersion of the square lattice of its material.
+"""Delay of plane waves on the disks of a packing, by the exact dispersion of the square lattice of its material.
 
 P waves along an axis of the lattice are those of a row of masses, c(q) = c(1 − (qD)²/24). S waves also turn the disks:
-along an axis they are a little faster the shorter they are, along the diagonal slower. A random packing is taken to
+along an axis they are a little faster the shorter they are, along the diagonal slower. A random packing is assumed to
 disperse like the lattice of the same material and mean diameter.
 """
 
@@ -71,10 +71,10 @@ def delay_of(
     step: float,
     frequencies: Frequencies | None = None,
 ) -> Delay:
-    """Delay (s) of waves of given angular frequencies (rad/s) over a path (m), nan above those of the shortest wave.
+    """Delay (s) of waves of given angular frequencies (rad/s) over a path (m), nan above that of the shortest wave.
 
-    directions : unit vectors, of which that with the largest delay is taken. speed : of long waves, m/s. step : of the
-    run, s; 0 for waves that are not stepped in time. frequencies : of this ground, if they are at hand.
+    directions : unit vectors; the one with the largest delay counts. speed : of long waves, m/s. step : of the
+    run, s; 0 for waves that are not stepped in time. frequencies : of this ground, if available.
     """
     along = frequencies or frequencies_of(ground)
     frequency, slowness = max(
@@ -94,7 +94,7 @@ def delay_of(
 
 
 def _slowness(found: np.ndarray, held: Sequence[int], motion: Motion, step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Angular frequencies (k,) rad/s of P or S waves among those found (k, m), and slowness over that of long ones."""
+    """Angular frequencies (k,) rad/s of P or S waves among those found (k, m), and slowness over that of long waves."""
     moving = sum(axis not in held for axis in (0, 1))
     frequency = found[:, 1 if motion == "p" and moving == 2 else 0]
     if step > 0.0:

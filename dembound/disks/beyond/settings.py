@@ -95,9 +95,9 @@ def settings_of(case: DiskCase, medium: Medium, diameter: float, box: Box, sides
     )
     if keys.margin is None:
         inner = choice.inner_length(lasting, fastest(medium), keys.shift, keys.accuracy)
-        wanted = [1, _margin(chosen, box, sides, inner) if lasting > 0.0 else 1]
-        wanted += [margin_below_surface(chosen, each, medium, keys.accuracy) for each in buried(case, box, sides)]
-        chosen = chosen._replace(margin=max(wanted))
+        requested = [1, _margin(chosen, box, sides, inner) if lasting > 0.0 else 1]
+        requested += [margin_below_surface(chosen, each, medium, keys.accuracy) for each in buried(case, box, sides)]
+        chosen = chosen._replace(margin=max(requested))
     return chosen
 
 
@@ -139,12 +139,12 @@ def margin_below_surface(settings: Settings, source: Buried, medium: Medium, acc
 
 def _margin(settings: Settings, box: Box, sides: Sequence[str], inner: float) -> int:
     """Number of elements beside a box, with which a length (m) lies within the layers along one axis; at least 1."""
-    wanted, element = [], settings.sides(box[2] - box[0], box[3] - box[1])
+    requested, element = [], settings.sides(box[2] - box[0], box[3] - box[1])
     for axis in (0, 1):
         length, beyond = box[2 + axis] - box[axis], sum(normal_axis(side) == axis for side in sides)
         if beyond:
-            wanted.append(math.ceil((inner - length) / (beyond * element[axis]) - ROUNDING))
-    return max(min(wanted), 1)
+            requested.append(math.ceil((inner - length) / (beyond * element[axis]) - ROUNDING))
+    return max(min(requested), 1)
 
 
 def mesh_of(

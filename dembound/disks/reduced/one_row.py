@@ -128,10 +128,10 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
 def _counterparts(assembly: Assembly, row: Assembly, axis: int) -> np.ndarray | None:
     """For each disk (n,) the row's disk that is a copy of the same one in its brick; None if any disk has none."""
     along, kinds = 1 - axis, int(assembly.brick_particle.max()) + 1
-    wanted, there = (each.tile[:, along].astype(np.int64) * kinds + each.brick_particle for each in (assembly, row))
+    requested, there = (each.tile[:, along].astype(np.int64) * kinds + each.brick_particle for each in (assembly, row))
     order = np.argsort(there)
-    found = order[np.searchsorted(there, wanted, sorter=order).clip(max=len(order) - 1)]
-    return found if (there[found] == wanted).all() else None
+    found = order[np.searchsorted(there, requested, sorter=order).clip(max=len(order) - 1)]
+    return found if (there[found] == requested).all() else None
 
 
 def _supports_at(place: np.ndarray, table: Supports, share: np.ndarray) -> Supports:

@@ -79,8 +79,8 @@ class Grid:
         size = (box[2:] - box[:2])[order]
         frequency, speeds = mean_frequency(scene.case), np.array(ground.wave_speeds(axis))
         known = math.isfinite(frequency) and (speeds > 0.0).any()
-        wanted = size * PER_WAVELENGTH * frequency / speeds[speeds > 0.0].min() if known else np.full(2, MOST / 2)
-        cells = np.clip(np.ceil(wanted), FEWEST, MOST).astype(int)
+        requested = size * PER_WAVELENGTH * frequency / speeds[speeds > 0.0].min() if known else np.full(2, MOST / 2)
+        cells = np.clip(np.ceil(requested), FEWEST, MOST).astype(int)
         free = np.array([component not in ground.held for component in order])
         ends = {side: _end(scene, side, order, free) for side in SIDES}
         tensor = ground.material_tensor[np.ix_(gradients, gradients)]

@@ -28,7 +28,7 @@ one before."""
 NOISES = 8.0
 """Least of these levels in standard deviations of noise."""
 
-TOLD = 0.01
+DIFFERING = 0.01
 """Relative difference of wave speeds from which a warning is due, if it is beyond the error of that measured, too."""
 
 
@@ -91,7 +91,7 @@ def doubts_of_pulses(
     travelled = None if signals.second is not None else travel_speed(signals, setup, windows)
     if travelled is not None:
         apart = travelled.value / setup.bar.speed - 1.0
-        if abs(apart) > max(TOLD, travelled.error / setup.bar.speed):
+        if abs(apart) > max(DIFFERING, travelled.error / setup.bar.speed):
             yield (
                 f"the reflected pulse begins at its gauge as with a wave speed of {travelled.value:.5g} ± "
                 f"{travelled.error:.2g} m/s, {'+' * (apart > 0.0)}{percent(apart)} from --wave-speed: check it "

@@ -73,18 +73,18 @@ class Columns:
                 return found[2]
         return None
 
-    def find(self, option: str, wanted: str) -> int:
+    def find(self, option: str, requested: str) -> int:
         """The index of a column by its number, from 1, or name; raises CaseError if there is none or two."""
         names = self.names
-        if wanted.isdigit() and wanted not in names:
-            if not 1 <= int(wanted) <= len(names):
-                raise CaseError([f"{option}: is {wanted}, must be 1 to {len(names)} in {self.path}"])
-            return int(wanted) - 1
-        found = [index for index, name in enumerate(names) if name.lower() == wanted.strip().lower()]
+        if requested.isdigit() and requested not in names:
+            if not 1 <= int(requested) <= len(names):
+                raise CaseError([f"{option}: is {requested}, must be 1 to {len(names)} in {self.path}"])
+            return int(requested) - 1
+        found = [index for index, name in enumerate(names) if name.lower() == requested.strip().lower()]
         if len(found) != 1:
             allowed = ", ".join(filter(None, names)) or "a number, as the columns have no names"
             said = "is the name of several columns, give its number" if found else f"must be {allowed}"
-            raise CaseError([f"{option}: is {wanted}, {said}"])
+            raise CaseError([f"{option}: is {requested}, {said}"])
         return found[0]
 
     def values(self, column: int) -> list[float]:

@@ -40,14 +40,14 @@ NUMBER = re.compile(r"(?<![\w.\[])[-+]?\d[\d.,]*(e[-+]?\d+)?")
 class Swept:
     """A sweep: its case and action, its members, and the outcome of each, None if it was not done.
 
-    wanted : names of the quantities that are printed and drawn, see `shown`.
+    requested : names of the quantities that are printed and drawn, see `shown`.
     """
 
     case: Case
     action: Action
     members: Sequence[Member]
     outcomes: Sequence[Outcome | None]
-    wanted: Sequence[str] = ()
+    requested: Sequence[str] = ()
 
     @property
     def keys(self) -> list[str]:
@@ -61,14 +61,14 @@ class Swept:
 
     @property
     def shown(self) -> list[str]:
-        """The quantities that are printed and drawn: the wanted ones, by default those of `shown_by_default`.
+        """The quantities that are printed and drawn: the requested ones, by default those of `shown_by_default`.
 
         Raises CaseError for one that no member has.
         """
         names = quantities(self.outcomes)
-        if names and (missing := [name for name in self.wanted if name not in names]):
+        if names and (missing := [name for name in self.requested if name not in names]):
             raise CaseError([f"--quantity: is {missing[0]}, must be one of {', '.join(names)}"])
-        return [name for name in self.wanted if name in names] or shown_by_default(names, self.action)
+        return [name for name in self.requested if name in names] or shown_by_default(names, self.action)
 
     @property
     def warnings(self) -> dict[str, int]:

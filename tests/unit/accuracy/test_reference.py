@@ -5,7 +5,7 @@ import pytest
 
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.history import History
-from dembound.accuracy.reference import Reference, Wanted, errors
+from dembound.accuracy.reference import Reference, Requested, errors
 from dembound.accuracy.runner import Run
 from dembound.errors import CaseError
 
@@ -22,10 +22,10 @@ def gauge(samples: int, x: float = 1.0, y: float = 0.0, place: float = 0.0, afte
 def compared(bar):
     """Compares gauges with those of a reference."""
 
-    def compare(found, expected, until: float = np.inf, **wanted):
+    def compare(found, expected, until: float = np.inf, **requested):
         choice = Choice("it", {}, bar())
         reference = Reference("finest", "the finest", lambda choice, outcome: expected, until=until)
-        return errors(choice, Run(motions=found), reference, Wanted(**wanted))
+        return errors(choice, Run(motions=found), reference, Requested(**requested))
 
     return compare
 

@@ -1,4 +1,4 @@
-"""Texts of cases with keys changed: they parse to the tables wanted, and all other lines stand byte for byte."""
+"""Texts of cases with keys changed: they parse to the tables requested, and all other lines stand byte for byte."""
 
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -89,10 +89,10 @@ def test_a_changed_value_changes_its_own_lines_alone(texts: list[str]) -> None:
     for text in texts:
         found, lines = list(leaves(tomllib.loads(text))), lines_of(text)
         for place, value in found[:: max(1, len(found) // 3)]:
-            wanted = tomllib.loads(text)
-            put(wanted, place, other(value))
-            new = rewritten(text, wanted)
-            assert tomllib.loads(new) == wanted
+            requested = tomllib.loads(text)
+            put(requested, place, other(value))
+            new = rewritten(text, requested)
+            assert tomllib.loads(new) == requested
             (held,) = (
                 each for each in statements_of(lines) if each.kind == "key" and each.place == place[: len(each.place)]
             )
@@ -241,20 +241,20 @@ def layout(data: Mapping[str, Any], draw: Any, place: tuple[str, ...] = ()) -> l
 @settings(deadline=None, max_examples=100, derandomize=True)
 def test_any_layout_is_edited_to_any_other_tables(data: st.DataObject) -> None:
     before = data.draw(TABLES)
-    wanted = deepcopy(before) if data.draw(st.booleans()) else data.draw(TABLES)
+    requested = deepcopy(before) if data.draw(st.booleans()) else data.draw(TABLES)
     for place, value in list(leaves(before))[: data.draw(st.integers(0, 3))]:
-        if wanted == before or data.draw(st.booleans()):
+        if requested == before or data.draw(st.booleans()):
             try:
-                put(wanted, place, other(value))
+                put(requested, place, other(value))
             except (KeyError, TypeError, IndexError):
                 continue  # which the other tables do not have
     text = "\n".join(["# top", *layout(before, data.draw)]) + data.draw(st.sampled_from(["", "\n"]))
     assert tomllib.loads(text) == before
 
-    new = rewritten(text, wanted)
+    new = rewritten(text, requested)
 
-    assert repr_of(tomllib.loads(new)) == repr_of(wanted)
-    kept = [line for each in untouched(text, before, wanted) for line in each]
+    assert repr_of(tomllib.loads(new)) == repr_of(requested)
+    kept = [line for each in untouched(text, before, requested) for line in each]
     rest = iter(new.split("\n"))
     assert all(line in rest for line in kept)
 
@@ -266,13 +266,13 @@ def repr_of(value: Any) -> Any:
     return [repr_of(each) for each in value] if isinstance(value, list) else repr(value)
 
 
-def untouched(text: str, before: Any, wanted: Any) -> Iterator[list[str]]:
-    """The lines of the keys outside lists of tables that have the value wanted."""
+def untouched(text: str, before: Any, requested: Any) -> Iterator[list[str]]:
+    """The lines of the keys outside lists of tables that have the value requested."""
     lines = lines_of(text)
     for each in statements_of(lines):
         if each.kind == "header" or any(isinstance(key, int) for key in each.place):
             continue
-        old, new = before, wanted
+        old, new = before, requested
         for key in each.place:
             old, new = old[key], new.get(key) if isinstance(new, Mapping) else None
         if repr_of(old) == repr_of(new):

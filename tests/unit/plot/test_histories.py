@@ -27,8 +27,8 @@ def test_each_monitor_has_a_panel_with_its_history(small_run, component, quantit
     assert names(figure) == ["front", "back"]
     with h5py.File(small_run) as file:
         for panel, (name, group) in zip(figure.axes, file["histories"].items(), strict=True):
-            places = ("({:.2f}, {:.2f}) m".format(*group.attrs[key]) for key in ("position", "wanted"))
-            assert panel.get_title("left") == "{} at {}, wanted {}".format(name, *places)
+            places = ("({:.2f}, {:.2f}) m".format(*group.attrs[key]) for key in ("position", "requested"))
+            assert panel.get_title("left") == "{} at {}, requested {}".format(name, *places)
             (line,) = panel.lines
             np.testing.assert_array_equal(line.get_xdata(), group["time"][:] / 1e-3)
             np.testing.assert_array_equal(line.get_ydata(), group[quantity][:, column])
@@ -57,16 +57,16 @@ def test_places_that_differ_stand_in_the_title_and_many_are_counted(small_run, t
         with h5py.File(run, "r+") as file:
             file["histories/front"].attrs["position"] = (2.0 + number, 1.2)
             if number == 1:
-                file["histories/front"].attrs["wanted"] = (2.5, 1.2)
+                file["histories/front"].attrs["requested"] = (2.5, 1.2)
                 file["histories/back"].attrs["position"] = (9.6, 1.2)
     front, back = (panel.get_title("left") for panel in plot_histories(runs[:2]).axes)
-    assert front == "front at (2.00, 1.20) m and (3.00, 1.20) m, wanted (2.40, 1.20) m and (2.50, 1.20) m"
-    assert back == "back at (9.75, 1.25) m and (9.60, 1.20) m, wanted (9.60, 1.20) m"
+    assert front == "front at (2.00, 1.20) m and (3.00, 1.20) m, requested (2.40, 1.20) m and (2.50, 1.20) m"
+    assert back == "back at (9.75, 1.25) m and (9.60, 1.20) m, requested (9.60, 1.20) m"
     runs[1].write_bytes(runs[0].read_bytes())
     with h5py.File(runs[1], "r+") as file:
         file["histories/front"].attrs["position"] = (3.0, 1.2)
     front, _ = (panel.get_title("left") for panel in plot_histories(runs).axes)
-    assert front == "front at (2.00, 1.20) m and 2 other places, wanted (2.40, 1.20) m"
+    assert front == "front at (2.00, 1.20) m and 2 other places, requested (2.40, 1.20) m"
 
 
 def test_twins_are_dashed_in_the_panel_of_their_monitor_or_alone(small_run, other_run, run, copied):

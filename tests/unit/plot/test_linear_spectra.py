@@ -17,7 +17,7 @@ def record(path, name, pulses, step=1e-4, last=0.5, odd=0.0):
         file.attrs["name"], file.attrs["size"] = name, [10.0, 1.0]
         for monitor, height in pulses.items():
             group = file.create_group(f"histories/{monitor}")
-            group.attrs["position"] = group.attrs["wanted"] = [1.0, 0.5]
+            group.attrs["position"] = group.attrs["requested"] = [1.0, 0.5]
             inside = (time > 0.1) & (time < 0.1 + LENGTH)
             velocity = np.zeros((len(time), 3))
             velocity[:, 0] = inside * 0.5 * height * (1.0 - np.cos(2.0 * np.pi * (time - 0.1) / LENGTH))

@@ -62,7 +62,7 @@ def test_every_picture_says_what_it_shows(two, pushed_runs):
     (velocity,) = (each["alt"] for each in pictures if each["alt"].startswith("Velocity along x at the monitors"))
     with h5py.File(pushed_runs[0]) as file:
         largest = np.abs(file["histories/front/velocity"][:, 0]).max()
-    assert f"whole, front at (2.25, 1.25) m, wanted (2.40, 1.20) m: peak {largest:.4g} where x is" in velocity
+    assert f"whole, front at (2.25, 1.25) m, requested (2.40, 1.20) m: peak {largest:.4g} where x is" in velocity
 
 
 def test_headings_are_in_order_and_texts_of_users_no_markup(two, pushed_runs):

@@ -18,7 +18,7 @@ def record(path, name, histories, place=(0.0, 0.0)):
             group = file.create_group(f"histories/{monitor}")
             group["time"] = time
             group["velocity"] = np.column_stack([x, y, np.zeros_like(time)])
-            group.attrs["wanted"] = (0.0, 0.0)
+            group.attrs["requested"] = (0.0, 0.0)
             group.attrs["position"] = place[monitor] if isinstance(place, dict) else place
     return path
 

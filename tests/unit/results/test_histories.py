@@ -28,9 +28,9 @@ def test_one_sample_has_no_acceleration(small_run, tmp_path):
         read_histories(run, "acceleration")
 
 
-def test_places_are_that_of_the_particle_and_the_one_wanted(small_run):
+def test_places_are_that_of_the_particle_and_the_one_requested(small_run):
     history = read_histories(small_run, "velocity")["front"]
     with h5py.File(small_run) as file:
         place = file["histories/front"].attrs["position"]
     assert history.place == "({:.2f}, {:.2f}) m".format(*place)
-    assert history.wanted == "(2.40, 1.20) m"
+    assert history.requested == "(2.40, 1.20) m"

@@ -100,7 +100,7 @@ def test_a_record_has_the_scene_and_all_that_was_kept(tmp_path, simulation) -> N
             assert np.array_equal(group["velocity"], expected[:, index, 3:])
             assert group.attrs["particle"] == node
             assert np.array_equal(group.attrs["position"], scene.assembly.positions[node])
-        assert file["histories/back"].attrs["wanted"].tolist() == [9.9, 0.9]
+        assert file["histories/back"].attrs["requested"].tolist() == [9.9, 0.9]
         assert [group.attrs["time"] for group in file["snapshots"].values()] == [19 * STEP, 60 * STEP]
         for group, (displacement, velocity) in zip(file["snapshots"].values(), shots, strict=True):
             assert np.array_equal(group["displacement"], displacement)
@@ -149,7 +149,7 @@ def test_a_history_in_a_continuum_has_no_particle(tmp_path, bar) -> None:
         group = file["histories/beside"]
         assert group.attrs["particle"] == -1
         np.testing.assert_allclose(group.attrs["position"], [-0.75, 0.25], atol=1e-12)
-        assert group.attrs["wanted"].tolist() == [-0.6, 0.3]
+        assert group.attrs["requested"].tolist() == [-0.6, 0.3]
         assert np.array_equal(group["velocity"], expected[:, 3:])
         assert np.array_equal(group["displacement"], expected[:, :3])
         assert np.abs(expected[-1, 3]) > 0.0
@@ -362,7 +362,7 @@ def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
         np.testing.assert_allclose(particles["volume"], [0.0125, *39 * [0.025], 0.0125], rtol=1e-15)
         assert text_of(particles["volume"].attrs["unit"]) == "m³"
         assert text_of(file["energy/kinetic"].attrs["unit"]) == "J"
-        assert file["histories/gauge"].attrs["wanted"].tolist() == [0.525, 0.0]
+        assert file["histories/gauge"].attrs["requested"].tolist() == [0.525, 0.0]
         assert set(file["boundaries"]) == {"left", "right"}
         assert [name.decode() for name in file["laws/name"]] == ["peridynamics, m = 3"]
 

@@ -5,15 +5,15 @@ import pytest
 
 from dembound.results.resample import at_times
 
-WANTED = np.sort(np.random.default_rng(0).uniform(0.0, 10.0, 5000))
+REQUESTED = np.sort(np.random.default_rng(0).uniform(0.0, 10.0, 5000))
 STEP = 0.05
 
 
 def error(motion, samples: int) -> tuple[float, float, float]:
     """RMS over RMS of the error of `samples` a second, that by straight lines, and the largest value found."""
     time = np.linspace(0.0, 10.0, 10 * samples + 1)
-    found, expected = at_times(time, motion(time), WANTED), motion(WANTED)
-    straight = np.interp(WANTED, time, motion(time))
+    found, expected = at_times(time, motion(time), REQUESTED), motion(REQUESTED)
+    straight = np.interp(REQUESTED, time, motion(time))
     by_cubics, by_lines = (float(np.linalg.norm(each - expected)) for each in (found, straight))
     return by_cubics / np.linalg.norm(expected), by_lines / np.linalg.norm(expected), float(found.max())
 
@@ -40,7 +40,7 @@ def test_a_jump_is_crossed_straight(name: str) -> None:
     """Where the motion jumps between two samples nothing is known, and nothing rings beside it."""
     found, straight, largest = error(JUMPS[name], 20)
     assert found <= straight * (1.0 + 1e-12)
-    assert largest <= max(JUMPS[name](WANTED)) * (1.0 + 1e-3)
+    assert largest <= max(JUMPS[name](REQUESTED)) * (1.0 + 1e-3)
 
 
 def test_steep_fronts_are_no_worse_than_by_lines() -> None:
@@ -58,6 +58,6 @@ def test_samples_are_kept_and_ends_go_on() -> None:
 
 def test_few_samples_are_joined_by_lines() -> None:
     for count in (1, 2, 3):
-        time, wanted = np.arange(float(count)), np.array([0.25, 5.0])
+        time, requested = np.arange(float(count)), np.array([0.25, 5.0])
         expected = [0.5 * (count > 1), 2.0 * (count - 1)]
-        np.testing.assert_allclose(at_times(time, 2.0 * time, wanted), expected)
+        np.testing.assert_allclose(at_times(time, 2.0 * time, requested), expected)

@@ -128,9 +128,9 @@ def test_summaries_that_are_none_are_refused(tmp_path) -> None:
     (tmp_path / "summary.json").write_text(json.dumps({"seconds": {"step": 1.0}, "list": [{"a": 1}]}))
     found = read_summary(tmp_path)
     assert found["seconds"]["step"] == 1.0
-    for wanted in (lambda: found["duration"], lambda: found["seconds"]["export"], lambda: found["list"][0]["b"]):
+    for requested in (lambda: found["duration"], lambda: found["seconds"]["export"], lambda: found["list"][0]["b"]):
         with pytest.raises(RecordError, match=r"summary\.json: is damaged, or of another version .* it has no "):
-            wanted()
+            requested()
 
 
 def test_what_foreign_contents_raise_is_one_line(tmp_path) -> None:

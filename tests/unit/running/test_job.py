@@ -53,7 +53,7 @@ def _small_pictures(monkeypatch) -> None:
     monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
 
 
-def test_a_run_leaves_one_whole_folder_and_pictures_where_they_are_wanted(bar, tmp_path) -> None:
+def test_a_run_leaves_one_whole_folder_and_pictures_where_they_are_requested(bar, tmp_path) -> None:
     folder = run_case(bar({"output.pictures": True, "monitor": []}), tmp_path / "new" / "results")
 
     assert folder == tmp_path / "new" / "results" / "bar"
@@ -250,13 +250,13 @@ def test_what_is_missed_in_results_is_warned_of(bar) -> None:
 
 def test_energies_are_entered_a_hundred_times_or_as_often_as_asked_and_snapshots_evenly(bar, tmp_path) -> None:
     usual = {"run.time_step": 1e-4, "run.duration": 0.025, "output.snapshots": 4}
-    for name, changes, wanted in (
+    for name, changes, expected in (
         ("usual", {}, [*np.arange(0.0, 250.0, 2.0), 249.0]),  # and at the last step
         ("asked", {"output.energy_interval": 1e-3}, [*np.arange(0.0, 250.0, 10.0), 249.0]),
     ):
         with h5py.File(run_case(bar({**usual, **changes}, name), tmp_path) / "run.h5") as file:
             # ten times a step of 1e-4 s, each product rounded
-            np.testing.assert_allclose(file["energy/time"], 1e-4 * np.array(wanted), rtol=1e-15)
+            np.testing.assert_allclose(file["energy/time"], 1e-4 * np.array(expected), rtol=1e-15)
             times = [group.attrs["time"] for group in file["snapshots"].values()]
     np.testing.assert_allclose(times, [0.0062, 0.0125, 0.0187, 0.025], rtol=1e-12)
 

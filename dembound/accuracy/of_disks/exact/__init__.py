@@ -1,6 +1,6 @@
 """Exact motion at the monitors of cases, one kind of problem per file.
 
-It is written as a record with the layout of a run, so that it can be plotted and compared in the same way. A new
+It is written as a record with the layout of a run, so that it is plotted and compared like one. A new
 problem is one file with a `Problem`, and its name in `PROBLEMS`.
 """
 
@@ -34,9 +34,9 @@ __all__ = ["PROBLEMS", "Problem", "exact_motions", "problem_of", "write_exact"]
 
 
 def problem_of(scene: DiskScene, name: str | None = None) -> Problem:
-    """The problem that a scene is: the one with this name, or by default the one that holds for the longest time.
+    """The problem that a scene matches: with this name, or by default the one that is valid longest.
 
-    Raises CaseError, with the reasons, if it is none; the reasons are those of the first problem with its loads.
+    Raises CaseError, with the reasons, if none matches; the reasons are those of the first problem with its loads.
     """
     if name is not None:
         kinds: Sequence[type[Problem]] = [kind for kind in PROBLEMS if kind.name == name]
@@ -59,7 +59,7 @@ def problem_of(scene: DiskScene, name: str | None = None) -> Problem:
 
 
 def exact_motions(scene: DiskScene, name: str | None = None) -> tuple[Problem, dict[str, History]]:
-    """The problem that a scene is, and the motion of monitors, each as long as it is exact; errors as `problem_of`."""
+    """The problem that a scene matches, and the monitors' motion while it is valid; errors as of `problem_of`."""
     problem = problem_of(scene, name)
     times = np.linspace(0.0, scene.case.run.duration, SAMPLES)
     needed = times <= max(problem.until.values(), default=0.0)
@@ -68,10 +68,10 @@ def exact_motions(scene: DiskScene, name: str | None = None) -> tuple[Problem, d
 
 
 def write_exact(case: DiskCase, path: Path, name: str | None = None) -> Problem:
-    """Write the exact histories of a case as a record, as long as they are exact; gives the problem that it is.
+    """Write the exact histories of a case as a record, as long as they are valid; returns the matching problem.
 
-    name : of the problem; None: the one that holds for the longest time. The folder of `path` is created if it does not
-    exist. Raises CaseError, with the reasons, if the case is none of the problems.
+    name : of the problem; None: the one that is valid longest. The folder of `path` is created if it does not
+    exist. Raises CaseError, with the reasons, if the case matches no problem.
     """
     scene = build(case)
     problem, motions = exact_motions(scene, name)

@@ -19,8 +19,8 @@ from dembound.kinds import with_changes
 class ExactContinuum(Exact[DiskCase]):
     """The exact motion of a problem of this folder, by the name of the problem.
 
-    base : the case whose problem it is. Where rock goes on beyond a side of it, it does so for all choices: what a free
-    or fixed side there returns is an error of the choice.
+    base : the given case. Sides beyond which its rock goes on are treated so for all choices: reflections of a free or
+    fixed side there are errors of the choice.
     """
 
     base: DiskCase

@@ -39,7 +39,7 @@ ON_TOP = "must be on the top of the scene, where the solution is computed"
 
 @dataclass(frozen=True)
 class LineLoad:
-    """Vertical force history on the surface: position along x (m), and N per metre, downwards, per unit of the wave."""
+    """Vertical force history on the surface: position along x (m), and downward N per metre per unit of the wave."""
 
     x: float
     force: float
@@ -64,12 +64,12 @@ class LambProblem(Problem):
 
     @property
     def until(self) -> dict[str, float]:
-        """Always."""
+        """Infinite for every monitor, as the solution always holds."""
         return dict.fromkeys(self.away, math.inf)
 
     @classmethod
     def concerns(cls, case: DiskCase) -> bool:
-        """Whether a force acts, or nothing that another problem is about."""
+        """Whether a force acts, or no load of another problem."""
         return case.incident is None and not has_pressure(case)
 
     @classmethod
@@ -146,7 +146,7 @@ def _covered(case: DiskCase) -> Iterator[str]:
 
 
 def _disturbed(case: DiskCase) -> Iterator[str]:
-    """What Lamb's half-space does not have: holes, and waves other than that of the load."""
+    """Lines on features that Lamb's half-space does not have: holes, and other waves."""
     if case.hole:
         yield "hole: Lamb's half-space has none"
     for name in sorted(case.entering):
@@ -154,7 +154,7 @@ def _disturbed(case: DiskCase) -> Iterator[str]:
 
 
 def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:
-    """Sides so near that the body is a quarter space with the load at its corner; a mirror side is at distance zero."""
+    """Lines on sides so near that the body is a quarter space; a mirror side is at distance zero."""
     reach = np.abs(monitored(scene)[:, 0] - load.x).max(initial=0.0)
     for side in ("left", "right"):
         away = abs(scene.plane(side) - load.x)

@@ -19,7 +19,7 @@ class ExactPlaneWave(Exact[DiskCase]):
     """A plane wave that enters at one side of a block of disks and leaves at the opposite one.
 
     It enters through the plane of the side, at once, and runs with the homogenised speed of the packing of each choice;
-    whatever a choice has on the opposite side, the wave of the solution leaves without reflection.
+    on the opposite side it leaves without reflection, whatever side a choice has there.
     """
 
     side: str
@@ -53,10 +53,11 @@ class ExactPlaneWave(Exact[DiskCase]):
 
 
 def _keeps_plane(case: DiskCase, side: str, motion: Motion) -> Iterator[bool]:
-    """Whether a plane wave stays plane, for each of the two sides along which it runs.
+    """For each of the two sides along which a plane wave runs, whether the wave stays plane.
 
-    Free sides do so on a square lattice only. Those of random packings are softer, also with rows of equal disks along
-    them: they slow the wave in a strip 20 disks high by up to 2 %.
+    Along free sides it does so on a square lattice only. Free edges of random packings are softer, even with rows of
+    equal
+    disks along them: they slow the wave in a strip 20 disks high by up to 2 %.
     """
     across = 1 - normal_axis(side)
     held = motion == "p" and "xy"[across] in case.motion.held

@@ -40,10 +40,10 @@ SAMPLES = 8000
 
 @dataclass(frozen=True)
 class Blast:
-    """A pressure on the wall of a circular hole, its solid, and the places (2,) m where the motion is wanted.
+    """A pressure on the wall of a circular hole, its solid, and the places (2,) m where the motion is requested.
 
-    wave : the pressure over `pressure` (Pa); wave_name : its name in messages. surface : height of the free surface,
-    m; None if there is none.
+    wave : the pressure over `pressure` (Pa); wave_name : its name in messages. surface : height of the free surface, m;
+    None if there is none.
     """
 
     solid: Solid
@@ -56,7 +56,7 @@ class Blast:
 
     @classmethod
     def of(cls, scene: DiskScene) -> Self:
-        """The blast of a scene; raises CaseError, with the reasons, if it has none alone."""
+        """The blast of a scene; raises CaseError, with the reasons, if it has none or also other sources."""
         case = scene.case
         hole, driven = hole_of(scene), [load for load in case.load if load.wave is not None]
         if len(driven) != 1 or driven[0].pressure is None or case.entering:
@@ -74,7 +74,7 @@ class Blast:
         return self.pressure * self.wave.velocity(t)
 
     def rough(self) -> CaseError:
-        """What is raised where the solution does not converge."""
+        """The error for a wave with which the solution does not converge."""
         return CaseError([f"wave.{self.wave_name}: {ROUGH}"])
 
 
@@ -88,7 +88,7 @@ class CavityProblem(Problem):
 
     @property
     def until(self) -> dict[str, float]:
-        """When the wave comes back from the free surface, s."""
+        """Time (s) at which the wave returns from the free surface to each monitor."""
         blast = self.blast
         return echoes(blast.places, blast.hole, blast.surface, blast.solid.p_wave_speed, blast.wave.start)
 
@@ -120,7 +120,7 @@ class CavityProblem(Problem):
 
 @dataclass(frozen=True)
 class GarvinProblem(Problem):
-    """A pressure in a hole that is small beside its depth, as a line source below a free surface."""
+    """A pressure in a hole that is small compared with its depth, as a line source below a free surface."""
 
     name: ClassVar[str] = "garvin"
     sentence: ClassVar[str] = (
@@ -130,7 +130,7 @@ class GarvinProblem(Problem):
 
     @property
     def until(self) -> dict[str, float]:
-        """Always, but for what the hole scatters of the waves that come back, of the order of its size in the depth."""
+        """Infinite for every monitor; scattering of returning waves by the hole is of the order of size/depth."""
         return dict.fromkeys(self.blast.places, math.inf)
 
     @classmethod
@@ -140,7 +140,7 @@ class GarvinProblem(Problem):
 
     @classmethod
     def of(cls, scene: DiskScene) -> Self:
-        """The problem of a scene, see `Blast.of`; the hole must be below a free surface and small beside its depth."""
+        """The problem of a scene, see `Blast.of`; the hole must be below a free surface and small relative to depth."""
         blast = Blast.of(scene)
         if blast.surface is None:
             raise CaseError(["boundary.top.type: Garvin's problem has a free surface above the hole"])

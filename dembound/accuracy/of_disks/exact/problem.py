@@ -1,4 +1,4 @@
-"""What exact problems of cases have in common."""
+"""The interface of problems with an exact solution, and checks that they share."""
 
 from __future__ import annotations
 
@@ -28,9 +28,8 @@ SAMPLES = 2000
 JUMP = 0.01
 """Jump over the largest value above which a wave is refused at once.
 
-Solutions do not converge with such a jump, which takes a minute to detect; with a jump of a tenth of it, as at the end
-of a measured record, Lamb's converges.
-"""
+Solutions do not converge with such a jump, which takes a minute to detect; with a tenth of it, as at the end of a
+measured record, Lamb's solution converges."""
 
 BEGINNING = 1e-9
 """Share of a run after which it has begun: a wave that jumps at t = 0 is continuous from there on."""
@@ -40,17 +39,17 @@ ROUGH = f"is so rough that the solution does not converge; {CONTINUOUS}"
 
 
 class Problem(ABC):
-    """A problem with an exact solution, which a case may be."""
+    """A problem with an exact solution that a case may match."""
 
     name: ClassVar[str]
-    """By which it is chosen."""
+    """Name by which the problem is chosen."""
     sentence: ClassVar[str]
     """The solution in words."""
 
     @property
     @abstractmethod
     def until(self) -> dict[str, float]:
-        """Time (s) up to which the solution is that of the case, of each monitor; infinite if it always is."""
+        """By monitor, time (s) up to which the solution holds for the case; infinite if always."""
 
     @classmethod
     @abstractmethod
@@ -60,7 +59,7 @@ class Problem(ABC):
     @classmethod
     @abstractmethod
     def of(cls, scene: DiskScene) -> Self:
-        """The problem that a scene is; raises CaseError, with the reasons, if it is none."""
+        """The problem of a scene; raises CaseError, with the reasons, if the scene does not match."""
 
     @abstractmethod
     def motions(self, times: np.ndarray) -> dict[str, History]:
@@ -90,7 +89,7 @@ def has_pressure(case: DiskCase) -> bool:
 
 
 def motion_problems(case: DiskCase) -> Iterator[str]:
-    """Held motions, and steady loads that no static stage has balanced, which move the body as well."""
+    """Lines on held motions, and on steady loads without a static stage, which move the body as well."""
     if case.motion.held:
         yield f"motion.held: is {list(case.motion.held)}, must be empty"
     for place, load in numbered("load", case.load):
@@ -143,7 +142,7 @@ def _beyond(inner: Box, outer: Box) -> tuple[bool, bool, bool, bool]:
 def echoes(
     places: Mapping[str, np.ndarray], hole: Circle, surface: float | None, speed: float, begin: float
 ) -> dict[str, float]:
-    """When (s) waves that leave a hole's wall at a time come back from the free surface at each of places (2,) m."""
+    """Times (s) when waves from a hole's wall, starting at `begin`, return from the free surface to places (2,) m."""
     if surface is None:
         return dict.fromkeys(places, float("inf"))
     (x, y), found = hole.centre, {}
@@ -164,7 +163,7 @@ def _largest_jump(velocity: Callable[[np.ndarray], np.ndarray], begin: float, en
     """Time (s) of the largest jump of a wave between two times (s), and its size over the largest velocity.
 
     Every interval between samples is halved repeatedly, and the half with the larger change is kept. The change of a
-    continuous wave decreases with the width, that of a jump does not. Two opposite jumps between two samples are not
+    continuous wave decreases with the width, a jump does not. Two opposite jumps between two samples are not
     detected.
     """
     times = np.linspace(begin, max(begin, end), SAMPLES)

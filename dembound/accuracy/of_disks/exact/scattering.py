@@ -36,7 +36,7 @@ from dembound.waves import Wave
 class ScatteringProblem(Problem):
     """Plane waves of a half-space, each scattered by the hole as in a full space.
 
-    waves : the incident wave and those that the free surface sends back. wave : the velocity of the incident one, with
+    waves : the incident wave and its reflections at the free surface. wave : the velocity of the incident one, with
     the name wave_name in messages. surface : height of the free surface, m; None if there is none. places : (2,) m.
     """
 
@@ -52,7 +52,7 @@ class ScatteringProblem(Problem):
 
     @property
     def until(self) -> dict[str, float]:
-        """When what the hole has scattered comes back from the free surface, s."""
+        """Time (s) at which waves scattered by the hole return from the free surface to each monitor."""
         centre = np.array([self.hole.centre])
         meets = min(
             float(wave.delays(centre)[0]) - self.hole.radius * math.hypot(*wave.slowness) for wave in self.waves

@@ -17,7 +17,7 @@ from dembound.accuracy.chart.tables import COLUMNS, write_results, write_table
 from dembound.accuracy.choice import choices_of, combinations
 from dembound.accuracy.of_bars.judge import BarJudge
 from dembound.accuracy.of_disks.judge import REALISATIONS, DiskJudge
-from dembound.accuracy.reference import Wanted
+from dembound.accuracy.reference import Requested
 from dembound.errors import CaseError, RunError
 from dembound.motion.kind import Finding
 from dembound.results.structure import run_of
@@ -268,7 +268,7 @@ def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:
     ("changes", "options", "said"),
     [
         ({"monitor": []}, {}, "monitor: is missing"),
-        ({}, {"wanted": Wanted(monitor="nowhere")}, "--monitor: is nowhere, must be one of gauge"),
+        ({}, {"requested": Requested(monitor="nowhere")}, "--monitor: is nowhere, must be one of gauge"),
         ({"bar.attenuation": 0.1}, {"reference": "exact"}, "no exact solution"),
         ({}, {"reference": "extended"}, "--reference: no side has to be moved"),
     ],
@@ -292,7 +292,7 @@ def test_single_choices_folders_of_something_else_and_what_only_bars_have_are_re
     with pytest.raises(CaseError, match="finer is for bars"):
         charted(bar(), {"run.safety": [0.45, 0.9]}, repeats=1, reference="finer")
     with pytest.raises(CaseError, match="stress is that along a bar"):
-        charted(bar(), {"run.safety": [0.5]}, wanted=Wanted("stress"))
+        charted(bar(), {"run.safety": [0.5]}, requested=Requested("stress"))
 
 
 def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:

@@ -88,9 +88,9 @@ def test_the_picture_has_every_member_and_mean(swept, tmp_path) -> None:
     assert (mean.get_xdata().tolist(), mean.get_ydata().tolist()) == ([0.5, 0.9], [2.0, 5.0])
 
 
-def test_wanted_quantities_are_shown(swept) -> None:
-    def shown(*wanted):
-        return Swept(swept.case, "run", swept.members, swept.outcomes, wanted).shown
+def test_requested_quantities_are_shown(swept) -> None:
+    def shown(*requested):
+        return Swept(swept.case, "run", swept.members, swept.outcomes, requested).shown
 
     assert shown() == ["monitors.end.peak_velocity"]
     assert shown("energy.kinetic") == ["energy.kinetic"]
