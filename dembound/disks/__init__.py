@@ -1,1 +1,1 @@
-"""Bonded disks: their scene, contacts, motion, and what is reported of them."""
+"""Bonded disks: scene, contacts, motion, and reports."""

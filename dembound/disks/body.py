@@ -42,7 +42,7 @@ class DiskBody(Scene):
     outside : the continuum on some sides, whose nodes follow the particles; None for none.
     foot : the continuum below the free-field column, whose nodes come last; None for none.
     between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
-    ground_waves : the motion of the ground without the body, which the continuum does not have; None without any.
+    ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
     """
 
     case: DiskCase
@@ -83,7 +83,7 @@ class DiskBody(Scene):
 
     @property
     def places(self) -> dict[str, tuple[float, float]]:
-        """The positions given for the monitors, m."""
+        """Requested positions of the monitors, m, by name."""
         return {monitor.name: monitor.position for monitor in self.case.monitor}
 
     @property
@@ -93,7 +93,7 @@ class DiskBody(Scene):
 
     @property
     def column_count(self) -> int:
-        """Number of the particles of its free-field column, the first ones; 0 without a column."""
+        """Number of the particles of its free-field column, which come first; 0 without a column."""
         return 0 if self.seam is None else self.seam.count
 
     @property
@@ -108,19 +108,19 @@ class DiskBody(Scene):
 
     @property
     def recorded(self) -> int:
-        """Number of nodes that are recorded as particles: the disks; nodes of the continuum are recorded apart."""
+        """Number of nodes recorded as particles: the disks; nodes of the continuum are recorded separately."""
         return self.disk_count
 
     @cached_property
     def in_snapshots(self) -> tuple[str, ...]:  # type: ignore[override]
-        """What the case asks for, and the motion of a continuum."""
+        """Names of the recorded fields: those requested in the case, and the motion of a continuum."""
         beside = () if self.outside is None else ("displacement", "velocity", "stress")
         asked = ("stress", self.case.output.stress), ("contacts", self.case.output.contacts)
         return (*(name for name, there in asked if there), *(f"continuum/{name}" for name in beside))
 
     @cached_property
     def beside(self) -> RecordedContinuum | None:  # type: ignore[override]  # computed once
-        """The nodes of the continuum round the body, which are recorded apart; None without it."""
+        """The nodes of the continuum round the body, which are recorded separately; None without it."""
         if self.outside is None:
             return None
         diameter = self.ground.brick.mean_diameter
@@ -128,17 +128,17 @@ class DiskBody(Scene):
 
     @cached_property
     def positions(self) -> np.ndarray:  # type: ignore[override]  # computed once
-        """(n, 2) m, of particles and nodes of continua as built."""
+        """Positions (n, 2) m of particles and nodes of continua as built."""
         return np.vstack([self.assembly.positions, *(each.body.mesh.positions for each in self.continua)])
 
     @property
     def low(self) -> np.ndarray:
-        """(2,) lower left corner of the body, m."""
+        """Lower left corner (2,) m of the body."""
         return self.assembly.origin
 
     @property
     def size(self) -> np.ndarray:
-        """(2,) width and height of the body, m."""
+        """Width and height (2,) m of the body."""
         return self.assembly.size
 
     @cached_property
@@ -166,7 +166,7 @@ class DiskBody(Scene):
 
     @property
     def twin(self) -> np.ndarray | None:
-        """(n,) twin of each particle in the free-field column, of other nodes themselves; None without a column."""
+        """Twin (n,) of each particle in the free-field column, of other nodes themselves; None without a column."""
         if self.seam is None:
             return None
         return np.concatenate([self.seam.twin, np.arange(self.disk_count, self.count)])
@@ -178,12 +178,12 @@ class DiskBody(Scene):
 
     @cached_property
     def mass(self) -> np.ndarray:
-        """(n,) kg, mass of each particle and node; particles on sides with half mass have half of it."""
+        """Mass (n,) kg of each particle and node; half for particles on sides of half cells."""
         return self._with_nodes(self.ground.mass[self.assembly.brick_particle] * self.cell_fraction)
 
     @cached_property
     def inertia(self) -> np.ndarray:
-        """(n,) kg·m², halved with the mass; nodes of continua, which do not rotate, have that of their mass at 1 m."""
+        """Moment of inertia (n,) kg·m², halved with the mass; of nodes of continua, which do not rotate, m × (1 m)²."""
         return self._with_nodes(self.ground.inertia[self.assembly.brick_particle] * self.cell_fraction)
 
     def _with_nodes(self, of_disks: np.ndarray) -> np.ndarray:
@@ -192,19 +192,19 @@ class DiskBody(Scene):
 
     @cached_property
     def cell_fraction(self) -> np.ndarray:
-        """(n,) part of a particle's cell inside the scene: 1, on a side of half cells ½, where two such meet ¼."""
+        """Part (n,) of a particle's cell inside the scene: 1, on a side of half cells ½, where two of them meet ¼."""
         return mass_factor(self.disk_count, self.edges, self.case.boundary)
 
     @cached_property
     def free(self) -> np.ndarray:
-        """(3,) 1 for a component that moves, 0 for one held everywhere."""
+        """Array (3,): 1 for a component that moves, 0 for one held everywhere."""
         free = np.ones(3)
         free[list(self.ground.held)] = 0.0
         return free
 
     @property
     def moves(self) -> np.ndarray:
-        """(3, n) bool, False for components that are held or prescribed; nodes of a continuum do not rotate."""
+        """Array (3, n) bool, False for held or prescribed components and for the rotation of nodes of a continuum."""
         moves = super().moves
         moves[2, self.disk_count :] = False
         for each in self.continua:
@@ -218,7 +218,7 @@ class DiskBody(Scene):
 
 
 def parts_of(count: int, seam: Seam | None) -> dict[str, slice]:
-    """The particles of each part of `count` in all: of the free-field column, if there is one, and of the body."""
+    """The particle ranges of `count` particles by part: the free-field column, if there is one, and the body."""
     if seam is None:
         return {"body": slice(0, count)}
     return {"column": slice(0, seam.count), "body": slice(seam.count, count)}

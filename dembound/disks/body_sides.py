@@ -1,4 +1,4 @@
-"""The sides of a body of disks by name, those of its free-field column and of continua included."""
+"""The sides of a body of disks by name, with those of its free-field column and of continua."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def tied_of(body: DiskBody) -> dict[str, np.ndarray]:
 
 
 def _of_column(by_side: Mapping[str, T]) -> dict[str, T]:
-    """What a column's foot has by side, by the names that the column's sides have in the scene."""
+    """A mapping by side of the column's foot, renamed to the names of the column's sides in the scene."""
     return {name.replace("bottom", f"bottom{FREE_FIELD}"): value for name, value in by_side.items()}
 
 

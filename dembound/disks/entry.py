@@ -1,8 +1,8 @@
-"""Where waves enter disks: how much later than through the plane of a side they do, or earlier.
+"""Where waves enter disks: their delay relative to waves through the plane of a side.
 
 A wave that enters at a side is to be v(t) on the plane of that side, of a body that is uniform from there on. Disks let
-it in elsewhere. Depths count from the plane inwards, and long waves see two of them: m, where the mass of the disks
-begins, and s, where the line through the displacements inside would meet that of what is moved at the side.
+it in elsewhere. Depths count from the plane inwards; two of them matter for long waves: m, where the mass of the disks
+begins, and s, where the extrapolated line of displacements inside meets the displacement imposed at the side.
 
 - Prescribed disks have v(t) at s: all motion is early by s/c.
 - Dashpots Z and the force 2Zv move the disks they act on as the wave at s, and their mass from m on as the body's
@@ -29,22 +29,22 @@ from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.scene import DiskScene
 
 APART = 8.0
-"""Diameters, at least, of each third of the strip in which s is found: at the side, where displacements are taken, and
-where it is pulled. What a side changes decays with the depth y as exp(−2πy/brick), and over a disk without bricks."""
+"""Diameters, at least, of each third of the strip in which s is found: at the side, where displacements are read, and
+where it is pulled. Effects of a side decay with the depth y as exp(−2πy/brick), and over a disk without bricks."""
 
 FAINT = 1e-12
 """Springs against single motions over those of the contacts: disks that hang by one contact may roll."""
 
 WITHIN = 0.01
-"""Diameters within which waves 100 disks long enter as late as said here: measured on columns of a lattice and of two
-seeds each of patterns B and C, P and S waves, prescribed velocities, dashpots, springs, half cells, free fields and
-continua (benchmarks/entries.py), beside how late they enter there through a continuum."""
+"""Diameters within which the delays computed here hold for waves 100 disks long: measured on columns of a lattice and
+of two seeds each of patterns B and C, P and S waves, prescribed velocities, dashpots, springs, half cells, free
+fields and continua (benchmarks/entries.py), relative to the delays through a continuum."""
 
 
 class Entry(NamedTuple):
-    """Where a wave enters at a side.
+    """The place where a wave enters at a side.
 
-    late : m by which its motion is behind that of a wave through the plane of the side, negative where it is ahead;
+    late : distance (m) by which its motion is behind a wave through the plane of the side, negative where it is ahead;
     speed : m/s, of long waves.
     """
 
@@ -60,7 +60,7 @@ class Entry(NamedTuple):
 def entries_of(scene: DiskScene) -> dict[str, dict[Motion, Entry]]:
     """The entries of all waves that run in the packing, by driven side.
 
-    A wave at an angle has a point of the ground as its reference, and none.
+    An oblique wave refers to a point of the ground, and has no entry.
     """
     found: dict[str, dict[Motion, Entry]] = {}
     for side, waves in scene.case.driving.items():
@@ -74,9 +74,9 @@ def entries_of(scene: DiskScene) -> dict[str, dict[Motion, Entry]]:
 
 
 def all_late_by(scene: DiskScene) -> float | None:
-    """Time (s) by which all motion is later than that of waves through the planes of sides.
+    """Time (s) by which all motion is later than waves through the planes of sides.
 
-    None where that of several waves differs, by more than `WITHIN` diameters.
+    None where delays of several waves differ by more than `WITHIN` diameters.
     """
     entries = [entry for waves in entries_of(scene).values() for entry in waves.values()]
     delays = [entry.delay for entry in entries]
@@ -85,13 +85,13 @@ def all_late_by(scene: DiskScene) -> float | None:
 
 
 def late_by(scene: DiskScene) -> float:
-    """Time (s) by which the motion is later than that of waves through the planes of sides; of several the largest."""
+    """Time (s) by which the motion is later than waves through the planes of sides; of several waves the largest."""
     delays = [entry.delay for entries in entries_of(scene).values() for entry in entries.values()]
     return max(delays, key=abs, default=0.0)
 
 
 def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, float]:
-    """How much later waves enter at a side, m."""
+    """Distances (m) by which waves enter late at a side."""
     table = scene.case.side(side)
     if table.is_outside:
         beneath = scene.outside if scene.foot is None else scene.foot
@@ -113,7 +113,7 @@ def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, fl
 
 
 def depths_held(scene: DiskScene, side: str) -> dict[Motion, float]:
-    """The depth s (m) of those waves along the normal of a side whose motion it prescribes."""
+    """The depth s (m) for those waves along a side's normal whose motion the side prescribes."""
     axis = normal_axis(side)
     held = scene.case.side(side).prescribed(axis)
     kinds: tuple[Motion, ...] = ("p", "s")
@@ -125,7 +125,7 @@ def depths_held(scene: DiskScene, side: str) -> dict[Motion, float]:
 
 
 def _inwards(side: str) -> float:
-    """Sign along its normal axis of the way from a side into the body."""
+    """Sign, along the normal's axis, of the direction from a side into the body."""
     return -1.0 if side in ("right", "top") else 1.0
 
 
@@ -152,20 +152,20 @@ class _Strip:
 
     @property
     def _axis(self) -> int:
-        """Of the side's normal."""
+        """Axis of the side's normal."""
         return normal_axis(self.side)
 
     @property
     def _depths(self) -> np.ndarray:
-        """Of the centres (n,) below the side, m."""
+        """Depths (n,) m of the disks' centres below the side."""
         beyond = self.scene.assembly.positions[:, self._axis] - self.scene.plane(self.side)
         return np.asarray(_inwards(self.side) * beyond)
 
     @cached_property
     def mass_begins(self) -> float:
-        """m: depth below which a uniform body would have the same mass, m; what halves of cells lack counts.
+        """m: depth (m) from which a uniform body would have the same mass; mass missing in half cells counts.
 
-        By the moment of the middle third, whose mass that body has about the same centre.
+        From the mass moment of the middle third, for which the uniform body has the same centre.
         """
         mass = self.scene.mass
         middle = self.zone == 1
@@ -182,9 +182,11 @@ class _Strip:
     def depth(self, motion: Motion, held: Sequence[int] = ()) -> float:
         """s: depth (m) at which the line through the displacements inside meets that of the disks at the side.
 
-        held : components of the disks at the side that are prescribed. The far third is pulled along its whole mass,
-        the disks at the side are held, or without that pulled the other way by the widths of their dashpots, whose mean
-        displacement counts.
+        held : components of the disks at the side that are prescribed. The far third is pulled along its whole mass;
+        the disks
+        at the side are held, or, if `held` is empty, pulled the other way in proportion to the widths of their
+        dashpots, with
+        the mean displacement taken.
         """
         component = axis_of_motion(self.side, motion)
         scene, edge = self.scene, self.scene.edges[self.side]

@@ -1,13 +1,13 @@
 """A pressure on the wall of a hole, as forces and moments on the disks of the wall.
 
-The wall is the hole's true outline as far as it lies within the body. It is shared by the disks that have lost bonds to
-the hole, each having the part nearest to it along the outline, and the force and moment of the pressure on its part
-(holes/outline.py). So the resultants are those of the pressure on the whole outline, zero for a closed one, whatever
-the packing.
+On the outline: the wall is the hole's true outline as far as it lies within the body. It is shared by the disks that
+have lost bonds to the hole, each having the part nearest to it along the outline, and the force and moment of the
+pressure on its part (holes/outline.py). So the resultants are those of the pressure on the whole outline, zero for a
+closed one, whatever the packing.
 
-Or each cut bond has the force and moment that it would have if the packing were everywhere under this pressure, in
-a square lattice p·D along the bond. The resultants are again zero, but the loaded wall is then that of the disks, in a
-lattice a staircase, and not the outline.
+On the bonds: each cut bond has the force and moment that it would have if the packing were everywhere under this
+pressure, in a square lattice p·D along the bond. The resultants are again zero, but the loaded wall is then that of the
+disks, in a lattice a staircase, and not the outline.
 """
 
 from __future__ import annotations
@@ -101,9 +101,9 @@ def _on_outline(load: Load, hole: Hole, box: Box, body: Assembly, disks: np.ndar
 
 
 def shares_of(outline: Outline, part: tuple[float, float], nearest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where the shares of disks in a part of an outline begin and end, (k, 2) m each, counter-clockwise round the hole.
+    """Begin and end (k, 2) m of the shares of disks in a part of an outline, counter-clockwise round the hole.
 
-    part : where it begins and how long it is. nearest : (k,) the points nearest to the disks; all in the parameter of
+    part : its begin and length. nearest : (k,) the points nearest to the disks; all in the parameter of
     the outline. Shares meet in the middle between these, and the outer ones go on to the ends of the part.
     """
     (start, length), period = part, outline.period
@@ -133,11 +133,11 @@ def _on_bonds(scene: DiskBody, body: Assembly, cut: CutContacts) -> np.ndarray:
 
 
 def _bare(load: Load, place: np.ndarray) -> CaseError:
-    """An outline without disks near a place (2,) m."""
+    """The error for an outline without disks near a place (2,) m."""
     x, y = place
     return _error(load, f"has no wall near ({x:.4g}, {y:.4g}) m of its outline; holes that join need to be one polygon")
 
 
 def _error(load: Load, problem: str) -> CaseError:
-    """A hole on whose wall a load cannot press."""
+    """The error for a hole on whose wall a load cannot press."""
     return CaseError([f'load.{load.name}.hole: "{load.hole}" {problem}'])

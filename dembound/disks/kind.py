@@ -62,7 +62,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return scene
 
     def expected_memory(self, case: DiskCase) -> float:
-        """Largest memory (bytes) of a run, from the numbers of disks and contacts to expect."""
+        """Largest RAM (bytes) of a run, from the expected numbers of disks and contacts."""
         return expected_bytes(case)
 
     def choose_step(self, scene: DiskScene) -> tuple[float, float]:
@@ -70,7 +70,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return choose_step(scene)
 
     def reduced(self, scene: DiskScene) -> Reduction[DiskScene]:
-        """One row or one half of a scene, from whose motion that of all disks follows, or the scene itself."""
+        """One row of a scene, from whose motion that of all disks follows, or the scene itself."""
         return reduced(scene)
 
     def begin(self, scene: DiskScene, time_step: float, on_look: OnLook, stages: Stages | None = None) -> Beginning:
@@ -95,7 +95,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return [LoadFactor(case, system)]
 
     def trials(self, case: DiskCase, *, full: bool = False) -> tuple[list[Trial], list[str]]:
-        """Fewer copies of the brick under the linear law, and under its own if that has a history."""
+        """Fewer copies of the brick under the linear law, and under the case's own law if that is history-dependent."""
         return trials_of_disks(case, full=full)
 
     def sources(self, scene: DiskScene) -> list[Source]:
@@ -107,7 +107,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return front_of(scene.ground, scene.case.run.safety)
 
     def late(self, scene: DiskScene) -> float | None:
-        """By where waves enter disks; negative where motion is ahead."""
+        """Delay (s) of the motion by the places where waves enter disks; negative where motion is early."""
         return all_late_by(scene)
 
     def storage(self, scene: DiskScene) -> Storage:
@@ -115,7 +115,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return storage_of(scene)
 
     def stage_keys(self, scene: DiskScene) -> dict[str, Any]:
-        """What the result of the static stage depends on, by key."""
+        """All inputs that determine the result of the static stage, by key."""
         return settling_keys(scene)
 
     def stage_names(self, scene: DiskScene) -> list[str]:
@@ -127,11 +127,11 @@ class Disks(Kind[DiskCase, DiskScene]):
         return None if case.static is None or case.static.from_ is None else Path(case.static.from_)
 
     def facts(self, scene: DiskScene, time_step: float) -> Entries:
-        """Packing, law, loads and boundaries."""
+        """Facts on packing, law, loads and boundaries."""
         return disk_facts(scene)
 
     def not_estimated(self, case: DiskCase) -> list[str]:
-        """What the estimate of the time leaves out: the static stage, and a law that replaces the elastic one later."""
+        """Work that the estimated time leaves out: the static stage, and a law that replaces the elastic one later."""
         later = ["the static stage"] * (case.static is not None)
         if LAWS[case.material.law].has_history and case.material.elastic_start:
             later.append(f"the additional time of {case.material.law} once it begins")
@@ -154,7 +154,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return run.state.step * run.scene.count
 
     def findings(self, scene: DiskScene, run: Run, inside: Box | None = None) -> dict[str, Finding]:
-        """Time (s) and place (m) of the first broken bonds, if any break there, and the load factor if asked for."""
+        """Time (s) and place (m) of the first broken bonds inside a box, if any, and the load factor if requested."""
         return first_break(run, inside) | least_load_factor(run, inside)
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
@@ -171,7 +171,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return meshes
 
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
-        """The scene."""
+        """The picture of the scene."""
         from dembound.plot.scene import plot_scene
 
         yield "scene", plot_scene(record)

@@ -48,7 +48,7 @@ def forces_of(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _along(load: Load, share: np.ndarray) -> np.ndarray:
-    """Forces and moments (k, 3) along a load's vector, of which nodes have shares (k,)."""
+    """Forces and moments (k, 3) of a load's vector on nodes with shares (k,) of it."""
     return share[:, None] * np.array([*load.vector, 0.0])
 
 
@@ -84,7 +84,7 @@ def _traction(load: Load, outside: Surroundings) -> Traction | None:
 
 
 def _error(load: Load, problem: str) -> CaseError:
-    """A mistake in a key of a load."""
+    """The error for a mistake in a key of a load."""
     return CaseError([f"load.{load.name}.{problem}"])
 
 

@@ -1,4 +1,4 @@
-"""How well what holds a side matches the packing, from its homogenised stiffness alone; no wave is run."""
+"""How well the supports of a side match the packing, from its homogenised stiffness, without running a wave."""
 
 import math
 from typing import NamedTuple
@@ -26,7 +26,7 @@ def factors_in(scene: DiskScene, side: str) -> dict[Motion, float]:
 
 
 def supports_of(scene: DiskScene, side: str) -> Supports:
-    """The support table of one side alone."""
+    """The support table of one side only."""
     edge, builder = scene.edges[side], SupportBuilder(held=scene.ground.held)
     medium = boundary_medium(scene.case, scene.ground, edge.axis)
     scene.case.side(side).support(edge, medium, scene.case.wave, builder)
@@ -34,7 +34,7 @@ def supports_of(scene: DiskScene, side: str) -> Supports:
 
 
 def per_metre(scene: DiskScene, side: str, table: Boundary) -> dict[tuple[str, int, int], float]:
-    """What acts on the disks of a side of a type, per metre of it, with matched factors of its dashpots.
+    """Support coefficients on the disks of a side of a type, per metre of it, with matched factors of its dashpots.
 
     By kind, component (0 x, 1 y, 2 rotation) and number of the signal (−1 for none): "dampers" N·s/m², "springs" N/m²,
     and "forces" of waves, N/m per unit of their signal. Prescribed motion is left out.
@@ -60,14 +60,14 @@ def per_metre(scene: DiskScene, side: str, table: Boundary) -> dict[tuple[str, i
 
 
 def _length(edge: Edge) -> float:
-    """Length (m) of the side on which its disks are, those at its corners that are halved there as whole ones."""
+    """Length (m) of a side for its disks; disks halved at its corners count as whole ones."""
     return edge.length * float(np.sum(edge.widths) / np.sum(edge.diameters))
 
 
 def require_dashpots_alone(scene: DiskScene, side: str) -> None:
-    """Raise CaseError if a side that should have dashpots alone has springs, or follows a free-field column.
+    """Raise CaseError for a side that has springs, or follows a free-field column, where only dashpots are allowed.
 
-    Factors of dashpots are defined for plane waves that only dashpots absorb; springs would be made up for by them.
+    Factors of dashpots are defined for plane waves that dashpots absorb; they would compensate for springs.
     """
     table = supports_of(scene, side)
     if table.stiffness.any() or table.follow.any():
@@ -81,14 +81,14 @@ def require_dashpots_alone(scene: DiskScene, side: str) -> None:
 
 
 class Held(NamedTuple):
-    """What holds a side, per metre of it, along x and y: dashpots (2,) N·s/m² and springs (2,) N/m²."""
+    """Supports of a side, per metre of it, along x and y: dashpots (2,) N·s/m² and springs (2,) N/m²."""
 
     damping: np.ndarray
     stiffness: np.ndarray
 
     @classmethod
     def of(cls, scene: DiskScene, side: str) -> "Held":
-        """The sums over the particles of a side; disks at its corners that are halved there count as whole ones."""
+        """The sums over the particles of a side; disks halved at its corners count as whole ones."""
         edge, table = scene.edges[side], supports_of(scene, side)
         return cls(
             *(
@@ -101,8 +101,9 @@ class Held(NamedTuple):
 def sent_back(scene: DiskScene, side: str, motion: Motion, frequency: float) -> float:
     """|R|, reflected over incident amplitude of plane waves along the normal of a side, at a frequency (Hz).
 
-    The impedances of dashpots, springs, and of the half of whole cells that lies beyond the last half of the packing,
-    over that of the packing. At frequency nan dashpots alone. nan where the motion is held.
+    From the impedances of dashpots, springs, and of the half of whole cells that lies beyond the last half of the
+    packing,
+    over the packing's impedance. At frequency nan of dashpots only. nan where the motion is held.
     """
     edge, held = scene.edges[side], Held.of(scene, side)
     axis = axis_of_motion(side, motion)

@@ -1,12 +1,12 @@
-"""Monitors: the disks whose motion they record, and in a continuum the disks that it stands for there.
+"""Monitors: the disks whose motion they record, or in a continuum the disks that would be there.
 
 The packing goes on in the continuum beyond a body. The disk i that would be nearest to a monitor's place has the motion
 
     u_i = U(x_i) + χ_i : ∇U(x_i),    θ_i = χ^θ_i : ∇U(x_i)
 
 with U the continuum's displacement and χ the correctors of the brick (material/homogenise.py); those of a lattice are
-χ = 0 and θ = ½(∂U_y/∂x − ∂U_x/∂y). Beside a free-field column U is the scattered motion only, to which that of the
-column's disk at the same place of the brick is added.
+χ = 0 and θ = ½(∂U_y/∂x − ∂U_x/∂y). Beside a free-field column U is the scattered motion only, to which the motion of
+the column's disk at the same place of the brick is added.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from dembound.packings.column import Seam, nearest_in_column
 from dembound.packings.tiling import Assembly, disks_around
 
 Monitors = tuple[dict[str, int], dict[str, Between]]
-"""Name -> node, and name -> place of those in a continuum."""
+"""Name -> node, and name -> place of the monitors in a continuum."""
 
 DIGITS = 1e-9
 """Part of the last digit of a place by which a limit may be missed."""
@@ -48,9 +48,9 @@ def monitors_of(
 ) -> Monitors:
     """The disk nearest to each monitor's position, of the body or in the continuum, and their twins.
 
-    waves : with which the ground moves without the body; twins move with them, and monitors in the continuum, too.
+    waves : motion of the ground without the body, for twins and for monitors in the continuum.
 
-    Raises CaseError for positions in the layer that absorbs, and for those below the ground if waves come from there.
+    Raises CaseError for positions in the absorbing layer, and below the ground if waves come from there.
     """
     if not case.monitor:
         return {}, {}
@@ -105,7 +105,7 @@ def _in_column(place: np.ndarray, twin: int | None, moving: Moving) -> Between:
 
 @dataclass(frozen=True)
 class _Around:
-    """The packing that goes on in the continuum round a body, whose first disk has the number `first`."""
+    """The packing continued into the continuum round a body, whose first disk has the number `first`."""
 
     case: DiskCase
     brick: Brick
@@ -143,7 +143,7 @@ class _Around:
             raise CaseError(problems)
 
     def _rounded(self, position: tuple[float, float], allowed: np.ndarray) -> np.ndarray:
-        """The nearest place (2,) m allowed in place of a position (m), in numbers of few digits, so beyond the limit.
+        """The nearest allowed place (2,) m for a position (m), in numbers of few digits, so slightly beyond the limit.
 
         They are multiples of a power of ten below a tenth of the elements.
         """
@@ -155,8 +155,9 @@ class _Around:
     def disk_at(self, position: tuple[float, float], own: np.ndarray) -> tuple[np.ndarray, int] | None:
         """Place (2,) m, and number in the brick, of the disk in the continuum nearest to a position (m).
 
-        None if `own` (2,) m, the nearest disk of the body, is nearer. There are none in layers and beyond free sides,
-        and for places in the ground, or on its rim, none beyond, as there are none where disks fill all of it.
+        None if `own` (2,) m, the nearest disk of the body, is nearer. No disks exist in layers and beyond free sides,
+        nor, for
+        places in the ground or on its rim, beyond where disks fill all of it.
         """
         case, brick, of = self.case, self.brick, self.assembly
         begin = of.positions[self.first] - brick.positions[of.brick_particle[self.first]]

@@ -1,4 +1,4 @@
-"""What remains whatever the settings of a continuum, as a body consists of disks: dispersion, and copies of bricks."""
+"""Errors that no setting of a continuum reduces, as a body consists of disks: dispersion, and copies of bricks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dembound.outside.choice import Signal
 from dembound.words import Entries, percent
 
 LEAST_SHOWN = 1e-5
-"""Share of the velocity below which what copies send back is not printed."""
+"""Share of the velocity reflected by copies below which it is not printed."""
 
 
 def packing_facts(scene: DiskScene, signals: Sequence[Signal]) -> Entries:
@@ -26,7 +26,7 @@ def packing_facts(scene: DiskScene, signals: Sequence[Signal]) -> Entries:
 
 
 def _dispersion(scene: DiskScene, signals: Sequence[Signal]) -> str:
-    """What remains as the disks are a lattice."""
+    """Text on the error by dispersion of the lattice."""
     accuracy = scene.case.outside.accuracy
     ties, across = lattice_errors(scene, signals)
     more = f"; more than outside.accuracy = {percent(accuracy)}" if max(ties, across) > accuracy else ""
@@ -37,7 +37,7 @@ def _dispersion(scene: DiskScene, signals: Sequence[Signal]) -> str:
 
 
 def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
-    """What remains in random packings, as all copies of a brick send back the same waves; empty for next to nothing."""
+    """Text on waves reflected by copies of a random brick; empty if negligible."""
     case, ground = scene.case, scene.ground
     if case.packing.is_lattice:
         return ""
@@ -56,10 +56,12 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
 
 
 def unevenness(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> float:
-    """RMS over the energy of velocities of k²LD, to which what uneven bricks scatter is in proportion; 0 on lattices.
+    """k²LD, RMS over the energy of velocities, to which scattering by uneven bricks is proportional; 0 on lattices.
 
-    k : of the slowest waves, none shorter than a brick; L, D : length of a random brick and mean diameter of its disks.
-    Of signals the largest. lowest : Hz, from which on the energy is that of displacements, see `choice.energies`.
+    k : wave number of the slowest waves, none shorter than a brick; L, D : length of a random brick and mean diameter
+    of
+    its disks. The largest over signals. lowest : frequency (Hz) from which on the energy is that of displacements, see
+    `choice.energies`.
     """
     if scene.case.packing.is_lattice:
         return 0.0
@@ -75,11 +77,12 @@ def unevenness(scene: DiskScene, signals: Sequence[Signal], lowest: float = math
 
 
 def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> tuple[float, float]:
-    """RMS over the energy of velocities of what ties return, and of the lag of waves over the scene's longer side L.
+    """Error of velocities by reflection of ties, and by the lag of waves over the scene's longer side L, RMS over RMS.
 
     Half of a lattice's bond has the impedance ρc/cos(kD/2), so that a continuum beyond it returns (kD)²/16; the ties'
     dashpots, `damping` times ρc_pD, add (kD)²·(damping/8) c/c_p. Waves on the lattice lag by the phase kL(kD)²/24. For
-    the slowest waves, of the speed c; of signals the largest. lowest : Hz, from which on they are those of
+    the slowest waves, of the speed c; the largest over signals. lowest : frequency (Hz) from which on errors are those
+    of
     displacements, see `choice.energies`.
     """
     outside = scene.outside

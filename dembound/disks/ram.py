@@ -2,7 +2,7 @@
 
 Bytes are counted from the shapes of arrays, for n disks in s slots with b contacts; the history-dependent law lists p
 pairs, in q places. Temporary arrays are those of the largest moment of a stage. Zeros that are never written to take
-no memory: steady forces without loads, work space for contacts that are computed one by one.
+no RAM: steady forces without loads, work space for contacts that are computed one by one.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ class SceneSizes:
 
     @property
     def moving(self) -> float:
-        """Number of slots of all that moves."""
+        """Number of slots of disks and nodes."""
         return self.slots + (0 if self.grid is None else self.grid.nodes)
 
     @classmethod
     def expected(cls, case: DiskCase) -> SceneSizes:
-        """The numbers of a case that has not been built, without its holes: of random bricks within some 3 %."""
+        """The numbers of a case before it is built, without its holes; for random bricks within some 3 %."""
         packing = case.packing
         across, up = packing.copies
         disks = packing.expected_disks
@@ -75,13 +75,13 @@ class SceneSizes:
 
 
 def stands_in_rows(case: DiskCase) -> bool:
-    """Whether copies of a disk of the brick will stand side by side in memory, see contacts/layout.py."""
+    """Whether copies of a disk of the brick will be held side by side in RAM, see contacts/layout.py."""
     across, up = case.packing.copies
     return across * up > 1 and _lanes(across, up) * LEAST_FILL <= 1.0
 
 
 def _lanes(across: int, up: int) -> float:
-    """Slots for each disk where copies stand side by side."""
+    """Slots per disk where copies are held side by side."""
     return LANES * columns_of(min(across, up), max(across, up)) / (across * up)
 
 
@@ -103,7 +103,7 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
 
 
 def _expected_probes(case: DiskCase) -> int:
-    """The disk at each monitor, or the nodes of the element there with the disk of a column, and each one's twin."""
+    """Number of recorded nodes: the disk at each monitor, or the element's nodes and a column disk, with twins."""
     twin = int(bool(case.column_sides))
     of_element = (case.outside.order + 1) ** 2 + twin
     each = [1 if is_in(case.packing.box, monitor.position) else of_element for monitor in case.monitor]
@@ -111,7 +111,7 @@ def _expected_probes(case: DiskCase) -> int:
 
 
 def must_fit_here(case: DiskCase) -> None:
-    """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
+    """Raise CaseError if a run of a case needs more RAM than is free on this machine, without building it."""
     key = "packing.size" if case.packing.size is not None else "packing.bricks"
     expected = SceneSizes.expected(case)
     things = f"{expected.disks:.3g} disks"
@@ -122,16 +122,16 @@ def must_fit_here(case: DiskCase) -> None:
 
 
 def expected_bytes(case: DiskCase) -> float:
-    """Largest memory (bytes) of a run of a case, computed without building it."""
+    """Largest RAM (bytes) of a run of a case, computed without building it."""
     expected = SceneSizes.expected(case)
     excavated = any(hole.stage == "after" for hole in case.hole)
     return run_bytes(case, [expected], expected if excavated else None)
 
 
 def run_bytes(case: DiskCase, scenes: Sequence[SceneSizes], before: SceneSizes | None = None) -> float:
-    """Largest memory (bytes) of a run.
+    """Largest RAM (bytes) of a run.
 
-    scenes : that of the case, and, if there is one, the row stepped in its place; before : the scene before an
+    scenes : of the case, and, if there is one, of the row stepped in its place; before : the scene before an
     excavation.
     """
     whole, stepped = scenes[0], scenes[-1]
@@ -166,8 +166,9 @@ def building_bytes(z: SceneSizes) -> float:
 def pairs_bytes(z: SceneSizes) -> float:
     """Bytes of the list of pairs with a history.
 
-    In q places 38 bytes of numbers, types and states, and forces (4, q); by pair its place, image and two ends (18 p);
-    by slot the ends, arms and origin (28 s); cells (8 n); in rows also where disks stand (24 n).
+    For q places 38 bytes of numbers, types and states, and forces (4, q); per pair its place, image and two ends (18
+    p);
+    per slot the ends, arms and origin (28 s); cells (8 n); in rows also the places of disks (24 n).
     """
     pairs, places = _pairs(z)
     rows = 24 * z.disks if z.in_rows else 0.0

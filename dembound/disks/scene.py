@@ -43,12 +43,12 @@ UPRIGHT = (True, False)
 
 
 CANCELS = 1e-6
-"""Part of the forces on sides that their differences from stress times length may leave over, of rounding."""
+"""Resultant of the differences of side forces from stress times length, over the forces, that counts as rounding."""
 
 
 @dataclass(frozen=True)
 class DiskScene(DiskBody):
-    """The arrays of a case, also those before an excavation.
+    """The arrays of a case, with the scene before an excavation.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class DiskScene(DiskBody):
 
     @cached_property
     def steady_load(self) -> np.ndarray:
-        """(3, n) forces and moments (N, N·m) of the loads without a wave."""
+        """Forces and moments (3, n) N, N·m of the loads without a wave."""
         return steady(self)
 
     def elastic_stress(self, displacement: np.ndarray) -> np.ndarray:
@@ -84,9 +84,11 @@ class DiskScene(DiskBody):
         """Disks (k,) and forces by which sides hold the target stress of a static stage; empty without one.
 
         A contact across a corner, and the disks that are left out there as they touch none of the body, act by one side
-        or by none, so that a side has not quite the stress times its length. It is recorded with that: its disk with
-        the largest force has the rest. Over all sides this cancels; where it does not, as a hole takes a part of a
-        side, sides are recorded with what acts by them.
+        or by none, so that a side carries not quite the stress times its length. It is recorded with exactly that: the
+        disk
+        with the largest force gets the rest. Over all sides this cancels; where it does not, as a hole takes a part of
+        a
+        side, sides are recorded with their actual forces.
         """
         static = self.case.static
         if static is None or static.stress is None:
@@ -111,12 +113,12 @@ class DiskScene(DiskBody):
 
     @property
     def largest_memory(self) -> float:
-        """Largest memory (bytes) of a run of it."""
+        """Largest RAM (bytes) of a run of the scene."""
         return run_bytes(self.case, [self.sizes], None if self.before is None else self.before.sizes)
 
     @property
     def sizes(self) -> SceneSizes:
-        """Numbers of its disks, contacts and nodes, from which memory is counted."""
+        """Numbers of its disks, contacts and nodes, from which RAM is counted."""
         return SceneSizes(
             disks=self.disk_count,
             slots=self.disk_count if self.slots is None else self.slots.count,
@@ -133,7 +135,7 @@ def build(case: DiskCase) -> DiskScene:
     """Build the scene of a case: pack, tile, make holes and add supports.
 
     Raises PackingError when the brick cannot be made or no particle remains, CaseError when no particle of a side
-    remains, or when a run needs more memory than there is.
+    remains, or when a run needs more RAM than there is.
     """
     must_fit_here(case)
     ground = ground_of(case)
@@ -160,7 +162,7 @@ def _scene(
 ) -> DiskScene:
     """The scene of a body and its sides, with a free-field column and a continuum if the case has such sides.
 
-    floors : those that its holes leave at left and right sides.
+    floors : left by its holes at left and right sides.
     """
     body, seam, beyond = assembly, None, case.outside_sides
     outline = Outline.of(case, ground, body, beyond, case.periodic, floors) if beyond else None
@@ -200,7 +202,7 @@ def _scene(
 
 
 def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
-    """The continuum below the free-field column, which is as wide; layout : of all nodes before its own."""
+    """The continuum below the free-field column, of equal width; layout : of all nodes before its own."""
     column = assembly.part(slice(0, seam.count))
     return surroundings_of(ground, column, Outline.of(case, ground, column, ("bottom",), UPRIGHT), layout)
 
@@ -208,8 +210,8 @@ def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam
 def column_alone(scene: DiskScene) -> DiskScene:
     """The free-field column of a body as a separate scene, with boundaries only at its bottom and top.
 
-    Its particles are numbered as in the body's scene; only loads that act on all particles act on it. Factors of its
-    dashpots are those beside the body. It has no continuum at its ends and no column of its own: a side of type
+    Its particles are numbered as in the body's scene; only loads that act on all particles act on it. Its dashpots have
+    the factors used beside the body. It has no continuum at its ends and no column of its own: a side of type
     "outside" is free.
     """
     case, brick = scene.case, scene.ground.brick
@@ -269,7 +271,7 @@ def with_half_contacts(
 def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> BoundaryMedium:
     """The medium beyond a side: the wave speeds given in the case, else those of the packing along the side's normal.
 
-    axis is that of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
+    axis : of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
     """
     p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see homogenise.GRADIENTS
     p_speed, s_speed = case.material.p_wave_speed, case.material.s_wave_speed

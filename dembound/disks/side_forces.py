@@ -20,13 +20,12 @@ class SideForces:
     """Forces through the contacts that end at a side of a body, which is cut out of an endless packing under stress.
 
     With them every disk has the forces that it has in the packing, so that bricks are under the same stress up to the
-    sides. Tractions on the outer disks without the pattern and the moments of these forces disturb the stress as deep
-    as the body is wide.
+    sides. Uniform tractions on the outer disks, without these moments, disturb the stress as deep as the body is wide.
 
     Attributes
     ----------
     node : (k,) disks on which the contacts act, ascending. per_stress : (3, k, 3) N and N·m, forces along x and y and
-    moment about the disk's centre, per Pa of the elastic stress xx, yy, xy. as_built : (3, k) those of the stress as
+    moment about the disk's centre, per Pa of the elastic stress xx, yy, xy. as_built : (3, k) forces of the packing as
     built.
     """
 
@@ -35,7 +34,7 @@ class SideForces:
     as_built: np.ndarray
 
     def under(self, stress: np.ndarray) -> np.ndarray:
-        """Forces and moments (3, k) under a stress (3,) Pa, that of the packing as built included."""
+        """Forces and moments (3, k) under a stress (3,) Pa, including the stress of the packing as built."""
         forces: np.ndarray = self.per_stress @ stress + self.as_built
         return forces
 
@@ -92,7 +91,7 @@ def _through(scene: DiskBody, cut: CutContacts) -> tuple[np.ndarray, np.ndarray]
 def _gradients(tensor: np.ndarray) -> np.ndarray:
     """Displacement gradients (4, 3), in the order of `GRADIENTS`, of unit stresses xx, yy, xy; tensor (4, 4) Pa.
 
-    Of those that differ by a rotation, which the packing does not resist, the smallest.
+    The smallest of those that differ by a rotation, which the packing does not resist.
     """
     stresses = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
     found: np.ndarray = np.linalg.lstsq(tensor, stresses, rcond=1e-9)[0]
@@ -100,9 +99,9 @@ def _gradients(tensor: np.ndarray) -> np.ndarray:
 
 
 def _ends(scene: DiskBody) -> tuple[CutContacts, np.ndarray]:
-    """The contacts that end at sides, and which part (e,) of each does.
+    """The contacts that end at sides, and the share (e,) of each that does.
 
-    These are the whole of the contacts that a side cuts, and half of those along a side of half cells, at both disks.
+    All of a contact cut by a side, and half of a contact along a side of half cells, at both disks.
     """
     brick, body = scene.ground.brick, scene.assembly
     cut = cut_contacts(brick, body, tuple(scene.edges), scene.case.periodic)

@@ -1,4 +1,4 @@
-"""Where the motion of a scene of disks starts: driven sides, waves at an angle, loads, and holes that scatter them."""
+"""Where the motion of a scene of disks starts: driven sides, oblique waves, loads, and holes that scatter them."""
 
 from collections.abc import Iterator
 
@@ -16,9 +16,9 @@ from dembound.table import EVERYWHERE, Box
 
 
 def sources_of(case: DiskCase, ground: PackedMaterial) -> list[Source]:
-    """All sources of a scene of this size; holes are local sources from the first arrival of a driven side's waves on.
+    """All sources of a scene of a case; holes are local sources from the first arrival of a driven side's waves on.
 
-    Steady loads are none if a static stage balances them, else they start at once and never end.
+    Steady loads are no sources if a static stage balances them, else they start at once and never end.
     """
     driven = [*_sides(case, ground), *_incident(case, ground)]
     speed = front_of(ground, case.run.safety).speed
@@ -37,7 +37,7 @@ def _sides(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
 
 
 def _incident(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
-    """The wave at an angle, which is everywhere: from its first arrival in the ground until it has come down again."""
+    """The oblique wave, which is everywhere: from its first arrival in the ground until its reflection has left."""
     if case.incident is None:
         return
     wave, signal = incident_in(case, medium_of(ground)), case.wave[case.incident.wave]
@@ -61,7 +61,7 @@ def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
 
 
 def place_of(case: DiskCase, load: Load) -> Box:
-    """The rectangle that a load acts on, of a pressure that around its hole."""
+    """The rectangle that a load acts on; for a pressure the one round its hole."""
     if load.pressure is not None:
         return case.hole_of(load).box
     if load.position is not None:

@@ -103,7 +103,7 @@ def filling_forces(scene: DiskScene) -> Callable[[np.ndarray, np.ndarray], None]
 def _loose_eigenvalue(scene: DiskScene) -> float:
     """Bound of ω² (1/s²) for the smallest disks, each rolling on six neighbours, as in broken or loose ground.
 
-    Only contacts, no bonds. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones
+    With contacts and no bonds. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones
     24k_s/m, when all disks rotate in the same way; the sum is a bound for both together.
     """
     moduli = scene.ground.moduli
@@ -118,7 +118,7 @@ def _rounded_down(step: float) -> float:
 
 
 def own_step(case: DiskCase, limit: float) -> float:
-    """The time step (s) of the case at a stability limit (s): a share of it, or the one given, even above it.
+    """The time step (s) of the case at a stability limit (s): a share of it, or the given step, even above it.
 
     Raises CaseError when the step is automatic and nothing can vibrate.
     """

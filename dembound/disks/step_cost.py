@@ -1,4 +1,4 @@
-"""The time of a step on one core, by what is stepped."""
+"""The time of a step on one core, by kinds of disks, nodes and ties."""
 
 from __future__ import annotations
 
@@ -7,30 +7,29 @@ import numpy as np
 from dembound.disks.scene import DiskScene
 
 ELASTIC_NODE, ABSORBING_NODE, TIE = 8.1, 15.0, 26.0
-"""Nanoseconds of a step on one core (benchmarks/continuum_rate.py): nodes of order 4, without and with memories.
+"""Nanoseconds of a step on one core (benchmarks/continuum_rate.py): nodes of order 4, outside and inside of layers.
 
-Ties are those of random packings; of lattices, which act on the nodes of edges alone, one takes 15.
-"""
+Ties are those of random packings; a tie of a lattice, which acts on the nodes of edges only, takes 15."""
 
 DRIVE = 18.0
-"""Nanoseconds of a force by which a wave at an angle enters (cases/oblique.toml, 772 of them)."""
+"""Nanoseconds of a force by which an oblique wave enters (cases/oblique.toml, 772 of them)."""
 
 DISK = {(True, False): 7.0, (False, False): 27.0, (True, True): 20.0, (False, True): 55.0}
 """Nanoseconds of a step of a disk (benchmarks/rates.py), in rows of copies or one by one, with a history or without."""
 
 
 def of_disk(scene: DiskScene) -> float:
-    """Nanoseconds of a disk of a scene."""
+    """Nanoseconds of a step per disk of a scene."""
     return DISK[scene.slots is not None and not scene.slots.is_plain, scene.has_history]
 
 
 def of_continuum(nodes: float, absorbing: float, ties: float) -> dict[str, float]:
-    """Nanoseconds of nodes, so many of which absorb, and of ties."""
+    """Nanoseconds of a step of `nodes` nodes, `absorbing` of them in layers, and of ties, by name."""
     return {"elements": ELASTIC_NODE * (nodes - absorbing) + ABSORBING_NODE * absorbing, "ties": TIE * ties}
 
 
 def of_scene(scene: DiskScene) -> dict[str, float]:
-    """Nanoseconds of a scene, by its parts."""
+    """Nanoseconds of a step of a scene, by its parts."""
     absorbing = sum(int(np.count_nonzero(beyond.body.mesh.depth.any(axis=1))) for beyond in scene.continua)
     nodes = sum(beyond.count for beyond in scene.continua)
     ties = sum(len(beyond.wall.element) for beyond in scene.continua)

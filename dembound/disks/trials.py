@@ -18,7 +18,7 @@ from dembound.motion.part import System
 from dembound.motion.trial import NOISE, Trial, at_rest, left_out
 
 PARTICLES = 2500
-"""Particles of a reduced copy, about; one brick may have more."""
+"""Approximate number of particles of a reduced copy; one brick may have more."""
 
 NOTHING = Load.model_construct(name="nothing", acceleration=(0.0, 0.0))
 """A load of zero on all of the ground, for which a case keeps its free-field column beside a continuum."""
@@ -27,13 +27,13 @@ UNLOADED = (
     "unloaded: contacts that nothing presses together open and close in the noise, so a larger step is stable than "
     "under loads, which close them and bring the largest one down to that of the linear law"
 )
-"""About the largest step measured under a law with contacts that open."""
+"""Note on the largest step measured under a law with contacts that open."""
 
 
 def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
-    """A body of disks under the linear law, and under the case's own if that is another.
+    """A body of disks under the linear law, and under the case's own law if that differs.
 
-    Returns also how they differ from the case, one sentence each. full : the whole scene, instead of fewer copies of
+    Returns also one sentence for each difference from the case. full : the whole scene, instead of fewer copies of
     the brick. Raises the errors of building a scene.
     """
     plain = replace(at_rest(case), static=None, monitor=(), incident=None)
@@ -78,10 +78,11 @@ def _under(scene: DiskScene, name: str) -> Trial:
 
 
 def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
-    """The case with fewer copies of its brick under the same sides, if it has more than `PARTICLES`, and how in words.
+    """The case with fewer copies of its brick, if it has more than `PARTICLES`, and the change in words.
 
-    Holes are left out: removing particles and contacts takes rows and stiffness from K, which cannot increase its
-    largest eigenvalue.
+    Sides stay the same. Holes are left out: removing particles and contacts takes rows and stiffness from K, which
+    cannot
+    increase its largest eigenvalue.
     """
     across, up = case.packing.copies
     disks = len(ground_of(case).brick.radii)

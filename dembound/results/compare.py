@@ -131,9 +131,8 @@ def on_common_clock(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Values of two histories at the sample times (m,) of the second, up to the end of the shorter one.
 
-    time : (k,) s, values : (k,) or (k, c) of the first history, which is interpolated. expected_time : (l,) s, expected
-    :
-    (l,) or (l, c) of the second.
+    time : (k,) s, values : (k,) or (k, c) of the first history, which is interpolated. expected_time :
+    (l,) s, expected : (l,) or (l, c) of the second.
     """
     shared = expected_time <= min(time[-1], expected_time[-1])
     return at_times(time, values, expected_time[shared]), expected[shared]

@@ -43,7 +43,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return causes_of_run(case, recorded, time_step, work, most)
 
     def truth(self, case: DiskCase) -> Truth:
-        """ "disks" where the packing is random or bonds may break, else "rock"."""
+        """The default truth: "disks" where the packing is random or bonds may break, else "rock"."""
         is_grid = case.packing.is_lattice and not LAWS[case.material.law].has_history
         return "rock" if is_grid else "disks"
 

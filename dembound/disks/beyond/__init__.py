@@ -1,1 +1,1 @@
-"""What lies beyond the sides: continuum and its ties to the disks, cut bonds, waves that come in, excavated edges."""
+"""The ground beyond the sides: continuum and its ties to the disks, cut bonds, incoming waves, excavated edges."""

@@ -1,4 +1,4 @@
-"""The halves of bonds that the sides of a body cut, and the motion of their middles per unit gradient: see wall.py."""
+"""Halves of the bonds that the sides of a body cut, and the motion of their middles per unit gradient: see wall.py."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ class CutBonds:
 
     Attributes
     ----------
-    particle : (t,) disk of the body. normal : (2, t) from its centre to that beyond. arm : (t,) m, to the contact.
-    height : (t,) m, of its centre. point : (t, 2) m, of the contact; in a `Wall` that of its element nearest to it.
-    stiffness : (3, t) N/m, N/m and N·m, of half the bond: twice that of the bond.
-    corrector : (3, 4, t) m and rad, c above per unit gradient xx, yy, xy, yx; own : the same, χ of the body's disk.
+    particle : (t,) disk of the body. normal : (2, t) from its centre to that of the disk beyond. arm : (t,) m, to the
+    contact. height : (t,) m, of its centre. point : (t, 2) m, of the contact; in a `Wall` the nearest point of its
+    element. stiffness : (3, t) N/m, N/m and N·m, of half the bond: twice the bond's.
+    corrector : (3, 4, t) m and rad, c of wall.py per unit gradient xx, yy, xy, yx; own : (3, 4, t), χ of the body's
+    disk.
     force : (3, 4, t) N and N·m per unit gradient, of the bond at the contact: along x and y, and its bending moment.
     side : (t,) int64, index in `boundaries.SIDES` of the side that cuts the bond, of two the first.
     """
@@ -75,13 +76,13 @@ class CutBonds:
 
     @property
     def on_disks(self) -> np.ndarray:
-        """(3, 4, t) N and N·m per unit gradient, forces of the bonds on the disks, and moments about their centres."""
+        """Forces (3, 4, t) N and N·m per unit gradient of the bonds on the disks, moments about the disks' centres."""
         nx, ny = self.normal
         fx, fy, bending = self.force
         return np.stack([fx, fy, bending + self.arm * (nx * fy - ny * fx)])
 
     def between(self, sides: Sequence[float]) -> CutBonds:
-        """Bonds that see the motion half-way between where they are and the sides of the continuum.
+        """The bonds with the motion half-way between their contacts and the sides of the continuum.
 
         sides : left and right (x), lower and upper (y), m. A component along the normal is moved by the strain along
         it, one across by the shear strain, so that no rotation strains a tie.
@@ -99,17 +100,17 @@ class CutBonds:
         return replace(self, corrector=corrector)
 
     def read_at(self, point: np.ndarray) -> CutBonds:
-        """These bonds with the continuum's motion at other points (t, 2) m: c has the way from there."""
+        """The bonds with the continuum's motion taken at other points (t, 2) m; c then includes the way from there."""
         corrector = self.corrector + _uniform((self.point - point).T)
         return replace(self, point=point, corrector=corrector)
 
     def numbered_from(self, first: int) -> CutBonds:
-        """These bonds where the body's first disk has this number."""
+        """The bonds with particle numbers of a body whose first disk has the number `first`."""
         return replace(self, particle=self.particle + first)
 
 
 def _middle(own: np.ndarray, other: np.ndarray, arms: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Motion (3, 4, t) of the middles of bonds, from that of both disks, (3, 4, t), with arms (2, t)."""
+    """Motion (3, 4, t) of the middles of bonds, from the motions (3, 4, t) of their two disks with arms (2, t)."""
     along = np.stack([-normal[1], normal[0]])
     middle = 0.5 * (own + other)
     middle[:2] += 0.5 * along[:, None] * (arms[0] * own[2] - arms[1] * other[2])

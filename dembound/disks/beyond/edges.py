@@ -29,7 +29,7 @@ def find_edges(assembly: Assembly, periodic: tuple[bool, bool], regular_sides: t
 
 
 def edge_without(edge: Edge, kept: np.ndarray) -> Edge:
-    """A side without the particles that are not kept (m,); the others keep their share of its length."""
+    """A side with the kept particles (m,) bool only; their shares of its length do not change."""
     still = np.isin(edge.nodes, kept)
     if not still.any():
         raise CaseError(
@@ -44,7 +44,7 @@ def edge_without(edge: Edge, kept: np.ndarray) -> Edge:
 
 
 def edges_beside_column(assembly: Assembly, seam: Seam, edges: Mapping[str, Edge]) -> dict[str, Edge]:
-    """The sides of a body with its column: bottom and top include the column, left and right are the body's.
+    """The sides of a body with its free-field column: bottom and top include the column, left and right do not.
 
     The disks visible from below or above are determined in the column, as if there were no sides, so that every disk of
     the body is supported like its twin.

@@ -16,9 +16,9 @@ LENGTHS = (200.0, 20.0)
 
 
 def frequencies_of(case: DiskCase, ground: PackedMaterial, count: int) -> np.ndarray:
-    """So many frequencies (Hz), each for an equal share of the energy of the case's waves and forces.
+    """`count` frequencies (Hz), each for an equal share of the energy of the case's waves and forces.
 
-    Without a spectrum of finite energy they are those of waves from `LENGTHS` diameters long, evenly spaced.
+    Without a spectrum of finite energy: frequencies of waves from `LENGTHS` diameters long, evenly spaced.
     """
     signals = [signal for signal in signals_of(case) if not choice.jumps(signal)]
     highest = float(np.nanmax(ground.wave_speeds(0))) / (LENGTHS[1] * ground.brick.mean_diameter)

@@ -1,6 +1,6 @@
-"""The motion of the ground without the body at the nodes of a continuum, from that of the free-field column.
+"""The ground's motion without the body at the nodes of a continuum, from the motion of the free-field column.
 
-Beside a column the continuum has the scattered motion only. That of the ground depends on the height alone, as waves
+Beside a column the continuum has the scattered motion only. The ground's motion depends on the height alone, as waves
 come from straight below: it is interpolated between the means of the column's disks in bands one diameter high, on a
 lattice its rows. In random packings the means differ from the motion of the equivalent continuum by the mean of the
 correctors (material/homogenise.py) in a band, some per cent of a diameter times the strain.
@@ -23,7 +23,7 @@ class _Bands(NamedTuple):
 
 
 class GroundMotion:
-    """Motion at some heights from that of the disks of a column.
+    """Motion at some heights, from the motion of the disks of a column.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class GroundMotion:
     def at_heights(self, values: np.ndarray) -> np.ndarray:
         """Displacements or velocities (m, 3) from those of the column's disks (c, 3); rotations are zero.
 
-        Beyond the first and last bands they are those of the bands.
+        Constant beyond the first and last bands.
         """
         band, share, height = self._bands
         motion = np.zeros((len(self._heights), 3))

@@ -1,8 +1,8 @@
 """The motion of the undisturbed ground under plane waves.
 
-It consists of plane waves of its medium (outside/plane_waves.py): of one that comes at an angle, and below a free
-surface those that this sends back; or of waves that run straight up, with velocities given along x and y. In the
-undisturbed packing a disk i at x_i moves by u(x_i) + χ_i : ∇u, with the correctors χ of homogenise.py.
+It consists of plane waves of its medium (outside/plane_waves.py): an oblique wave, and below a free surface its
+reflections; or waves that run straight up, with velocities given along x and y. In the undisturbed packing a disk i at
+x_i moves by u(x_i) + χ_i : ∇u, with the correctors χ of homogenise.py.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ undisturbed lattice in elements of 30 m deviate by 0.020 %, with eight by 0.009 
 """
 
 NO_PART = 1e-12
-"""Part of a wave below which it is rounding: S waves have none of P waves in an isotropic medium."""
+"""Part of a wave below which it is rounding: in an isotropic medium S waves have no P part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class GroundWaves:
 
     Attributes
     ----------
-    medium : of the ground. waves : the plane waves that it consists of. signals : g of each. grain : mean diameter of
+    medium : of the ground. waves : its plane waves. signals : displacement history g of each. grain : mean diameter of
     the disks, m.
     """
 
@@ -53,7 +53,7 @@ class GroundWaves:
     grain: float
 
     def near(self, places: np.ndarray) -> NearPlaces:
-        """The waves near places (k, 2) m alone."""
+        """The waves near places (k, 2) m only."""
         spans = []
         for wave in self.waves:
             delays, more = wave.delays(places), 0.5 * self.grain * float(np.hypot(*wave.slowness))
@@ -117,7 +117,7 @@ class NearPlaces:
         return np.hstack([signal.displacement(times[:, None] - delays) for signal, delays in each])
 
     def velocities(self, behind: float) -> np.ndarray:
-        """(count, count) 1/s, from the amplitudes to ġ at the same delays, `behind` (s) before."""
+        """Matrix (count, count) 1/s from the amplitudes to ġ at the same delays, `behind` (s) earlier."""
         matrix = np.zeros((self.count, self.count))
         for number, (low, high) in enumerate(self.spans):
             own = slice(DELAYS * number, DELAYS * (number + 1))
@@ -126,7 +126,7 @@ class NearPlaces:
         return matrix
 
     def strained(self, places: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """What values (3, 4, d) per unit gradient become at places (d, 2) m: (3, d, count)."""
+        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count)."""
         each = []
         for wave, (low, high) in zip(self.ground.waves, self.spans, strict=True):
             slope = self._rule.slope(self._places(wave, places, low, high)) * (2.0 / (high - low))
@@ -144,16 +144,16 @@ class NearPlaces:
 
     @staticmethod
     def _places(wave: ElasticPlaneWave, places: np.ndarray, low: float, high: float) -> np.ndarray:
-        """Delays of a wave at places (d, 2) m as −1 … 1 within its span."""
+        """Delays of a wave at places (d, 2) m, scaled to −1 … 1 within its span."""
         return (2.0 * wave.delays(places) - low - high) / (high - low)
 
 
 def rising_waves(
     medium: Medium, height: float, signals: tuple[Incident | None, Incident | None], grain: float
 ) -> GroundWaves:
-    """Waves that run straight up: the two of the medium that together move as given at a height.
+    """Waves that run straight up: the two waves of the medium that together move as given at a height.
 
-    signals : whose velocities are those along x and y at y = height (m); None for none. grain : mean diameter, m.
+    signals : with velocities along x and y at y = height (m); None for none. grain : mean diameter, m.
     """
     speeds, polarisations = medium.plane_waves((0.0, 1.0))
     waves, own = [], []
@@ -194,9 +194,9 @@ def incident_in(case: DiskCase, medium: Medium) -> ElasticPlaneWave:
 
 
 def reference_point(case: DiskCase) -> tuple[float, float]:
-    """Where (m) the incident wave of a case has the velocity of its wave: as given, or the first corner of the ground.
+    """Point (m) at which a case's incident wave has the given velocity: as given, or the first corner of the ground.
 
-    That is the lower one on the side that it comes from.
+    The first corner is the lower one on the side from which the wave comes.
     """
     assert case.incident is not None
     left, bottom, right, _ = case.box
@@ -204,7 +204,7 @@ def reference_point(case: DiskCase) -> tuple[float, float]:
 
 
 def _beyond(medium: Medium, table: IncidentWave) -> str:
-    """A problem in words: an angle that is not below the critical one."""
+    """The message about an angle that is not below the critical one."""
     sign = float(np.copysign(1.0, table.angle))
     critical = sign * critical_angle(medium, table.type, sign)
     return (

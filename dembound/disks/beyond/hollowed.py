@@ -1,4 +1,4 @@
-"""Bodies with holes: the disks in them are removed, but for those that the ground beyond a side holds."""
+"""Bodies with holes: the disks in them are removed, except those held by the ground beyond a side."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
 
 BAND = 4.0
-"""Least width of a floor beside a side beyond which the ground is as high, in diameters."""
+"""Least width, in diameters, of a floor beside a side with ground of that height beyond it."""
 
 ON_IT = 1e-6
-"""Part of a diameter by which a disk whose centre is on a floor may be above it: of rounding."""
+"""Part of a diameter by which a disk centred on a floor may be above it: rounding."""
 
 
 def hollowed(
@@ -37,9 +37,9 @@ def hollowed(
 
     The surface of a hole is free: no particles are added to a side.
 
-    floors : those that these holes leave, together with any made before.
+    floors : at left and right sides, left by these holes and by any made before.
 
-    Raises CaseError for holes that reach a side beyond which the ground goes on, but for floors beside a continuum.
+    Raises CaseError for holes that reach a side beyond which the ground goes on, except for floors beside a continuum.
     """
     removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
     left, kept = body.without(removed)
@@ -63,7 +63,7 @@ def _at_sides(
     sides: tuple[str, ...],
     floors: Mapping[str, Floor],
 ) -> list[str]:
-    """Mistakes of holes that take disks beside some sides, beyond which there is a free field or continuum.
+    """Messages about holes that remove disks beside some sides, beyond which there is a free field or continuum.
 
     kept : (m,) indices of the disks that remain.
     """
@@ -94,7 +94,7 @@ def _at_sides(
 
 
 def _mistakes(what: str, sides: np.ndarray, beyond: str, uneven: Mapping[str, Floor], diameter: float) -> list[str]:
-    """The mistakes of a hole at some sides, by their numbers (k,); none without any. uneven : at these, by side."""
+    """Messages about a hole at sides with numbers (k,); empty without mistakes. uneven : floors there, by side."""
     names = [SIDES[number] for number in np.unique(sides)]
     flat, others = [name for name in names if name in uneven], [name for name in names if name not in uneven]
     problems = [

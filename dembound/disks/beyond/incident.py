@@ -1,17 +1,17 @@
 """The forces by which plane waves of the ground enter a body through its ties to the continuum.
 
-Disks have the total motion, the grid has the scattered one alone: what remains without the motion u of the undisturbed
+Disks have the total motion, the grid has only the scattered motion: the total without the motion u of the undisturbed
 ground (ground_waves.py). In the undisturbed packing a disk i at x_i then moves by ξ⁰_i = u(x_i) + χ_i : ∇u, with
 the correctors χ (homogenise.py). Let A_i ξ_i be the share of a disk in the elongations of a tie, B w that of the
 grid's motion w, K the stiffness of the tie, and f_i the force of the bond on the disk per unit gradient of the packing.
-What acts on a tied disk is the force of the bond in the undisturbed packing, and that of the tie, which is strained by
-what differs from there; on the grid acts the transpose of the latter alone:
+On a tied disk acts the force of the bond in the undisturbed packing, and that of the tie, which is strained by
+the deviation from there; on the grid acts the transpose of the latter alone:
 
     on the disk  f_i : ∇u(x_e) + A_iᵀK(1 + η d/dt)(B w − A_i(ξ_i − ξ⁰_i)),
     on the grid  −BᵀK(1 + η d/dt)(B w − A_i(ξ_i − ξ⁰_i)).
 
 So in a packing that moves as undisturbed the grid remains at rest. The terms of w and ξ are those of the kernel
-(kernels/wall.py). The others are the drives here: the bond's force, and what the kernel computes for the motions −ξ⁰_i
+(kernels/wall.py). The others are the drives here: the bond's force, and the kernel's forces for the motions −ξ⁰_i
 of the disks and a grid at rest.
 
 The place x_e of the gradient is the contact's, moved along the normal of the side to where the grid begins: the forces
@@ -19,8 +19,8 @@ of the bonds of a side accelerate the mass behind, which is that of a uniform bo
 (`Brick.mass_offset`). Then errors are of second order in D/λ. With the gradient at the bonds, or the grid's motion at
 the contact in place of f_i, they would be of first order.
 
-All ties are somewhere else along the waves. Those of one element of the grid are near each other: there the waves are
-the polynomials of their delays through a few points (`NearPlaces`), and all forces follow from g at so many delays.
+Each tie is at another place along the waves. The ties of one element of the grid are near each other: there the waves
+are polynomials of their delays through a few points (`NearPlaces`), and all forces follow from g at these delays.
 """
 
 from __future__ import annotations
@@ -45,14 +45,14 @@ PLACES = 8
 """Places along a side at which the power of waves is summed."""
 
 Sharing = tuple[np.ndarray, np.ndarray]
-"""Tied disks (k,), and disks (k,) that have the forces of these, too."""
+"""Tied disks (k,), and disks (k,) on which the same forces act."""
 
 
 class TieForces(NamedTuple):
     """Forces through the ties of one element.
 
     ground : the motion near them. node, component : (r,) the degrees of freedom. moved, moving : (count, r) N or N·m
-    per unit of the displacements, and of the velocities that ties see, of all amplitudes.
+    per unit of the displacements, and of the velocities seen by the ties, of all amplitudes.
     """
 
     ground: NearPlaces
@@ -62,13 +62,13 @@ class TieForces(NamedTuple):
     moving: np.ndarray
 
     def per_displacement(self, half_step: float) -> np.ndarray:
-        """All forces (count, r) per unit of displacements; velocities follow from these, half a step (s) behind."""
+        """All forces (count, r) per unit of displacements; velocities are derived from these, half a step behind."""
         factors = np.empty_like(self.moving)
         weighted_sums(np.ascontiguousarray(self.ground.velocities(half_step).T), self.moving, factors)
         return factors + self.moved
 
     def shared(self, sharing: Sharing) -> TieForces:
-        """These forces on other disks, too."""
+        """The forces, repeated on the disks that share them."""
         row, which = np.nonzero(self.node[:, None] == sharing[0])
         rows = np.concatenate([np.arange(len(self.node)), row])
         node = np.concatenate([self.node, sharing[1][which]])
@@ -110,9 +110,9 @@ def _listed(forces: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def forces_at_rest(wall: Wall, disk: np.ndarray, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Forces of ties (3, d, q) on disks (d,) with motions (3, d, q), and (2, m, q) on the nodes, which are at rest.
+    """Tie forces (3, d, q) on disks (d,) with motions (3, d, q), and (2, m, q) on the nodes, which are at rest.
 
-    disk : all that are tied, ascending.
+    disk : all tied disks, ascending.
     """
     count = len(disk) + len(wall.nodes)
     own, node = np.zeros(int(disk.max()) + 1, dtype=np.int64), np.zeros(wall.mesh.count, dtype=np.int64)
@@ -136,11 +136,11 @@ def _at_edges(bonds: CutBonds, positions: np.ndarray, sides: Sequence[float]) ->
 
 
 class SummedDrives:
-    """Forces on some degrees of freedom, sums of those through the ties of several elements.
+    """Forces on some degrees of freedom, summed over the ties of several elements.
 
     Parameters
     ----------
-    parts : of each element.
+    parts : forces of each element.
 
     Attributes
     ----------
@@ -188,9 +188,10 @@ def let_in(outside: Surroundings, ground: GroundWaves, positions: np.ndarray, bu
 def let_in_below(
     outside: Surroundings, ground: GroundWaves, positions: np.ndarray, builder: SupportBuilder, sharing: Sharing
 ) -> None:
-    """Add the forces of waves that run straight up and enter a body from below; above, the continuum has them, too.
+    """Add the forces of waves that run straight up and enter a body from below to the support table.
 
-    sharing : disks that have the forces of others. The rest as for `let_in`.
+    The continuum above also carries these waves. sharing : disks on which the forces of others act. Other parameters as
+    of `let_in`.
     """
     below = outside.wall.only(np.flatnonzero(outside.wall.bonds.side == SIDES.index("bottom")))
     parts = parts_of(below, ground, positions, outside.first)

@@ -1,4 +1,4 @@
-"""The mesh of the continuum round a body: sizes of elements, where it begins, and where it ends at free surfaces."""
+"""The mesh of the continuum round a body: sizes of elements, and where it begins and ends at free surfaces."""
 
 from __future__ import annotations
 
@@ -35,10 +35,11 @@ class ElementSizes(NamedTuple):
 
     From a body that is periodic and narrow, no wider than `NARROW` elements or half of the shortest wave, waves run
     straight away only: one element is as wide as it, and ties have its mean motion. If the body is narrower than the
-    smallest useful element, the continuum is as wide as this, and less thick by as much. Such a continuum is small, so
+    smallest useful element, the continuum is as wide as this, and less thick in proportion. Such a continuum is small,
+    so
     that its elements may be up to half as high.
 
-    settings : of the continuum. box : (2,) m, the body as the continuum has it. element : largest width and height, m.
+    settings : of the continuum. box : (2,) m, size of the body in the continuum. element : largest width and height, m.
     narrow : along x and y.
     """
 
@@ -76,10 +77,11 @@ class ElementSizes(NamedTuple):
 
 
 class Level(NamedTuple):
-    """The ground beyond a side that stands lower than the disks.
+    """The ground beyond a side that is lower than the disks.
 
-    floor : its height y as the hole has it, m. height : the same but for rounding, m: disks beyond with centres below
-    are there. mass_end, surface : where the mass of the packing and its continuum end, m.
+    floor : height y of the hole's floor, m. height : floor with tolerance for rounding, m: disks beyond with centres
+    below
+    it exist. mass_end, surface : heights at which the mass of the packing and its continuum end, m.
     """
 
     floor: float
@@ -89,7 +91,7 @@ class Level(NamedTuple):
 
     @classmethod
     def of(cls, ground: PackedMaterial, body: Assembly, floor: Floor, side: str) -> Level:
-        """The level beyond a side of a body in front of a floor; disks of the body on it that remain are below."""
+        """The level beyond a side of a body in front of a floor; disks of the body that remain on it count as below."""
         near, rounding = float(np.abs(ground.brick.vectors[:, 0]).max()), ON_IT * ground.brick.mean_diameter
         x, y = body.positions.T
         highest = float(y[x < x.min() + near if side == "left" else x > x.max() - near].max())
@@ -104,10 +106,11 @@ class Rim(NamedTuple):
     Beyond tied sides it begins where the mass of the packing ends (`Brick.mass_offset`). Free edges lie deeper than
     those of the body by the depth of the packing's skin there, and bear the mass beyond them.
 
-    box : left, bottom, right and top of what is left out for the body, m. surface : height of the free surface above a
-    body in the ground, m; None: it reaches up to the ground's end. skins : depth (m) of free edges below those of the
-    packing, by side. massless : the same below where the mass ends. levels : the ground beyond left and right sides
-    where it is lower.
+    box : left, bottom, right and top of the cut-out for the body, m. surface : height of the free surface above a
+    body in the ground, m; None: the body reaches up to the ground's end. skins : depth (m) of free edges below those of
+    the packing, by side. massless : depth of free edges below the end of the mass, by side. levels : lower ground
+    beyond
+    left and right sides.
     """
 
     box: Box
@@ -156,7 +159,7 @@ class Rim(NamedTuple):
 
     @property
     def tops(self) -> tuple[float, float] | None:
-        """Heights (m) of the free surface beyond the left and the right side; None: as high as the body's."""
+        """Heights (m) of the free surface beyond the left and the right side; None: as high as the body."""
         if not self.levels:
             return None
         left, right = (self.levels[side].surface if side in self.levels else self.box[3] for side in ("left", "right"))
@@ -207,7 +210,7 @@ class Outline(NamedTuple):
 
 
 def on_top(mesh: Mesh, at_top: float, at_levels: Mapping[str, float]) -> np.ndarray:
-    """(n,) a value on the top of a mesh for all of its nodes, but for those beyond sides with values of their own."""
+    """Values (n,) on the top of a mesh for all its nodes; beyond sides in `at_levels` their own values."""
     left, right, *_ = mesh.sides
     x, values = mesh.positions[:, 0], np.full(mesh.count, at_top)
     for side, value in at_levels.items():
@@ -273,5 +276,5 @@ def box_of(body: Assembly) -> Box:
 
 
 def _is_beside(side: str, sides: Sequence[str]) -> bool:
-    """Whether a side of a body meets one of some others, so that it goes on along the continuum beyond that."""
+    """Whether a side of a body adjoins one of some others, so that it continues along the continuum beyond that."""
     return any(normal_axis(each) != normal_axis(side) for each in sides)

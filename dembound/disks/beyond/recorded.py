@@ -1,7 +1,7 @@
-"""What is recorded of the continuum round a body: its nodes, and their motion with that of the ground without the body.
+"""Records of the continuum round a body: its nodes, and their motion with and without the ground's own motion.
 
 Beside a free-field column, and where waves come in that the ground has without the body, the continuum is computed with
-the scattered motion only, which is what the body adds. Records have this, and its sum with the motion of the ground.
+the scattered motion only, which is the change by the body. Records have this, and its sum with the ground's motion.
 """
 
 from functools import cached_property
@@ -23,7 +23,8 @@ class RecordedContinuum(Beside):
     ----------
     outside : the continuum.
     waves : the motion of the ground without the body; None without any.
-    disks : the scene's disks, those of its free-field column first. column : number of these, 0 without a column.
+    disks : the scene's disks, those of its free-field column first. column : number of column disks, 0 without a
+    column.
     mass : (n,) kg, of the scene's nodes. diameter : m, mean of the brick's disks.
     """
 
@@ -42,7 +43,7 @@ class RecordedContinuum(Beside):
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
-        """Data of the nodes for the record: of the mesh, the disks of a column, and where the total motion is known."""
+        """Data of the nodes for the record: mesh, nearest disks of a column, and where the total motion is known."""
         more: dict[str, tuple[np.ndarray, str]] = {}
         if self._twin is not None:
             more["twin"] = (self._twin, "1")
@@ -52,9 +53,9 @@ class RecordedContinuum(Beside):
         return self._outside.columns | more
 
     def motion(self, values: np.ndarray, of: str, time: float) -> dict[str, np.ndarray]:
-        """Motion (m, 3) of the nodes, from that of all nodes of the scene (n, 3).
+        """Motion (m, 3) of the nodes by name, from the motion of all nodes of the scene (n, 3).
 
-        Where the ground moves or rests without the body it is "scattered_", and "" the sum of it and the ground's.
+        With a scattered motion, names with the prefix "scattered_" contain it, and names without the total motion.
         """
         own = values[self.nodes]
         if not self._is_scattered:
@@ -68,20 +69,20 @@ class RecordedContinuum(Beside):
 
     @property
     def _is_scattered(self) -> bool:
-        """Whether the continuum has only what differs from the motion of the ground without the body."""
+        """Whether the continuum has the scattered motion only, without the ground's own motion."""
         return self._column > 0 or self._waves is not None
 
     @cached_property
     def _twin(self) -> np.ndarray | None:
-        """(m,) disk of the free-field column nearest to each node, modulo its width; None without a column.
+        """Disk (m,) of the free-field column nearest to each node, modulo its width; None without a column.
 
-        −1 below the ground that the column stands for.
+        −1 for nodes below the ground that the column represents.
         """
         return nearest_in_column(self._disks, self._outside.body.mesh.positions) if self._column > 0 else None
 
     @cached_property
     def _ground(self) -> GroundMotion:
-        """The motion of the ground at the nodes, from that of the column."""
+        """The ground's motion at the nodes, from the motion of the column."""
         column = slice(0, self._column)
         up, heights = self._disks.positions[column, 1], self._outside.body.mesh.positions[:, 1]
         return GroundMotion(up, self._mass[column], self._diameter, heights)

@@ -1,4 +1,4 @@
-"""The settings of the continuum round a body: as given in the case, the others chosen from its waves and loads."""
+"""Settings of the continuum round a body: given in the case, or chosen from its waves and loads."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from dembound.waves import Constant
 FLAT = 5.0
 """Length of ground over its height from which on elements are about as wide as high.
 
-Elements twice as wide as high amplify noise in ground 9 times as wide as high, with ν = 0.25, not in ground 5 times so.
-"""
+Elements twice as wide as high amplify noise in ground 9 times as wide as high, with ν = 0.25, but not in ground 5 times
+as wide."""
 
 MOST_ALONG = 100_000
 """Largest number of elements along a side."""
@@ -36,9 +36,9 @@ ROUNDING = 1e-9
 
 
 class Settings(NamedTuple):
-    """All settings.
+    """All settings of a continuum.
 
-    order : of the elements. element : largest side, m; least : smallest one that is useful, m, 0 if the largest is
+    order : of the elements. element : largest side, m; least : smallest useful side, m, 0 if the largest is
     given. margin, layers : numbers of elements. absorption : R0, α and τ. damping : of the ties.
     """
 
@@ -52,19 +52,19 @@ class Settings(NamedTuple):
 
     @property
     def given(self) -> dict[str, float]:
-        """These settings as keys of the table, for a case that is to have them whatever its waves."""
+        """These settings as keys of the table, to fix them in a case whatever its waves."""
         own = {"element": self.element, "margin": self.margin, "layers": self.layers}
         return own | {"reflection": self.absorption.reflection}
 
     def side(self, length: float) -> float:
-        """Side (m) of elements, a whole number of which is a length (m)."""
+        """Side (m) of elements that divide a length (m) into equal parts."""
         count = max(math.ceil(length / self.element - ROUNDING), 1)
         if self.least > 0.0:
             count = min(count, max(math.floor(length / self.least + ROUNDING), 1))
         return length / count
 
     def sides(self, width: float, height: float) -> tuple[float, float]:
-        """Width and height (m) of elements, a whole number of which are a width and height (m).
+        """Width and height (m) of elements that divide a width and height (m) into equal parts.
 
         In flat ground they are about as wide as high: layers of elements longer than deep amplify noise there.
         """
@@ -112,7 +112,7 @@ class Buried(NamedTuple):
     size: tuple[float, float]
 
     def error(self, settings: Settings, medium: Medium, margin: int) -> float:
-        """Error of velocities of what the surface sends back along layers beyond so many elements."""
+        """Velocity error by surface reflections that run along layers beyond `margin` elements."""
         beyond = (margin + choice.WITHIN * settings.layers) * settings.sides(*self.size)[0]
         speeds = choice.slowest(medium) / fastest(medium)
         return choice.grazing_error(self.depth, speeds, settings.absorption.reflection, self.beside + beyond)
@@ -130,7 +130,7 @@ def buried(case: DiskCase, box: Box, sides: Sequence[str]) -> list[Buried]:
 
 
 def margin_below_surface(settings: Settings, source: Buried, medium: Medium, accuracy: float) -> int:
-    """Number of elements beside a box with which layers absorb what comes back from the free surface; at least 1."""
+    """Number of elements beside a box with which layers absorb surface reflections to an accuracy; at least 1."""
     speeds = choice.slowest(medium) / fastest(medium)
     offset = choice.offset(source.depth, speeds, settings.absorption.reflection, accuracy)
     elements = (offset - source.beside) / settings.sides(*source.size)[0] - choice.WITHIN * settings.layers
@@ -138,7 +138,7 @@ def margin_below_surface(settings: Settings, source: Buried, medium: Medium, acc
 
 
 def _margin(settings: Settings, box: Box, sides: Sequence[str], inner: float) -> int:
-    """Number of elements beside a box, with which a length (m) lies within the layers along one axis; at least 1."""
+    """Number of elements beside a box with which a length (m) fits between the layers of one axis; at least 1."""
     requested, element = [], settings.sides(box[2] - box[0], box[3] - box[1])
     for axis in (0, 1):
         length, beyond = box[2 + axis] - box[axis], sum(normal_axis(side) == axis for side in sides)
@@ -187,7 +187,7 @@ def mesh_of(
 
 
 def _rows_to(box: Box, tops: tuple[float, float], settings: Settings) -> dict[str, Any]:
-    """Heights of the rows beside a box, which end at both tops, m, and how many of them there are below either one."""
+    """Heights (m) of the rows beside a box, which end at both tops, and numbers of rows below either top."""
     near = ROUNDING * (box[3] - box[1])
     ends = [end for end in sorted({*tops, box[3]}) if end < box[3] - near]
     ends = [end for end, last in zip(ends, [box[1], *ends], strict=False) if end > last + near]
@@ -202,9 +202,9 @@ def _rows_to(box: Box, tops: tuple[float, float], settings: Settings) -> dict[st
 
 
 def expected_tops(case: DiskCase, box: Box) -> tuple[float, float] | None:
-    """Heights (m) of the free surface left and right of a box of a case that reaches it; None: as high as the box.
+    """Heights (m) of the free surface left and right of a box of a case that reaches it, before subtracting skins.
 
-    Without what a skin takes off them.
+    None: both as high as the box.
     """
     if not case.floors or case.box[3] - box[3] > ROUNDING * case.size[1]:
         return None
@@ -262,7 +262,7 @@ def near_fields(
 ) -> list[NearField]:
     """The static fields of the holes and forces of a case beside sides of a box (m).
 
-    lowest : Hz, from which on the wave numbers of waves that pass holes are those of displacements, see
+    lowest : frequency (Hz) from which on wave numbers of waves that pass holes are those of displacements, see
     `choice.energies`.
     """
     number = choice.wave_number(signals_of(case), medium, lowest)
@@ -278,16 +278,16 @@ def near_fields(
 
 
 def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Lower left and upper right corners of holes, and twice the middle of each force on a place, m.
+    """Lower left and upper right corners (m) of holes; for each localised force its middle, twice.
 
-    Of a hole that leaves a floor at a side it is the part that is not level.
+    Of a hole that leaves a floor at a side only the part that is not level.
     """
     for low, high, _ in _sources(case):
         yield low, high
 
 
 def _sources(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray, Literal["force", "pressure", "waves"]]]:
-    """The `extents`, and what makes the static field of each."""
+    """The `extents`, each with the kind of source of its static field."""
     left, _, right, _ = case.packing.box
     pressed = case.pressed
     for hole in case.hole:
@@ -307,7 +307,7 @@ def _sources(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray, Literal["
 
 
 def _why_nothing(case: DiskCase) -> str:
-    """Why there is nothing that the size of elements could follow from, in words."""
+    """Why no element size can be derived from the case, in words."""
     if case.load:
         return "its loads are steady and settle in the static stage, so that no waves are there to choose it from"
     return "the case has no wave or load to choose it from"

@@ -38,12 +38,13 @@ class Surroundings:
 
     Attributes
     ----------
-    sides : on which it is. settings : as given or chosen. body : elements, medium and layers. wall : the ties of cut
+    sides : with a continuum. settings : as given or chosen. body : elements, medium and layers. wall : the ties of cut
     bonds to it, by the numbers of disks in the scene. first : number of its first node in the scene. box : left,
-    bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : how deep free
-    edges lie below those of the packing, m, by side. levels : the ground beyond left and
-    right sides where it is lower. twin : (m,) of each disk the twin in the free-field column,
-    relative to which it is tied; None: tied by its own motion. surface_mass : kg/m², of the skin on its upper edge.
+    bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : depth of free
+    edges below those of the packing, m, by side. levels : lower ground beyond left and right sides. twin : (m,) for
+    each
+    disk its twin in the free-field column, relative to which it is tied; None: tied by its own motion. surface_mass :
+    kg/m², of the skin on its upper edge.
     """
 
     sides: tuple[str, ...]
@@ -76,7 +77,7 @@ class Surroundings:
         return height
 
     def allowed(self, places: np.ndarray) -> np.ndarray:
-        """The places (k, 2) m, those in layers, beyond, or above lower ground moved to the nearest that are not."""
+        """The places (k, 2) m; any in layers, beyond them, or above lower ground moved to the nearest other place."""
         mesh = self.body.mesh
         (low, high), thickness = mesh.between_layers, np.array([axis.thickness for axis in mesh.axes])
         too_low = (thickness[:, 0] > 0.0) & (places < low - self._near)
@@ -87,7 +88,7 @@ class Surroundings:
 
     @property
     def depths(self) -> dict[str, float | np.ndarray]:
-        """How deep free edges lie below those of the ground, m, by side; of each node (n,) where it is lower."""
+        """Depth (m) of free edges below those of the ground, by side; per node (n,) where the ground is lower."""
         if not self.levels:
             return {**self.skins}
         lower = {side: level.floor - level.surface for side, level in self.levels.items()}
@@ -133,7 +134,7 @@ class Surroundings:
     def tied_by_side(self) -> dict[str, np.ndarray]:
         """Tied disks (k,) by side, and nodes (m,) of the continuum by ``<side>.continuum``, by number in the scene.
 
-        A disk belongs to the side that its first bond is cut by, a node to that of the first element it belongs to.
+        A disk belongs to the side that cuts its first bond, a node to the side of the first element it belongs to.
         """
         wall = self.wall
         disk, first = np.unique(wall.bonds.particle, return_index=True)
@@ -187,7 +188,7 @@ class Surroundings:
     def support(self, builder: SupportBuilder) -> None:
         """Add rows of its nodes with ties or drives, or on planes of symmetry, to the support table.
 
-        They do not rotate, nor move across the planes.
+        These nodes do not rotate, nor move across the planes.
         """
         builder.side = ""
         for axis in (0, 1):
@@ -226,8 +227,8 @@ def surroundings_of(
 ) -> Surroundings:
     """The continuum with an outline round a body.
 
-    layout : of the nodes before its own, of which the body's disks are those from number `first` on. twin : (m,) of
-    each disk that in the free-field column; None without a column.
+    layout : of the nodes before its own, of which the body's disks are those from number `first` on. twin : (m,) for
+    each disk its twin in the free-field column; None without a column.
 
     Raises CaseError if the packing's sides cut no bonds.
     """

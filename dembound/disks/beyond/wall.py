@@ -43,7 +43,7 @@ class Wall:
 
     Attributes
     ----------
-    bonds : sorted by the element they are tied to. mesh : the elements. element : (t,) that of each bond. local :
+    bonds : sorted by element. mesh : the elements. element : (t,) element of each bond. local :
     (t, 2) places of the points in it, −1 … 1. lag : η, s. mean : along x and y, whether ties have the mean motion of
     their element.
     """
@@ -57,9 +57,9 @@ class Wall:
 
     @classmethod
     def of(cls, mesh: Mesh, bonds: CutBonds, lag: float, mean: tuple[bool, bool] = (False, False)) -> Wall:
-        """Each bond tied to the element nearest to its contact, or to its mean motion along x or y.
+        """Each bond tied to the element nearest to its contact, or to the element's mean motion along x or y.
 
-        The mean is for elements with less than a disk to each node, which single bonds would indent.
+        The mean is for elements with less than one disk per node, which single bonds would indent.
         """
         element, local = located(mesh, bonds.point)
         inside = np.clip(local, -1.0, 1.0)
@@ -82,7 +82,7 @@ class Wall:
 
     @cached_property
     def nodes(self) -> np.ndarray:
-        """(m,) the nodes that ties act on, ascending: of lattices those of the edges alone."""
+        """Nodes (m,) that ties act on, ascending; of lattices only those of the edges."""
         return np.unique(self.mesh.nodes[self.elements][self._acts_on])
 
     @cached_property
@@ -115,7 +115,7 @@ class Wall:
     def elongations(self) -> tuple[np.ndarray, np.ndarray]:
         """Elongations per unit motion of the ties' disks, (3, t, 3), and of the nodes of their elements, (3, t, 2, N²).
 
-        Normal, shear and bending ones, as in the kernels: times the stiffness of the half bonds they are the forces
+        Normal, shear and bending, as in the kernels: times the stiffness of the half bonds they are the forces
         with which ties pull disks and nodes together.
         """
         (along, along_slope), (up, up_slope) = self._shapes
@@ -137,7 +137,7 @@ class Wall:
     def ties(self, particle: np.ndarray, node: np.ndarray, line: np.ndarray, twin: np.ndarray | None) -> WallTies:
         """The arrays for the kernels.
 
-        particle : (n,) slot of every disk of the body; node : (m,) that of every node of the mesh; line : (slots,) line
+        particle : (n,) slot of every disk of the body; node : (m,) slot of every node of the mesh; line : (slots,) line
         of slots in the support table; twin : (n,) slot of every disk's twin in the free-field column, None for none.
         """
         bonds, mesh = self.bonds, self.mesh
@@ -151,7 +151,7 @@ class Wall:
             return wide
 
         def in_blocks(values: np.ndarray) -> np.ndarray:
-            """Values (f, t), the f of each block together."""
+            """Values (f, t) with the f values of each block together."""
             wide = laid(values)
             return np.ascontiguousarray(wide.reshape(len(wide), -1, LANES).swapaxes(0, 1)).ravel()
 
@@ -189,7 +189,7 @@ class Wall:
     def _seen(self, at: np.ndarray, size: np.ndarray, mean: bool) -> tuple[np.ndarray, np.ndarray]:
         """Shape functions (t, N) and their slopes (1/m) at places −1 … 1 of elements of sizes (t,) m, or their means.
 
-        Slopes are those at least an arm inside. Their mean is zero where an element has itself as its neighbour.
+        Slopes are taken at least an arm inside. Their mean is zero where an element is its own neighbour.
         """
         rule = self.mesh.rule
         if mean:
@@ -207,7 +207,7 @@ class Wall:
 
 
 def _range(acts: np.ndarray, across: int) -> np.ndarray:
-    """First number and the end (e, 2) of the columns (across = 1) or rows (2) of acts (e, N, N) in which it is true."""
+    """First index and end (e, 2) of the columns (across = 1) or rows (2) of acts (e, N, N) in which it is true."""
     any_of = np.any(acts, axis=across)
     return np.stack([np.argmax(any_of, axis=1), acts.shape[1] - np.argmax(any_of[:, ::-1], axis=1)], axis=1)
 

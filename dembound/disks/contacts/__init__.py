@@ -1,1 +1,1 @@
-"""Pairs of disks: which are near, where kernels hold them, their constants, forces, breaks, and changes of law."""
+"""Pairs of disks: neighbour search, storage for kernels, constants, forces, breaks, and changes of law."""

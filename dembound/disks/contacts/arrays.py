@@ -29,7 +29,7 @@ class Pairs:
 
 
 class ContactHistory(NamedTuple):
-    """The history of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds."""
+    """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds."""
 
     state: np.ndarray
     shear: np.ndarray
@@ -42,8 +42,8 @@ class ContactHistory(NamedTuple):
 class Placed(NamedTuple):
     """Pairs in their places.
 
-    arrays, live, image : see `ContactList`. in_rows : (k,) places of those in rows of copies, ascending. strays : the
-    ends of others, see there; None without rows.
+    arrays, live, image : see `ContactList`. in_rows : (k,) places of pairs in rows of copies, ascending. strays : the
+    contact ends of all other pairs, see `PairList`; None without rows.
     """
 
     arrays: Contacts
@@ -56,7 +56,7 @@ class Placed(NamedTuple):
 def in_places(
     pairs: Pairs, history: ContactHistory, slot: np.ndarray, constants: np.ndarray, plan: PairPlan | None
 ) -> Placed:
-    """Give pairs their places, and list the contact ends of each particle.
+    """Assign places to pairs, and list the contact ends of each particle.
 
     slot : (m,) of each particle. constants : (p, 12) of the types of contacts. plan : rows of copies, whose places come
     first; None: there are none.
@@ -106,7 +106,7 @@ def in_places(
 
 
 def _ends_apart(owner: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Owners (k,) of ends (e,) from number `first` on, where each one's begin (k + 1,), and these ends."""
+    """Owners (k,) of ends (e,) from number `first` on, the offsets (k + 1,) of each owner's ends, and these ends."""
     others = end >= first
     order = np.lexsort((end[others], owner[others]))
     slot, start = np.unique(owner[others][order], return_index=True)

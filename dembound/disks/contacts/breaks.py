@@ -1,4 +1,4 @@
-"""The first bonds of disks that break, as numbers that are compared between runs."""
+"""The first bonds of disks that break, as numbers to compare between runs."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from dembound.motion.trackers import Run
 from dembound.table import EVERYWHERE, Box, is_within
 
 BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
-"""Names of what is found about the first broken bonds."""
+"""Names of the findings about the first broken bonds."""
 
 
 def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:

@@ -29,10 +29,10 @@ The list is renewed once a particle has moved by half of it.
 """
 
 _HISTORY = ("state", "shear", "slip", "closed", "cracked")
-"""The arrays of the pairs that are their history, in the order of `ContactHistory`."""
+"""The arrays of the pairs' history variables, in the order of `ContactHistory`."""
 
 _KEPT = ("first", "second", "contact_type", *_HISTORY)
-"""The arrays of the pairs, beside their forces, that memory() returns."""
+"""The arrays of the pairs, besides their forces, that memory() returns."""
 
 
 class ContactList(PairList):
@@ -49,15 +49,15 @@ class ContactList(PairList):
     begin : number of its first particle in the scene.
     held : first, second (k,) particles of the part and vectors (k, 2) m of pairs that stay listed at any distance.
     layout : the slots in which kernels hold the scene's particles; None: in their order. Nodes of continua, which
-        follow the particles, are not among them, as there may be fewer of these in a static stage.
+        follow the particles, are not among them, as a static stage may have fewer of them.
     plan : the rows of copies in which the part's particles are held, and their first block; None: one by one.
 
     Attributes
     ----------
-    Beside those of `PairList`:
+    In addition to those of `PairList`:
 
     limits : strengths and friction.
-    skin : m, gap up to which it is complete.
+    skin : m, gap up to which the list is complete.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
     """
@@ -104,7 +104,7 @@ class ContactList(PairList):
             self._list(pairs, ContactHistory(*(self.of(name) for name in _HISTORY)))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
-        """Set the pairs to the state of the elastic law at displacements (3, n), without any slip or with that kept."""
+        """Set the pairs to the state of the elastic law at displacements (3, n), with zero slip or the kept slip."""
         kernel.start_from_displacements(self.spread(displacement), self.arrays, self.keeps_slip)
 
     def use_elastic_law_with(self, slip: np.ndarray) -> None:
@@ -207,7 +207,7 @@ class ContactList(PairList):
         self._list(pairs, ContactHistory(*(other.of(name)[left] for name in ContactHistory._fields)))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
-        """Copy the history of each pair's twin from a free-field column settled alone, at displacements (3, n).
+        """Copy the history of each pair's twin from a settled free-field column, at displacements (3, n).
 
         twin : (m,) the column's particle for each of this list. Bonds that broke in the column count here as broken
         before the first step.
@@ -240,7 +240,7 @@ class ContactList(PairList):
         self.arrays.cracked[:] = -1
 
     def take_cracks(self) -> Cracks:
-        """The bonds that broke since this was last called."""
+        """The bonds that broke since the last call."""
         self.note_cracks()
         noted, self._cracks = self._cracks, []
         return joined(noted)
@@ -254,7 +254,7 @@ class ContactList(PairList):
         return self._counted(acting(self.arrays, geometry)[self.live])
 
     def memory(self) -> Arrays:
-        """The pairs with their history, and cracks not yet recorded."""
+        """The pairs with their history, and cracks not yet recorded, for a checkpoint."""
         self.note_cracks()
         memory = {name: self.of(name) for name in _KEPT} | {"force": self.force}
         memory |= {"image": self.image, "constants": self._constants, "origin": self.origin}
@@ -263,7 +263,7 @@ class ContactList(PairList):
         return memory | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         self._constants = memory["constants"]
         self._set_origin(memory["origin"][:, self._slot - self._slots.start])
         self.keeps_slip = bool(memory["keeps_slip"])

@@ -16,7 +16,7 @@ from dembound.kernels.contacts import INTACT, SHEAR, TENSION, UPDATED
 
 
 def never_elastic_again(case: DiskCase) -> str:
-    """Why no static stage of a case can be followed by the elastic law again; empty if its end decides."""
+    """Why no static stage of a case can be followed by the elastic law; empty if that depends on the settled state."""
     material = case.material
     if not LAWS[material.law].has_history:
         return f'material.law = "{material.law}" is used from the start'
@@ -30,7 +30,7 @@ def never_elastic_again(case: DiskCase) -> str:
 
 
 def elastic_again(parts: Collection[ContactList], datum: np.ndarray) -> str:
-    """Use the elastic law again, in all parts at rest at the datum (3, n); returns why not, empty if it is used."""
+    """Use the elastic law again in all parts at rest at the datum (3, n); returns why not, "" if it is used."""
     found = [(pairs, settled_slip(pairs, datum)) for pairs in parts]
     if reasons := [slip for _, slip in found if isinstance(slip, str)]:
         return reasons[0]
@@ -43,8 +43,10 @@ def elastic_again(parts: Collection[ContactList], datum: np.ndarray) -> str:
 def settled_slip(pairs: ContactList, displacement: np.ndarray) -> np.ndarray | str:
     """The slip, in the places of the pairs' `arrays`, with which the elastic law holds again at displacements (3, n).
 
-    The reason in words where it does not: a contact that was closed at the start is open or slides, one that was
-    open is closed, or a bond is broken. Where shear is counted along the path, its difference from that of small
+    Returns the reason in words where it does not hold: a contact that was closed at the start is open or slides, one
+    that
+    was open is closed, or a bond is broken. Where shear is counted along the path, its difference from the shear of
+    small
     displacements becomes slip.
     """
     state, own = pairs.of("state"), pairs.of("contact_type") < 2 * len(pairs.ground.brick.pairs)
@@ -64,5 +66,5 @@ def settled_slip(pairs: ContactList, displacement: np.ndarray) -> np.ndarray | s
 
 
 def settled_refused(reason: str) -> tuple[str, ...]:
-    """The line of a run that asks for `reduce.settled` in vain, for a reason; none without a reason."""
+    """The line on why a requested `reduce.settled` is not applied; empty without a reason."""
     return (f"reduce.settled: not applied: {reason}",) if reason else ()

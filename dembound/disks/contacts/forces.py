@@ -18,7 +18,7 @@ UNYIELDING = Limits(friction=0.0, tension=np.inf, cohesion=np.inf, tan_fa=0.0, g
 
 
 class Piece(NamedTuple):
-    """Some pairs of a list, with k pairs.
+    """k pairs of a list.
 
     first, second : (k,) particles, numbered as in the scene. bonded : (k,) bool. acting : (k,) bool, see `acting`.
     vector : (2, k) m from the centre of the first to that of the second, or of its image across a periodic side. near :
@@ -98,13 +98,13 @@ def contact_columns(found: Iterator[Piece]) -> dict[str, tuple[np.ndarray, str]]
 
 
 def _acting_ones(piece: Piece) -> tuple[np.ndarray, ...]:
-    """First, second, bonded, vector and force of the pairs that act."""
+    """First, second, bonded, vector and force of the acting pairs."""
     columns = (piece.first, piece.second, piece.bonded, piece.vector, piece.force)
     return tuple(column[..., piece.acting] for column in columns)
 
 
 def _cut(contacts: Contacts, piece: slice) -> Contacts:
-    """Some of the pairs, without the rows of contact ends."""
+    """A slice of the pairs, without the rows of contact ends."""
     names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place")
     columns = {name: getattr(contacts, name)[piece] for name in names}
     return contacts._replace(**columns, force=contacts.force[:, piece])

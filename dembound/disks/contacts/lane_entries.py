@@ -1,4 +1,4 @@
-"""Contacts between rows of copies: what they have in common, as entries of the rows, and what is left over."""
+"""Contacts between rows of copies: common ones as entries of the rows, and the remaining contact ends."""
 
 from dataclasses import dataclass
 
@@ -9,14 +9,14 @@ from dembound.kernels.lanes import LANES
 from dembound.packings.tiling import Assembly
 
 ROUNDS = 6
-"""How many lists of contacts of one kind, with different ways between their slots, are tried for a row."""
+"""Number of candidate shifts between slots tried for the contacts of one row and type."""
 
 STRAY_COST, BLOCK_COST, SKIP_COST = 30.0, 10.0, 2.0
 """Cycles for a contact end on its own, for eight at once, and for eight of which none exists; they decide nothing but
 speed."""
 
 AT_ONCE = 1 << 20
-"""Contact ends whose bits are set at once, which limits the memory that takes."""
+"""Contact ends whose bits are set at once, which limits the RAM for it."""
 
 BITS = np.unpackbits(np.arange(256, dtype=np.uint8)[:, None], axis=1).sum(axis=1)
 """Number of bits in each byte."""
@@ -45,13 +45,13 @@ class Ends:
         )
 
     def at(self, chosen: np.ndarray) -> "Ends":
-        """The chosen ones."""
+        """The chosen ends."""
         return Ends(self.slot[chosen], self.other[chosen], self.line[chosen], self.lines)
 
 
 @dataclass(frozen=True, eq=False)
 class Entries:
-    """Contacts that many disks of a row have: row, line, shift (slots to the neighbour) and mask (k,), masks (m,)."""
+    """Contacts shared by many disks of a row: row, line, shift (slots to the neighbour) and mask (k,), masks (m,)."""
 
     row: np.ndarray
     line: np.ndarray
@@ -85,9 +85,9 @@ def _joined(lists: list[Entries]) -> Entries:
 
 
 def _take_most(ends: Ends, plan: RowPlan) -> tuple[Entries, Ends]:
-    """One entry for each row and line, of the ends whose neighbour is as many slots away; and the ends left over.
+    """One entry per row and line, of the ends whose neighbour is at one shift of slots; and the remaining ends.
 
-    Which distance is tried is that of the last end listed. Entries that are not worth a mask are given up as a whole.
+    The shift tried is that of the last end listed. Ends of entries that are not worth a mask remain.
     """
     row_of_block, column_of_block, group = plan.row_of_block, plan.column_of_block, plan.group
     # a line belongs to one disk of the brick, so line and group determine the row

@@ -56,10 +56,10 @@ def lane_rows(
 
 
 def matrices(table: np.ndarray) -> np.ndarray:
-    """Constants (p, 11) of rows (p, 6) of elastic.py: what a contact does as a matrix.
+    """Constants (p, 11) of contacts as matrices, from rows (p, 6) of elastic.py.
 
-    Of the force on i by Δx, Δy of j relative to i and by θ_j: [xx, xy, yy, xθ, yθ], of the moment [θx, θy, θθ], and
-    what θ_i adds to force and moment, [x, y, θ].
+    Force on i by Δx, Δy of j relative to i and by θ_j: [xx, xy, yy, xθ, yθ], its moment by these [θx, θy, θθ], and
+    force and moment by θ_i, [x, y, θ].
     """
     x, y, ratio, arm_i, arm_j, bending = table.T
     across, up = -ratio * y, ratio * x  # √k_s t
@@ -82,7 +82,7 @@ def matrices(table: np.ndarray) -> np.ndarray:
 
 
 def _strays(ends: Ends, begin: int) -> dict[str, np.ndarray]:
-    """The ends that are in no entry, by their owners, see `LaneRows`."""
+    """The contact ends that are in no entry, by their owners, see `LaneRows`."""
     ends = ends.at(np.lexsort((ends.other, ends.line, ends.slot)))
     slot, start = np.unique(ends.slot, return_index=True)
     return {

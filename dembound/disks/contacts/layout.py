@@ -1,4 +1,4 @@
-"""How the disks of a scene stand in memory, and the contacts of the elastic law that go with it."""
+"""The order of a scene's disks in RAM, and the contacts of the elastic law in that order."""
 
 from collections.abc import Mapping
 
@@ -23,9 +23,9 @@ Rows = NeighbourTable | LaneRows
 def lay_out(
     assembly: Assembly, ground: PackedMaterial, parts: Mapping[str, slice], fraction: np.ndarray
 ) -> tuple[Layout, tuple[Rows, ...]]:
-    """Where the disks of a scene stand, and the contacts of each part between them.
+    """The slots of the disks of a scene, and the contacts of each part between them.
 
-    A part of many copies of the brick stands in rows of copies (lane_rows.py); one of few keeps its order.
+    A part of many copies of the brick is held in rows of copies (lane_rows.py); one of few keeps its order.
     parts : their disks, in order; fraction : (n,) of its mass that each disk has.
     """
     each = [assembly.part(disks) for disks in parts.values()]
@@ -59,12 +59,12 @@ def _plan(part: Assembly) -> RowPlan | None:
 
 
 def with_supports(rows: Rows, slots: np.ndarray) -> Rows:
-    """These contacts where the disks in some slots (k,) are supported."""
+    """The contacts with the disks in some slots (k,) marked as supported."""
     return rows if isinstance(rows, NeighbourTable) else with_special(rows, slots)
 
 
 def with_special(rows: LaneRows, slots: np.ndarray) -> LaneRows:
-    """These rows with special blocks where some slots (k,) are."""
+    """The rows with the blocks of some slots (k,) marked as special."""
     special = rows.special.copy()
     blocks = np.unique(slots // LANES)
     special[blocks[blocks < len(special)]] = True

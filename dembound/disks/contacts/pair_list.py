@@ -20,9 +20,9 @@ class PairList:
     Attributes
     ----------
     arrays : the pairs for the kernels, by slots. In rows of copies some places hold no pair; these have no stiffness.
-    live : (b,) the places of the pairs in `arrays`, ascending; `pairs`, `image` and `of` have these alone.
+    live : (b,) the places of the pairs in `arrays`, ascending; `pairs`, `image` and `of` contain only these.
     rows : the pairs in rows of copies, which come first in `arrays`; None: there are none. With rows, strays : slots of
-        the disks (k,) that have ends of other pairs, where each one's begin (k + 1,), and these ends (e,); extra :
+        the disks (k,) with ends of other pairs, offsets (k + 1,) of each one's ends, and these ends (e,); extra :
         (3, slots) work space of the kernels.
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     cells : of the particles there.
@@ -45,7 +45,7 @@ class PairList:
         self.rows: PairRows | None = None
 
     def spread(self, displacement: np.ndarray) -> np.ndarray:
-        """Displacements (3, n) of all nodes as those (3, slots) of the particles."""
+        """Displacements (3, n) of all nodes, reordered by slots of the particles (3, slots)."""
         return self.layout.spread(displacement[:, : len(self.layout.slot)])
 
     @property
@@ -55,7 +55,7 @@ class PairList:
         return node[self.of("first")] - begin, node[self.of("second")] - begin
 
     def of(self, name: str) -> np.ndarray:
-        """A column of `arrays` for the pairs alone, (b,) or (b, …)."""
+        """A column of `arrays` for the live pairs, (b,) or (b, …)."""
         return getattr(self.arrays, name)[self.live]
 
     @property
@@ -88,7 +88,7 @@ class PairList:
         return np.bincount(ends, minlength=len(self.assembly.radii))
 
     def _set_origin(self, displacement: np.ndarray) -> None:
-        """Count from displacements (2, m) m of the part's particles."""
+        """Store the displacements (2, m) m from which later motion is counted."""
         self.origin = np.zeros((2, self._slots.stop - self._slots.start))
         slot = self._slot - self._slots.start
         self.origin[:, slot] = displacement

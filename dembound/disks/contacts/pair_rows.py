@@ -120,9 +120,9 @@ class PairPlan:
         )
 
     def _masks(self, group: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Which columns and lanes of second disks have their pair within the rows: where its bytes begin, the bytes.
+        """Offsets and bytes of masks of columns and lanes whose second disk has its pair within the rows.
 
-        −1 : the pair is in the same column and lane. group (q,) of each row of pairs.
+        Offset −1 : the pair is in the same column and lane. group (q,) of each row of pairs.
         """
         apart = (self.step_column != 0) | (self.step_lane != 0)
         mask, masks, begin = np.full(len(group), -1), [np.zeros(0, np.uint8)], 0

@@ -1,4 +1,4 @@
-"""Rows of the copies of each disk of the brick: where they stand in groups, columns of eight copies, and lanes."""
+"""Rows of the copies of each disk of the brick: their groups, columns of eight copies, and lanes."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,13 @@ from dembound.kernels.lanes import LANES
 from dembound.packings.tiling import Assembly
 
 WASTE = 1.04
-"""What whole lengths of the shorter side for each lane may cost in blocks; masks are then the same for all lanes."""
+"""Largest relative increase in blocks for lanes of whole lengths of the shorter side; masks are then equal in all
+lanes."""
 
 
 @dataclass(frozen=True, eq=False)
 class RowPlan:
-    """Where the disks of an assembly stand: r rows of copies in g groups, each with as many columns of eight copies.
+    """The places of the disks of an assembly: r rows of copies in g groups, each with as many columns of eight copies.
 
     row (n,) row of each disk; column, lane (n,) its place there. group_row (g + 1,) the rows of each group, columns
     (g,) its columns, group_block (g + 1,) its blocks from 0 on, column by column, in each one block for every row.
@@ -28,31 +29,31 @@ class RowPlan:
 
     @property
     def group(self) -> np.ndarray:
-        """(r,) group of each row."""
+        """Group (r,) of each row."""
         return np.repeat(np.arange(len(self.columns)), np.diff(self.group_row))
 
     @property
     def block(self) -> np.ndarray:
-        """(n,) block of each disk."""
+        """Block (n,) of each disk."""
         group = self.group[self.row]
         rows = np.diff(self.group_row)[group]
         return self.group_block[group] + self.column * rows + self.row - self.group_row[group]
 
     @property
     def row_of_block(self) -> np.ndarray:
-        """(blocks,) row of the disks in each block."""
+        """Row (blocks,) of the disks in each block."""
         rows = np.split(np.arange(self.group_row[-1]), self.group_row[1:-1])
         return np.concatenate([np.tile(each, columns) for each, columns in zip(rows, self.columns, strict=True)])
 
     @property
     def column_of_block(self) -> np.ndarray:
-        """(blocks,) column of each block in its group."""
+        """Column (blocks,) of each block in its group."""
         rows = np.diff(self.group_row)
         return np.concatenate([np.repeat(np.arange(c), r) for c, r in zip(self.columns, rows, strict=True)])
 
     @property
     def slot(self) -> np.ndarray:
-        """(n,) slot of each disk, from 0 on."""
+        """Slot (n,) of each disk, from 0 on."""
         return LANES * self.block + self.lane
 
 
@@ -86,7 +87,7 @@ def plan_rows(assembly: Assembly) -> RowPlan:
 
 
 def columns_of(short: int, long: int) -> int:
-    """Columns for so many copies along the shorter and the longer side."""
+    """Number of columns for `short` × `long` copies along the two sides."""
     least = -(-short * long // LANES)
     even = -(-long // LANES) * short
     return even if even <= WASTE * least else least

@@ -1,1 +1,1 @@
-"""The ground as a continuum: what a brick's springs and disks amount to, and the waves in it."""
+"""The ground as a continuum: the homogenised stiffness of a brick, and the waves in it."""

@@ -1,16 +1,16 @@
-"""What copies of a random brick send back of plane waves, which the equivalent continuum does not.
+"""Reflection of plane waves by copies of a random brick, which the equivalent continuum does not have.
 
 The stiffness varies within a random brick, and alike in all copies. Waves along an axis with half lengths that are the
-brick's length L over a whole number m are sent back by all copies in step (Bragg's law). The two waves of opposite
+brick's length L over a whole number m are reflected by all copies in step (Bragg's law). The two waves of opposite
 directions, exp(±ikx) with k = mπ/L, are coupled. For given amplitudes a of them, and of all longer waves that copies
 couple to them, the brick has the least energy if everything else relaxes as at rest:
 
     ω² N a = N F⁻¹ N a,    N = Pᴴ M P,    F = Pᴴ M K(k)⁻¹ M P,
 
 where the columns of P are unit translations along x and y with the phases of the waves, and K(k) is the stiffness of
-the brick beside copies that move as it does, with the phase of k. If V is what the one wave contributes to ω² of the
+the brick beside copies with the same motion and the phase of k. If V is the contribution of one wave to ω² of the
 other, κ = kV/2ω² is their coupling per length. By the equations of coupled waves (Yariv 1973, IEEE J. Quantum Electron.
-9, 919) a length l of copies sends back tanh²(κl) of the energy at Bragg's frequency, and over all frequencies, ∫|r|²df,
+9, 919) a length l of copies reflects tanh²(κl) of the energy at Bragg's frequency, and over all frequencies, ∫|r|²df,
 as much as a band ½cκ·tanh(κl) Hz wide has.
 """
 
@@ -28,22 +28,23 @@ from dembound.outside import choice
 from dembound.outside.choice import Signal
 
 FAINT = 1e-6
-"""Part of ω² by which everything is held, as copies that all move alike do so without resistance."""
+"""Part of ω² by which everything is held, as a common motion of all copies meets no resistance."""
 
 ROUNDING = 1e-9
-"""Part by which lengths of waves that are the same may differ."""
+"""Relative difference up to which wave lengths count as equal."""
 
 LEFT_OUT = 1e-4
-"""Share of the energy above the highest frequency that is looked at; copies send back some per cent of it."""
+"""Share of the energy above the highest frequency considered; copies reflect some per cent of it."""
 
 MOST_DISKS = 5_000
-"""In a brick for which this is computed: each coupling takes a solve for three unknowns per disk, here some 0.3 s."""
+"""Most disks of a brick for which this is computed: each coupling takes a solve for three unknowns per disk, some 0.3
+s."""
 
 
 class Coupling(NamedTuple):
-    """How the slower wave along an axis couples with that in the opposite direction.
+    """Coupling of the slower wave along an axis to the wave in the opposite direction.
 
-    wavenumber : k, rad/m. frequency : at which copies send it back in step, Hz. per_length : κ, 1/m.
+    wavenumber : k, rad/m. frequency : Hz, at which copies reflect it in step. per_length : κ, 1/m.
     """
 
     wavenumber: float
@@ -51,13 +52,13 @@ class Coupling(NamedTuple):
     per_length: float
 
     def band(self, length: float) -> float:
-        """Width (Hz) of a band whose energy is that which a length (m) of copies sends back."""
+        """Width (Hz) of a band whose energy equals the energy reflected by a length (m) of copies."""
         speed = 2.0 * math.pi * self.frequency / self.wavenumber
         return 0.5 * speed * self.per_length * math.tanh(self.per_length * length)
 
 
 def coupling(ground: PackedMaterial, axis: int, number: int) -> Coupling:
-    """Coupling of the wave along an axis (0 x, 1 y) of which so many half lengths are as long as the brick."""
+    """Coupling of the wave along an axis (0 x, 1 y) with `number` half lengths in the brick."""
     from scipy.sparse import diags
     from scipy.sparse.linalg import splu
 
@@ -85,7 +86,7 @@ def coupling(ground: PackedMaterial, axis: int, number: int) -> Coupling:
 
 
 def _coupled(axis: int, number: int, size: np.ndarray) -> np.ndarray:
-    """Wave vectors (w, 2) rad/m that copies couple to k and that are not longer; the first is k, the second −k."""
+    """Wave vectors (w, 2) rad/m, not longer than k, that copies couple to k; the first is k, the second −k."""
     k = number * math.pi / size[axis] * np.eye(2)[axis]
     most = number * np.where(np.arange(2) == axis, 1.0, np.ceil(0.5 * size / size[axis])).astype(int)
     counts = np.mgrid[-most[0] : most[0] + 1, -most[1] : most[1] + 1].reshape(2, -1).T
@@ -98,9 +99,9 @@ def _coupled(axis: int, number: int, size: np.ndarray) -> np.ndarray:
 def sent_back(
     ground: PackedMaterial, signals: Sequence[Signal], lengths: Sequence[float], axes: Sequence[int]
 ) -> float:
-    """RMS over the energy of velocities of what copies send back of signals, of the worst one.
+    """Energy of velocities reflected by copies, RMS over RMS, of the signal with the largest.
 
-    lengths : of the ground along x and y, m. axes : along which waves run, of which it is the mean.
+    lengths : of the ground along x and y, m. axes : along which waves run; the mean over them is returned.
     """
     shares = np.zeros(len(signals))
     cutoff = max(choice.cutoff(signal, LEFT_OUT) for signal in signals)

@@ -21,7 +21,7 @@ def strength_of(material: Material) -> Limits:
 
 
 def limits_of(material: Material) -> Limits:
-    """Limits of contacts as their law has them; bonds without limits for a law without history."""
+    """Limits of contacts under their law; infinite for bonds under a law that is not history-dependent."""
     strength = strength_of(material)
     if not LAWS[material.law].has_history:
         return strength._replace(tension=np.inf, cohesion=np.inf)
@@ -29,7 +29,7 @@ def limits_of(material: Material) -> Limits:
 
 
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
-    """Constants (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
+    """Constants (2b, 12) of the brick's contacts, followed by the same with half their stiffness, for half cells.
 
     Arguments as for `pair_constants`.
     """
@@ -51,7 +51,7 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
 
 
 def shared_constants(constants: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Constants (p, 12) of pairs, equal rows (to rounding) only once, and the row of each pair (b,).
+    """Distinct rows (p, 12) of the constants of pairs, to rounding, and the row of each pair (b,).
 
     Pairs at the same place of different bricks then share a row; length (m) is the scale for rounding errors.
     """

@@ -23,14 +23,14 @@ from dembound.packings.tiling import tile
 from dembound.table import Box
 
 SLENDER = 2.0
-"""Least height of the strip over its width, so that its surfaces are apart: what one surface changes decays with the
-depth y at least as exp(−2πy/width)."""
+"""Least height of the strip over its width, so that its two surfaces do not interact: effects of a surface decay with
+the depth y at least as exp(−2πy/width)."""
 
 FAINT = 1e-9
 """Springs against single motions, see `Network.relaxed`: without bonds a disk at a surface may have one contact."""
 
 LEAST_MASS = 0.5
-"""Part of its medium's mass that a node keeps where a skin is stiff, of negative depth."""
+"""Least mass of a node, over that of its medium, where a skin is stiff, of negative depth."""
 
 TURNED = [1, 0, 3, 2]
 """The gradients xx, yy, xy, yx where x and y are exchanged."""
@@ -83,11 +83,10 @@ def inset(box: Box, skins: Mapping[str, float]) -> Box:
 
 
 def mass_of(skins: Mapping[str, float | np.ndarray], mesh: Mesh, density: float) -> np.ndarray:
-    """Mass ρδ (n,) kg of skins on the nodes of a mesh's outer edges: side -> depth (m), of this density (kg/m³).
+    """Mass ρδ (n,) kg of skins on the nodes of a mesh's outer edges.
 
-    The depth is that everywhere or at each node (n,).
-
-    Where the skin is stiff, nodes keep half their mass; only elements smaller than some two diameters are that light.
+    skins : side -> depth (m), uniform or per node (n,). density : kg/m³. Where the skin is stiff, nodes keep half their
+    mass; only elements smaller than some two diameters are that light.
     """
     added = sum((depth * density * edge_lengths(mesh, side) for side, depth in skins.items()), np.zeros(mesh.count))
     return np.maximum(added, (LEAST_MASS - 1.0) * density * mesh.areas)
@@ -96,7 +95,7 @@ def mass_of(skins: Mapping[str, float | np.ndarray], mesh: Mesh, density: float)
 def _curved(network: Network, positions: np.ndarray, middle: float) -> np.ndarray:
     """Elongations (3b,) per unit curvature of a beam, u_x = x(y − middle), u_y = −½x², θ = −x.
 
-    Those of a contact are taken about its own middle, as a rotation of both disks does not strain it.
+    Taken about the middle of each contact, as a rotation of both disks does not strain it.
     """
     c, s = network.directions
     dx, dy = network.vectors.T
@@ -106,7 +105,7 @@ def _curved(network: Network, positions: np.ndarray, middle: float) -> np.ndarra
 
 
 def _along(tensor: np.ndarray) -> float:
-    """Modulus (Pa) along x without stress across it, of a stiffness (4, 4): C11 less what relaxing ε_yy and γ takes."""
+    """Modulus (Pa) along x without stress across it, of a stiffness (4, 4): C11 less the relaxation of ε_yy and γ."""
     across = np.ix_([1, 2], [1, 2])
     coupling = tensor[0, [1, 2]]
     return float(tensor[0, 0] - coupling @ np.linalg.solve(tensor[across], coupling))

@@ -1,4 +1,4 @@
-"""The continuum that a periodic brick is equivalent to, from one linear solve.
+"""The continuum equivalent to a periodic brick, from one linear solve.
 
 The brick is strained by each unit mean displacement gradient in turn while its particles relax periodically: the energy
 ½ Σ k e² of all elongations e is minimised over the particles' motions beyond the mean gradient, the correctors χ.
@@ -38,7 +38,7 @@ class Network(NamedTuple):
 
     @classmethod
     def of_assembly(cls, brick: Brick, stiffness: Stiffness, assembly: Assembly) -> Network:
-        """Copies of a brick."""
+        """The network of an assembly of copies of a brick."""
         of = assembly.contact_type
         return cls(len(assembly.radii), assembly.pairs, brick.vectors[of], stiffness.of(of))
 
@@ -118,7 +118,7 @@ class Network(NamedTuple):
 
 @dataclass(frozen=True)
 class HomogenisedMaterial:
-    """The continuum that a brick is equivalent to.
+    """The continuum equivalent to a brick.
 
     Attributes
     ----------

@@ -13,9 +13,10 @@ LEVEL = 1e-6
 def with_images(ground: PackedMaterial, axis: int, diameters: np.ndarray) -> Stiffness:
     """Constants of the contacts of disks (k,) with their images beyond a side, of diameters (k,) m.
 
-    axis : of the side's normal. Disks are as far from their images as bricks side by side have equal disks straight
-    across the side, so that a lattice continues with its own contacts, touching or across a gap. Where a brick has none
-    such, disks touch their images.
+    axis : of the side's normal. The distance of a disk from its image is that of equal disks straight across the side
+    between bricks side by side, so that a lattice continues with its own contacts, touching or across a gap. Where a
+    brick
+    has no such disks, disks touch their images.
     """
     sizes, which = np.unique(diameters, return_inverse=True)
     distances = np.array([_distance(ground.brick, axis, size) for size in sizes.tolist()])[which]

@@ -25,7 +25,7 @@ LARGEST_OVERLAP = 0.1
 """Largest locked-in pressure over the contact modulus: the largest pressure at which bricks are packed."""
 
 NO_STIFFNESS = 1e-9
-"""Stiffness over the largest one below which no wave runs: rounding of the homogenised one leaves some 1e-13."""
+"""Stiffness over the largest one below which no wave runs: rounding in homogenisation leaves some 1e-13."""
 
 AXES = {"x": 0, "y": 1, "rotation": 2}
 
@@ -98,7 +98,7 @@ class PackedMaterial:
 
     @property
     def continuum(self) -> HomogenisedMaterial:
-        """The continuum that the brick is equivalent to, with both translations free."""
+        """The continuum equivalent to the brick, with both translations free."""
         return self._continuum(tuple(component for component in self.held if component == 2))
 
     def skin(self, side: str) -> float:
@@ -109,9 +109,9 @@ class PackedMaterial:
         return self._skins[axis][last]
 
     def cut(self, height: float) -> tuple[float, float]:
-        """Where the mass of the packing and where its continuum end below a cut at a height, m above the brick's edge.
+        """Heights at which the packing's mass and its continuum end below a cut at a height, m above the brick's edge.
 
-        Both are m above the cut, the second usually negative: see `Brick.mass_offset` and `skin_depths`.
+        Both in m above the cut, the second usually negative: see `Brick.mass_offset` and `skin_depths`.
         """
         height %= float(self.brick.size[1])
         if height not in self._cuts:

@@ -1,4 +1,4 @@
-"""How far waves in a packing can have come at a time: speed of the fastest waves, and the precursors ahead of them."""
+"""The front of waves in a packing: speed of the fastest waves, and the precursors ahead of them."""
 
 from functools import lru_cache
 

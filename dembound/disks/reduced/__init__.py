@@ -1,1 +1,1 @@
-"""A smaller scene stepped in place of a case: one row of identical ones."""
+"""A smaller scene stepped in place of a case: one of several identical rows."""

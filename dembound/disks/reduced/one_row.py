@@ -23,7 +23,7 @@ class OneRow(DiskScene):
     ----------
     of : the scene of the case.
     axis : the axis across the row.
-    like : (n,) the disk that moves like each disk of the scene of the case.
+    like : (n,) the disk of the row that moves like each disk of the case's scene.
     load : (3, m) N and N·m, steady forces and moments.
     """
 
@@ -34,7 +34,7 @@ class OneRow(DiskScene):
 
     @property
     def probes(self) -> np.ndarray:
-        """(p,) disks whose motion is recorded, in place of those of the scene of the case."""
+        """Disks (p,) whose motion is recorded, in place of the probes of the case's scene."""
         return self.like[self.of.probes]
 
     def observed(self, record: np.ndarray, times: np.ndarray) -> np.ndarray:
@@ -48,22 +48,22 @@ class OneRow(DiskScene):
 
     @property
     def uniform_axes(self) -> tuple[int, ...]:
-        """The axis along which all of the scene of the case moves alike."""
+        """The axis along which the motion of the case's scene does not vary."""
         return (self.axis,)
 
     @property
     def reduced(self) -> tuple[str, ...]:
-        """Number of rows, and of disks that need not be stepped."""
+        """Text with the number of rows, and of disks that need not be stepped."""
         rows = self.of.assembly.copies[self.axis]
         return (f"rows: {rows:,} identical rows are stepped as one, {self.count:,} of {self.of.count:,} disks",)
 
     @cached_property
     def weight(self) -> float:  # type: ignore[override]  # 1 for other scenes
-        """Mass of the scene of the case over its own."""
+        """Mass of the case's scene over the mass of the row."""
         return float(self.of.mass.sum() / self.mass.sum())
 
     def widened(self, name: str, values: np.ndarray) -> np.ndarray:
-        """Values (m, …) of its disks as those of all disks of the case; name : of the quantity."""
+        """Values (m, …) of the row's disks, expanded to all disks of the case; name : of the quantity."""
         return values[self.like]
 
     def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:
@@ -72,17 +72,17 @@ class OneRow(DiskScene):
 
     @cached_property
     def steady_load(self) -> np.ndarray:
-        """(3, m) forces and moments (N, N·m) of the loads without a wave."""
+        """Forces and moments (3, m) N, N·m of the loads without a wave."""
         return self.load
 
     @cached_property
     def tracked(self) -> np.ndarray:
-        """(q,) those that move like any disk of a side of the whole scene."""
+        """Disks (q,) that move like any disk of a side of the whole scene."""
         return np.unique(self.like[self.of.tracked])
 
     @property
     def largest_memory(self) -> float:
-        """Largest memory (bytes) of a run of it, in which the scene of the case is kept."""
+        """Largest RAM (bytes) of a run of the row, with the case's scene kept."""
         return run_bytes(self.case, [self.of.sizes, self.sizes])
 
 
@@ -126,7 +126,7 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
 
 
 def _counterparts(assembly: Assembly, row: Assembly, axis: int) -> np.ndarray | None:
-    """For each disk (n,) the row's disk that is a copy of the same one in its brick; None if any disk has none."""
+    """For each disk (n,) the row's disk that is a copy of the same brick disk; None if any disk has none."""
     along, kinds = 1 - axis, int(assembly.brick_particle.max()) + 1
     requested, there = (each.tile[:, along].astype(np.int64) * kinds + each.brick_particle for each in (assembly, row))
     order = np.argsort(there)
@@ -135,9 +135,9 @@ def _counterparts(assembly: Assembly, row: Assembly, axis: int) -> np.ndarray | 
 
 
 def _supports_at(place: np.ndarray, table: Supports, share: np.ndarray) -> Supports:
-    """The support table of some nodes, place (m,), numbered in this order.
+    """The support table of the nodes `place` (m,), numbered in this order.
 
-    share : (m,) factors of the forces on them, those of their masses.
+    share : (m,) factors of the forces on them, equal to those of their masses.
     """
     order = np.argsort(place)
     near = order[np.searchsorted(place, table.node, sorter=order).clip(max=len(order) - 1)]

@@ -3,7 +3,7 @@
 The rows of a scene move identically if two conditions hold. From rest, with identical rows, everything that acts from
 outside accelerates all rows equally; and a motion that is the same in all rows leads to accelerations that are the
 same in all rows. Both are linear in drives, velocities and displacements, and are checked on the assembled scene: a
-random motion of one row, repeated in all of them, must cause the accelerations that the row alone has. An error of any
+random motion of one row, repeated in all of them, must cause the accelerations of the row by itself. An error of any
 contact or support would change them, as no motion of random numbers is orthogonal to it.
 
 Only components that move count. They are found in the same way: those that are driven, and those on which motions of
@@ -35,7 +35,7 @@ ALL = slice(None)
 def reduced(scene: DiskScene) -> Reduction[DiskScene]:
     """One of the rows of a scene if all move identically, otherwise the scene itself.
 
-    Why the elastic law can never follow on a static stage is returned where the case asks for it.
+    With a requested `reduce.settled`, also why the elastic law can never follow on a static stage.
     """
     case = scene.case
     refused = settled_refused(never_elastic_again(case)) if case.reduce.settled else ()
@@ -46,8 +46,9 @@ def reduced(scene: DiskScene) -> Reduction[DiskScene]:
 def identical_row(scene: DiskScene) -> OneRow | None:
     """One of the identical rows of a scene, along the axis with fewer rows if both have some; None if it has none.
 
-    Only under the elastic law, without a load factor, which is the least of all contacts, without a static stage, a
-    free-field column and a continuum.
+    Only under the elastic law, without a load factor (the least of all contacts), a static stage, a free-field column
+    and a
+    continuum.
     """
     case = scene.case
     apart = scene.has_history or case.output.load_factor or case.static is not None
@@ -74,13 +75,13 @@ def moves_as_all(row: OneRow) -> bool:
 
 
 def _same_outside(row: OneRow, components: np.ndarray) -> bool:
-    """Whether all that acts from outside on components (3,) bool is the same on a disk as on the one of the row."""
+    """Whether everything from outside acts equally, in components (3,) bool, on each disk and on its row's disk."""
     pairs = zip(_from_outside(row.of), _from_outside(row), strict=True)
     return all(_are_alike(row, whole, own, components) for whole, own in pairs)
 
 
 def _are_alike(row: OneRow, of_whole: np.ndarray, of_row: np.ndarray, components: np.ndarray | slice = ALL) -> bool:
-    """Whether values (3, n) of the scene are those (3, m) of the row, in some components (3,) bool."""
+    """Whether values (3, n) of the scene equal those (3, m) of the row, in some components (3,) bool."""
     expected = of_row[components][:, row.like]
     largest = np.abs(of_whole[components]).max(initial=0.0)
     return bool((np.abs(of_whole[components] - expected) <= ROUNDING * largest).all())
@@ -99,7 +100,7 @@ def _motions(row: OneRow) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
 
 
 def _random(row: OneRow, moves: np.ndarray) -> np.ndarray:
-    """Random displacements (3, m) in the components that move, of surfaces for rotations: m and rad."""
+    """Random displacements (3, m), in m and, for rotations, radius × rad, in the components that move."""
     displacement = np.random.default_rng(0).standard_normal((3, row.count)) * moves[:, None]
     displacement[2] /= row.assembly.radii
     return displacement
@@ -123,14 +124,14 @@ def _accelerations(scene: DiskScene, displacement: np.ndarray) -> np.ndarray:
 
 
 def _inertia(scene: DiskScene) -> np.ndarray:
-    """(3, n) kg and kg·m²."""
+    """Masses and moments of inertia (3, n) kg and kg·m²."""
     return np.stack([scene.mass, scene.mass, scene.inertia])
 
 
 def _from_outside(scene: DiskScene) -> Iterator[np.ndarray]:
-    """Everything that acts on each component (3, n), by unit of mass: loads, held and driven disks, dashpots, drives.
+    """Everything that acts on each component (3, n) from outside, per unit mass: loads, supports, drives by signal.
 
-    Drives by signal; where velocities are prescribed they are velocities. Equal signals count as one.
+    Where velocities are prescribed drives are velocities. Equal signals count as one.
     """
     table, inertia = scene.supports, _inertia(scene)
     yield scene.steady_load / inertia

@@ -1,4 +1,4 @@
-"""What a side sends back of the waves that reach it, on the packing of a case: measured without a run."""
+"""Reflection of waves by a side, on the packing of a case, without a run."""
 
 from __future__ import annotations
 
@@ -40,11 +40,14 @@ ROUNDING = 1e-9
 class Measured:
     """Reflections of a side of a case.
 
-    side, type : of the side. found : the reflections. matched : the same with matched factors; None for sides without
-    factors, or with these. continuum : the same, with the number of nodes, if the side and all that absorb were of type
-    "outside"; None where they cannot be, and beside a body that is periodic and narrow only for the angle 0. arrivals :
-    what reaches the side. gaps : Hz, the lowest at which copies of the brick send waves of a type back by themselves,
-    c/2L for bricks of length L along the normal.
+    side, type : of the side. found : the reflections. matched : reflections with matched factors; None for sides
+    without
+    factors, or with matched ones. continuum : reflections, with the number of nodes, if the side and all absorbing
+    sides
+    were of type "outside"; None where they cannot be, and beside a narrow periodic body only for the angle 0. arrivals
+    :
+    waves that reach the side. gaps : Hz, the lowest frequency at which copies of the brick reflect waves of a type
+    themselves, c/2L for bricks of length L along the normal.
     """
 
     side: str
@@ -73,14 +76,14 @@ def measure_side(
     *,
     quick: bool = False,
 ) -> Measured:
-    """Measure what a side of a case sends back.
+    """Measure the reflection of a side of a case.
 
-    angles : degrees from the normal, below 90. frequencies : Hz, or how many of those of the case. report : receives
-    every frequency (Hz) before it is computed. quick : instead of disks by the equivalent continuum, without an outside
-    beside it, see smeared.py.
+    angles : degrees from the normal, below 90. frequencies : Hz, or the number of frequencies of the case. report :
+    receives every frequency (Hz) before it is computed. quick : by the equivalent continuum instead of disks, without a
+    comparison with type "outside", see smeared.py.
 
     Raises CaseError for a law of no linear medium, for a periodic side, for a quick answer about an outside, and for
-    angles and frequencies that are none.
+    invalid angles and frequencies.
     """
     problems = [f"--angle: is {a:g}, must be at least 0 and below 90 (degrees)" for a in angles if not 0.0 <= a < 90.0]
     if not isinstance(frequencies, int):
@@ -129,7 +132,7 @@ def _of_continuum(
     angles: Sequence[float],
     report: Report | None,
 ) -> list[Reflections]:
-    """Reflections by the continuum of a scene, beside a narrow body along the normal alone."""
+    """Reflections by the continuum of a scene; beside a narrow body along the normal only."""
     chosen = [0.0] if _is_narrow(scene) else angles
     return beyond(scene, side, time_step).measure(frequencies, chosen, report=report)
 
@@ -156,7 +159,7 @@ def _matched(scene: DiskScene, side: str) -> DiskScene:
 
 
 def _as_continuum(case: DiskCase, side: str) -> DiskScene | None:
-    """The case with a continuum beyond this side and all that absorb; None where there can be none."""
+    """The case with a continuum beyond this and all absorbing sides; None where there can be none."""
     absorbing = {side, *(name for name, table in case.boundary.items() if table.is_artificial)}
     changes = {f"boundary.{name}": {"type": "outside"} for name in absorbing}
     try:

@@ -1,4 +1,4 @@
-"""What reaches a side in a case: its waves and forces, and the angles at which they arrive."""
+"""Waves and forces that reach a side in a case, and the angles at which they arrive."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Arrival:
     shares: np.ndarray
 
     def sent_back(self, found: Reflections) -> float:
-        """Share of the energy that the side sends back: means over types and frequencies; nan if nothing is known."""
+        """Share of the energy that the side reflects: mean over types and frequencies; nan if nothing is known."""
         each = []
         for kind in self.kinds:
             if kind not in found.kinds or not np.isfinite(found.total(kind)).any():
@@ -48,7 +48,7 @@ class Arrival:
 
 
 def arrivals_of(case: DiskCase, side: str, ground: PackedMaterial) -> list[Arrival]:
-    """What reaches a side: the waves of driven sides that run towards it or along its normal, of loads and of holes.
+    """Waves that reach a side: of driven sides, towards it or along its normal, of loads and of holes.
 
     Without any of these all directions, as in a diffuse motion.
     """
@@ -61,7 +61,7 @@ def arrivals_of(case: DiskCase, side: str, ground: PackedMaterial) -> list[Arriv
 
 
 def _plane(case: DiskCase, side: str) -> Iterator[Arrival]:
-    """Plane waves: of driven sides along its normal, and the one that comes at an angle."""
+    """Plane waves: of driven sides along its normal, and an oblique incident wave."""
     for driven, waves in case.driving.items():
         if normal_axis(driven) != normal_axis(side):
             continue

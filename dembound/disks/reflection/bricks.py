@@ -1,7 +1,8 @@
 """A row of equal bricks from the inside of a body to one of its sides, and the side at its end.
 
 Bricks are numbered outwards, along the normal of the side; their interface inwards consists of the disks that have
-contacts with the brick before. A brick condensed to its own interface p_c and the next one's, p_{c+1}, needs the forces
+contacts with the previous brick. A brick condensed to its own interface p_c and the next one's, p_{c+1}, needs the
+forces
 
     [S₁₁ S₁₂; S₂₁ S₂₂] [p_c; p_{c+1}],    so that    S₂₁ p_{c−1} + (S₂₂ + S₁₁) p_c + S₁₂ p_{c+1} = 0
 
@@ -27,7 +28,7 @@ from dembound.laws import Stiffness
 from dembound.packings.tiling import Assembly
 
 LAST = 2
-"""Bricks of the scene whose last one is the end: of the first one disks may be missing at its open side."""
+"""Number of bricks of the end scene, the last of which is the end: the first may lack disks at its open side."""
 
 
 def is_outwards(side: str) -> int:
@@ -40,10 +41,11 @@ class BrickInRow:
 
     Attributes
     ----------
-    ground, side : the packing, and the side at the end of the row. copies : of a smaller brick along the side that the
-    brick consists of, by whose waves those of the row are found. disks : (p,) those of the brick at its interface
-    inwards. components, places : of the interface's degrees of freedom (count,) 0 x, 1 y, 2 rotation, and the centres
-    (count, 2) m of their disks. condensed : to this interface and the next brick's.
+    ground, side : the packing, and the side at the end of the row. copies : number of copies of a smaller brick along
+    the
+    side of which the brick consists, and from whose waves its waves are found. disks : (p,) the brick's disks at its
+    interface inwards. components, places : of the interface's degrees of freedom (count,) 0 x, 1 y, 2 rotation, and the
+    centres (count, 2) m of their disks. condensed : to this interface and the next brick's.
     """
 
     def __init__(self, ground: PackedMaterial, side: str, copies: int = 1) -> None:
@@ -71,7 +73,7 @@ class BrickInRow:
         self.condensed = Condensed(body, np.concatenate([own, following]))
 
     def shifts(self, phase: complex) -> np.ndarray:
-        """Motions (c, k, k/c) of the interface whose phase grows evenly from copy to copy, to this one in c copies."""
+        """Interface motions (c, k, k/c) whose phase grows evenly from copy to copy, by `phase` over all c copies."""
         copies = self.copies
         each = phase ** (1.0 / copies) * np.exp(2j * np.pi * np.arange(copies) / copies)
         turn = each[:, None] ** np.arange(copies) / np.sqrt(copies)
@@ -99,7 +101,8 @@ class LastBrick:
 
     Attributes
     ----------
-    disks : (n,) those of the assembly. number : (m,) of each of the assembly's disks in this brick, −1 for others.
+    disks : (n,) its disks in the assembly. number : (m,) number in this brick of each of the assembly's disks, −1 for
+    others.
 
     Raises CaseError if disks of the interface are missing.
     """

@@ -37,21 +37,21 @@ class Oscillation(NamedTuple):
 
     @property
     def square(self) -> float:
-        """What takes the place of ω², 1/s²."""
+        """The factor that replaces ω² of continuous time, 1/s²."""
         if self.time_step == 0.0:
             return self.omega**2
         return (2.0 / self.time_step * math.sin(0.5 * self.omega * self.time_step)) ** 2
 
     @property
     def rate(self) -> complex:
-        """What takes the place of iω, 1/s, at dashpots."""
+        """The factor that replaces iω of continuous time at dashpots, 1/s."""
         if self.time_step == 0.0:
             return 1j * self.omega
         return 1j * math.sin(self.omega * self.time_step) / self.time_step
 
     @property
     def back(self) -> complex:
-        """What a motion a step before is multiplied by, e^{−iωΔt}."""
+        """The factor e^{−iωΔt} of a motion one step earlier."""
         return cmath.exp(-1j * self.omega * self.time_step)
 
     @property
@@ -92,7 +92,8 @@ class Condensed:
     ----------
     body, interface : as given.
 
-    A contact across a periodic side goes to the image of a disk, which moves as the disk times a phase. First the body
+    A contact across a periodic side goes to the image of a disk, whose motion is the disk's times a phase. First the
+    body
     is condensed to the interface, the disks that have images, and these; then, for every wave along the interface, to
     the interface.
     """
@@ -136,7 +137,7 @@ class Condensed:
         self._fixed = _last_block(self._matrix + diags(added, format="csc"), self._inner)
 
     def stiffness(self, phase: complex) -> np.ndarray:
-        """Dynamic stiffness (k, k) of the interface if the motion of the next copy is this one's times the phase."""
+        """Dynamic stiffness (k, k) of the interface if the next copy moves as this one times the phase."""
         assert self._fixed is not None
         base, kept = self._base, len(self.interface)
         columns = self._fixed[:, :base].astype(complex)
@@ -153,7 +154,7 @@ class Condensed:
 def _images(body: Body) -> tuple[np.ndarray, np.ndarray, Network]:
     """Disks (m,) that have images, how many periods ahead (m,) these are, and the contacts across sides with images.
 
-    A contact with a disk behind is that of this disk with an image ahead.
+    A contact with a disk behind is replaced by the contact of that disk with an image ahead.
     """
     beyond, ahead = body.beyond, body.periods > 0
     pairs, row = beyond.pairs.copy(), np.arange(len(body.periods))

@@ -1,6 +1,6 @@
 """The last brick of a row with the continuum of a case beyond its side.
 
-Of the continuum it has one period along the side, of as many bricks and elements as fit together, and all elements
+The continuum is one period long along the side, of as many bricks and elements as fit together, and has all elements
 along its normal with their layers. The ties of the bonds that the side cuts are those of a run.
 """
 
@@ -44,7 +44,7 @@ def _element(outside: Surroundings, axis: int) -> float:
 
 
 def copies_of(brick: Brick, count: int, axis: int) -> Brick:
-    """So many copies of a brick along an axis as one."""
+    """`count` copies of a brick along an axis as one brick."""
     copy, period = np.repeat(np.arange(count), len(brick.pairs)), np.eye(2)[axis]
     images = np.tile(brick.images, (count, 1))
     further, other = np.divmod(copy + images[:, axis], count)
@@ -106,7 +106,7 @@ class ContinuumEnd:
         self._lagging = self._wall.lag * oscillation.lagging
 
     def stiffness(self, phase: complex) -> np.ndarray:
-        """Dynamic stiffness (k, k) of the interface if the motion a period along the side is this one's times phase."""
+        """Dynamic stiffness (k, k) of the interface if the next period along the side moves as this one times phase."""
         body, inner, by_disks = self._body.stiffness(phase), self._count, self._by_disks
         springs = (self._springs * (1.0 + self._lagging))[:, None]
         by_nodes, yielding = self._grid.yielding(phase, springs)
@@ -130,7 +130,7 @@ class ContinuumEnd:
         return found[:, np.unique(self._tied[self._tied >= 0])]
 
     def _by_nodes(self) -> dict[int, np.ndarray]:
-        """Elongations (3t, count) of the ties per motion of nodes so many periods ahead, by this number."""
+        """Number of periods ahead -> elongations (3t, count) of the ties per motion of the nodes there."""
         wall, elements, along = self._wall, self._elements, 1 - self._axis
         _, of_nodes = wall.elongations
         ties, mesh = len(wall.element), wall.mesh
@@ -172,7 +172,7 @@ class Grid:
         self._fixed = np.zeros((0, 0), dtype=complex)
 
     def at(self, oscillation: Oscillation) -> None:
-        """Condense at a frequency to the nodes that ties act on, those that have images, and these."""
+        """Condense at a frequency to the nodes that ties act on, the nodes that have images, and these."""
         from scipy.sparse.linalg import splu
 
         matrix = self._elements.stiffness(oscillation)[self._order][:, self._order]
@@ -183,7 +183,7 @@ class Grid:
             self._fixed -= matrix[inner:, :inner] @ solved
 
     def yielding(self, phase: complex, springs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Elongations (3t, p) of the ties per motion of the nodes they act on, and motion (p, p) of these by forces.
+        """Elongations (3t, p) of the ties per motion of their nodes, and motion (p, p) of the nodes per force.
 
         phase : of the motion a period along the side over this one. springs : (3t, 1) of the ties.
         """

@@ -1,7 +1,7 @@
 """Elements of a continuum in steady oscillation, with the images of nodes a period along them.
 
 Exact for the steps of its kernels (kernels/grid.py): with z = e^{iωΔt} a velocity half a step behind is (1 − 1/z)/Δt
-times the displacement, and a memory ψ makes of a derivative and of a force 1 + A/(1 − B/z) times as much
+times the displacement, and a convolution variable ψ of a layer multiplies a derivative or force by 1 + A/(1 − B/z)
 (outside/layer.py).
 """
 
@@ -32,7 +32,7 @@ class Layer(NamedTuple):
 
 
 class Elements:
-    """Equal elements, periodic along one axis, of which a layer absorbs along the other.
+    """Equal elements, periodic along one axis, with an absorbing layer along the other.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Elements:
 
     Attributes
     ----------
-    nodes, periods : (E, N²) nodes of every element, and how many periods ahead of their own it has them, 0 or 1.
+    nodes, periods : (E, N²) nodes of every element, and how many periods ahead of their own they are in it, 0 or 1.
     count : number of degrees of freedom, x of all nodes and then y. imaged : (i,) those of nodes that some element has
     a period ahead. moving : (count,) bool, those that are not at rest.
     """

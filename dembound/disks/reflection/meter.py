@@ -1,8 +1,8 @@
-"""How much a side of a case sends back of plane waves, by angle and frequency.
+"""Reflection of plane waves by a side of a case, by angle and frequency.
 
 The side is that of the case, with its supports, on the packing of the case, at the steps of its scheme. Of the waves of
-the packing (modes.py) the incident one is that whose motion at the interface is most like a plane wave of the
-equivalent continuum; power that comes back in any wave is of the type, P or S, that this is most like.
+the packing (modes.py) the incident one is the wave whose motion at the interface is most like a plane wave of the
+equivalent continuum; reflected power in any wave is assigned to the type, P or S, that it is most like.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from dembound.disks.scene import DiskScene
 Kind = Literal["p", "s"]
 
 ALIKE = 0.5
-"""Share of a wave's motion that is that of a plane wave, below which there is no such wave: in gaps of the packing."""
+"""Share of a wave's motion common with a plane wave, below which there is no such wave: in gaps of the packing."""
 
 ROUNDS = 8
-"""Rounds of the direction of a wave whose speed depends on it; each gains a digit or more in rock."""
+"""Iterations for the direction of a wave whose speed depends on it; each gains a digit or more in rock."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class HomogenisedWave:
 
 @dataclass(frozen=True)
 class Reflections:
-    """Energy that a side sends back, over that of the incident wave; nan where this does not run.
+    """Reflected energy over the energy of the incident wave; nan where the incident wave does not run.
 
     angles : (a,) degrees from the normal; frequencies : (f,) Hz; same, converted : kind -> (f, a), as the same type of
     waves and as the other one.
@@ -59,11 +59,11 @@ class Reflections:
 
     @property
     def kinds(self) -> tuple[Kind, ...]:
-        """The types of waves."""
+        """The incident types of waves."""
         return tuple(self.same)
 
     def total(self, kind: Kind) -> np.ndarray:
-        """P and S together (f, a)."""
+        """Reflected energy of P and S waves together (f, a)."""
         return self.same[kind] + self.converted[kind]
 
 
@@ -165,7 +165,7 @@ class Meter:
         return direction
 
     def _at(self, oscillation: Oscillation, kind: Kind, angle: float) -> np.ndarray:
-        """Energy (2, e) that the ends send back as the same and as the other type."""
+        """Energy (2, e) reflected by the ends as the same and as the other type."""
         wave = self._plane_wave(kind, self._direction(angle))
         assert wave is not None
         trace = wave.slowness[1 - normal_axis(self.side)]
@@ -184,7 +184,7 @@ class Meter:
         return np.array([[power[is_same].sum(), power[~is_same].sum()] for power in powers]).T
 
     def _like_returning(self, modes: Modes, kind: Kind, trace: float, omega: float) -> np.ndarray:
-        """Likeness (m,) of waves with the wave of a type that runs inwards with a slowness (s/m) along the side."""
+        """Likeness (m,) of waves to the inward wave of a type with a slowness (s/m) along the side."""
         axis, sign = normal_axis(self.side), is_outwards(self.side)
         direction = -self._direction(0.0)
         wave = self._plane_wave(kind, direction)

@@ -1,4 +1,4 @@
-"""Waves in a row of equal bricks, and what its end sends back.
+"""Waves in a row of equal bricks, and their reflection at its end.
 
 S₁₂ = U Vᴴ has a low rank r: motions that die out within a brick do not reach its next interface. In the coordinates
 x = Vᴴp and y = Uᴴp of the interface, the waves p_c = λᶜp of the row are, with ŷ = y/λ and A = S₁₁ + S₂₂, those of
@@ -23,16 +23,16 @@ PROPAGATES = 1e-6
 """Difference of |λ| from 1 below which a wave propagates; of others a side reflects nothing that gets far."""
 
 APART = 1.5 * np.exp(1.0j)
-"""A λ that no wave has: one that dies out by just as much within a brick, with just this phase, would be chance."""
+"""A λ different from that of any wave, except by chance."""
 
 SMALLEST = 1e-12
-"""1/|λ| below which λ is infinite: motion of the first interface alone."""
+"""1/|λ| below which λ is infinite: a motion of the first interface only."""
 
 
 class Modes(NamedTuple):
-    """Waves of a row, m of them.
+    """The m waves of a row.
 
-    factor : λ (m,). x, y : (r, m) x and ŷ. motion : (k, m) of the interface. power : (m,) that they carry inwards, 0
+    factor : λ (m,). x, y : (r, m) x and ŷ. motion : (k, m) of the interface. power : (m,) carried inwards, 0
     unless they propagate. v : V (k, r).
     """
 
@@ -45,12 +45,12 @@ class Modes(NamedTuple):
 
     @property
     def outgoing(self) -> np.ndarray:
-        """Which (m,) carry power outwards, to the side."""
+        """Mask (m,) of the waves that carry power outwards, to the side."""
         return self.power < 0.0
 
     @property
     def returning(self) -> np.ndarray:
-        """Which (m,) carry power inwards or die out inwards."""
+        """Mask (m,) of the waves that carry power inwards or die out inwards."""
         return (self.power > 0.0) | ((self.power == 0.0) & (np.abs(self.factor) > 1.0))
 
 
@@ -81,7 +81,7 @@ def modes_of(stiffness: np.ndarray) -> Modes:
 def modes_of_copies(stiffness: np.ndarray, shifts: np.ndarray) -> Modes:
     """Modes of bricks of several copies side by side, from the waves of each growth of phase from copy to copy.
 
-    shifts : (c, k, k/c) orthonormal motions of an interface for each of these, which contacts do not couple.
+    shifts : (c, k, k/c) orthonormal motions of an interface for each growth of phase, which contacts do not couple.
     """
     k = len(stiffness) // 2
     across = shifts.conj().swapaxes(1, 2)
@@ -108,7 +108,7 @@ def modes_of_copies(stiffness: np.ndarray, shifts: np.ndarray) -> Modes:
 
 
 def _beside(each: np.ndarray) -> np.ndarray:
-    """Matrices (c, m, n) along the diagonal of one (c m, c n)."""
+    """Block-diagonal matrix (c m, c n) of matrices (c, m, n)."""
     count, rows, columns = each.shape
     found = np.zeros((count, rows, count, columns), dtype=each.dtype)
     found[np.arange(count), :, np.arange(count)] = each
@@ -116,7 +116,7 @@ def _beside(each: np.ndarray) -> np.ndarray:
 
 
 def sent_back(modes: Modes, incident: int, stiffness: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Power (m,) that an end sends back in each of the waves, over that of the incident one.
+    """Power (m,) reflected by an end in each of the waves, over that of the incident one.
 
     stiffness : (2k, 2k) as for `modes_of`; end : S_e (k, k).
     """

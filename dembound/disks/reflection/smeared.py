@@ -4,7 +4,7 @@ Waves p e^{iω(t − s·x)} of the continuum with the slowness s_t along the sid
 slownesses σ with (σ²Q + σ(R + Rᵀ) + T − ρ)p = 0, where Q_ac = n_b C_abcd n_d, R_ac = n_b C_abcd s_t t_d and T the same
 with s_t² t t (Christoffel's equation). Of the four, two carry energy inwards or die out inwards. Their amplitudes a are
 those with which the tractions −iω Σ a (σQ + R)p are −(iωc + k) Σ a p, with dashpots c and springs k per length of the
-side. This lacks the disks: whole masses at the side, and what they disperse and scatter.
+side. This neglects the disks: whole masses at the side, dispersion and scattering.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ RUNS = 1e-9
 
 
 class Smeared(NamedTuple):
-    """What holds a side, of each component along x and y.
+    """Smeared supports of a side, for components along x and y.
 
-    damping, stiffness : (2,) N·s/m and N/m per m of the side; held : (2,) whether it is at rest.
+    damping, stiffness : (2,) N·s/m and N/m per m of the side; held : (2,) whether the component is at rest.
     """
 
     damping: np.ndarray
@@ -38,7 +38,7 @@ class Smeared(NamedTuple):
 
     @classmethod
     def of(cls, scene: DiskScene, side: str) -> Smeared:
-        """The supports of a scene, of which only one side has any."""
+        """The smeared supports of a scene in which only one side has any."""
         length, table = float(scene.assembly.size[1 - normal_axis(side)]), scene.supports
         damping, stiffness, held = (
             np.array([np.sum(values[table.component == axis]) for axis in (0, 1)])
@@ -78,7 +78,7 @@ def by_smeared_supports(
 def _sent_back(
     ground: PackedMaterial, side: str, smeared: Smeared, kind: Kind, slowness: np.ndarray, omega: float
 ) -> tuple[float, float]:
-    """Energies sent back as the same and as the other type."""
+    """Energies reflected as the same and as the other type."""
     axis = normal_axis(side)
     free = np.array([component for component in (0, 1) if component not in ground.held])
     normal, along = np.zeros((2, 2))

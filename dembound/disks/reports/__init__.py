@@ -1,1 +1,1 @@
-"""What is said of a case and its run: facts, warnings, summary, expected errors, meshes for pictures, bytes on disk."""
+"""Reports on a case and its run: facts, warnings, summary, expected errors, meshes for pictures, bytes on disk."""

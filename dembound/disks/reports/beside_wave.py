@@ -1,8 +1,8 @@
-"""What sides along a plane wave take from it that do not move as ground beyond them would, without a run.
+"""Loss of a plane wave at sides along it that do not move as ground beyond them would, without a run.
 
 Ground that goes on beyond a side moves with the wave; dashpots, springs and walls hold the side back instead, and a
-free one lacks its traction. With u the motion of the undisturbed ground, which depends on the coordinate along the wave
-alone, and t(u) the traction that the ground beyond has on the side, the error e by a side with dashpots C and springs K
+free one lacks its traction. With u the motion of the undisturbed ground, which depends only on the coordinate along the
+wave, and t(u) the traction of the ground beyond on the side, the error e by a side with dashpots C and springs K
 obeys the equations of the body, into which no wave enters, under the force −C ė − K e − (C u̇ + K u + t(u)) per length
 of the side. Where a wall holds a component, e = −u.
 
@@ -44,7 +44,7 @@ ALONG, BESIDE = [2, 1], [0, 3]
 
 
 class End(NamedTuple):
-    """What acts on a side: dashpots (2,) N·s/m² and springs (2,) N/m² per length, and which components (2,) move."""
+    """Supports of a side: dashpots (2,) N·s/m² and springs (2,) N/m² per length, and which components (2,) move."""
 
     damping: np.ndarray
     stiffness: np.ndarray
@@ -58,7 +58,7 @@ class Grid:
     Attributes
     ----------
     axis : of the wave in the scene. origin, size : (2,) m. cells : (2,) numbers of elements. density : kg/m³.
-    tensor : (4, 4) Pa, see `homogenise.GRADIENTS`. free : (2,) components that are not held. ends : what acts on each
+    tensor : (4, 4) Pa, see `homogenise.GRADIENTS`. free : (2,) components that are not held. ends : supports of each
     side.
     """
 
@@ -121,7 +121,7 @@ class Grid:
 
     @property
     def time_step(self) -> float:
-        """A stable step (s): the eigenvalue of one element bounds those of all, to which springs at sides add."""
+        """A stable step (s): the eigenvalue of one element bounds those of all; springs at sides are added."""
         largest = np.linalg.eigvalsh(_element(self.tensor, self.spacing))[-1]
         mass = 0.25 * self.density * float(np.prod(self.spacing))
         springs = max(float(end.stiffness.max()) for end in self.ends.values())
@@ -129,7 +129,7 @@ class Grid:
 
 
 def _end(scene: DiskScene, side: str, order: list[int], free: np.ndarray) -> End:
-    """What acts on a side: its supports, or the dashpots of the ground beyond; order : of the scene's axes."""
+    """The supports of a side, or the dashpots of the ground beyond; order : of the scene's axes."""
     table, axis, none = scene.case.side(side), normal_axis(side), np.zeros(2)
     if table.is_outside:
         p, s = np.nan_to_num(scene.ground.wave_speeds(axis)) * scene.ground.density
@@ -175,9 +175,9 @@ class Ground(NamedTuple):
 
 
 def undisturbed(grid: Grid, driven: str, incoming: np.ndarray, shifts: np.ndarray, step: float) -> Ground:
-    """The ground under a wave that enters through a side; incoming, shifts : (n, 2) m/s and m, its motion at steps.
+    """The ground under a wave that enters through a side; incoming, shifts : its motion (n, 2) m/s and m at steps.
 
-    A side that prescribes a component of the motion has that of the wave.
+    A side that prescribes a component moves with the wave in this component.
     """
     low, high = ("left", "right") if grid.axis == 0 else ("bottom", "top")
     count, height = grid.cells[1] + 1, grid.spacing[1]
@@ -259,7 +259,7 @@ def _loads(grid: Grid, sides: Sequence[str], ground: Ground) -> dict[str, np.nda
 
 
 class Taken(NamedTuple):
-    """What sides along a wave take from it.
+    """Errors by sides along a wave.
 
     driven : the side through which it enters. waves : their names. sides : those along it. shares : RMS of the error
     over that of the undisturbed ground's velocity, in the component that moves most, by place in words.
@@ -272,7 +272,7 @@ class Taken(NamedTuple):
 
 
 def taken_from_waves(scene: DiskScene) -> Iterator[Taken]:
-    """What sides along the waves of driven sides take from them; the ground beyond free-field sides moves."""
+    """Errors by sides along the waves of driven sides; not by free-field sides, which move with the ground."""
     case = scene.case
     for driven, waves in case.driving.items():
         sides = [side for side in SIDES if normal_axis(side) != normal_axis(driven) and _takes(scene, side)]
@@ -281,10 +281,10 @@ def taken_from_waves(scene: DiskScene) -> Iterator[Taken]:
 
 
 def _takes(scene: DiskScene, side: str) -> bool:
-    """Whether a side stands in for ground beyond it that would move with a wave along it, and does not move so itself.
+    """Whether a side stands in for ground that would move with a wave along it, and does not move with it.
 
-    Mirror planes do so, too, as the image moves the other way. Sides are free where a case does not give them: of
-    upright ones that is taken as forgotten.
+    True also for mirror planes, as the image moves the other way. Sides are free where a case does not give them: for
+    upright ones this is regarded as forgotten.
     """
     table = scene.case.side(side)
     if side not in scene.edges or table.needs_column or table.is_outside or table.waves:
@@ -294,7 +294,7 @@ def _takes(scene: DiskScene, side: str) -> bool:
 
 
 def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: Sequence[str]) -> dict[str, float]:
-    """The shares at the monitors, without any in the middle of the body; empty where nothing moves."""
+    """The shares at the monitors, without monitors in the middle of the body; empty where nothing moves."""
     case, grid = scene.case, Grid.of(scene, normal_axis(driven))
     left, bottom, right, top = case.packing.box
     places = {f"monitor {monitor.name}": np.array(scene.monitored[monitor.name]) for monitor in case.monitor}

@@ -3,7 +3,7 @@
 Lines begin where the first disk is drawn, and end at the image of the second one where the contact crosses a periodic
 side. They have these cell data:
 
-| name | unit | shape | what |
+| name | unit | shape | contents |
 |---|---|---|---|
 | ``normalForce`` | N/m | (b,) | force along the line, tension positive |
 | ``shearForce`` | N/m | (b,) | force on the first disk across the line, to the left seen along it |

@@ -1,20 +1,20 @@
-"""What a continuum adds to the motion at places in a body, RMS over RMS: central values by formula.
+"""Errors of the motion at places in a body by its continuum, RMS over RMS: central values by formula.
 
-Five parts, of which the first two depend on where a place is:
+Five parts, of which the first two depend on the place:
 
 - *elements* return a wave of the frequency f in full from f_p on, whose slowest waves have `PASSED` nodes in their
   length, and (f/f_p)^`STEEP` of it below;
-- *ties* return (kD)² of a wave that meets them along the normal (`lattice_errors`), 1/cos θ as much at an angle. It has
-  spread from its source over a longer way than the motion beside which it counts, once over every side;
+- *ties* return (kD)² of a wave at normal incidence (`lattice_errors`), 1/cos θ as much at an angle. The returned wave
+  has spread over a longer way than the motion it is compared with, once over every side;
   on a free surface there is `SURFACE` times as much of both beside a load on it;
-- *layers* return `KEPT` of R0, and have an error of their own for motion that varies in no less than the ground within
-  them is long; the displacement that stays after a pulse is such;
+- *layers* return `KEPT` of R0, and have an error of their own for motion that varies over no less than the length of
+  the ground within them, such as the displacement that stays after a pulse;
 - the *fields* of forces and holes beside elements and ties (`near_field`);
 - *random bricks* beyond the disks would scatter waves, `BRICKS` k²LD with the length L of a brick.
 
-Random packings scatter what a uniform continuum does not. Of waves that enter through a continuum holes scatter a part,
-which alone leaves again; the displacement that they leave behind is their own, and none of layers. All this is measured
-on 60 scenes (benchmarks/continuum_errors.py).
+Random packings scatter waves, a uniform continuum does not. Of waves that enter through a continuum holes scatter a
+part, and only that part leaves again; the displacement left behind belongs to the waves, and causes no error of layers.
+All this is measured on 60 scenes (benchmarks/continuum_errors.py).
 """
 
 from __future__ import annotations
@@ -45,9 +45,8 @@ FLATTEST = 0.15
 """Least cosine of the angle at which waves meet a side that counts."""
 
 SURFACE, SHALLOW = 1.6, 0.125
-"""How much more of what elements, ties and bricks return there is on a free surface beside a load on it, where
-Rayleigh waves run, which are slower and have more of the high frequencies; and down to which part of the mean length of
-waves."""
+"""Factor of errors by elements, ties and bricks on a free surface beside a load on it, where Rayleigh waves run, which
+are slower and have more of the high frequencies; and depth over the mean length of waves down to which it applies."""
 
 KEPT = 0.45
 """Part of R0 that layers return in all, as waves reach them at all angles."""
@@ -59,18 +58,18 @@ SCATTERED = 0.5
 """Part of waves that enter through a continuum that leaves through it again."""
 
 BRICKS = 0.06
-"""What random bricks would scatter to a place if they went on beyond the disks, over k²LD (`unevenness`). The largest
-true errors of velocities and displacements in 25 boxes were 0.3 to 2.4 times what this gives with all other parts, of
-which most had hardly any: forces in the ground and on it, blasts, a tunnel under waves; patterns B and C, 15 seeds,
-bricks of 8 to 16 D. Under a wave at an angle velocities beside a pipe had 5 times as much."""
+"""Waves that random bricks would scatter to a place if they went on beyond the disks, over k²LD (`unevenness`). The
+largest true errors of velocities and displacements in 25 boxes were 0.3 to 2.4 times this with all other parts,
+most of which were small: forces in the ground and on it, blasts, a tunnel under waves; patterns B and C, 15 seeds,
+bricks of 8 to 16 D. Under an oblique wave velocities beside a pipe had 5 times as much."""
 
 UNEVEN = 0.002
 """Error of displacements round a load in a random packing, whose stiffness varies from place to place."""
 
 CONTINUUM_FACTOR = 2.2
-"""95 % of the true errors are at most so many times as large as those here (benchmarks/continuum_errors.py): 2.0 times
-those of 455 rows with 0.01 % and more, 2.1 times those of the 296 with 0.1 % and more. The largest are 3.4 times as
-large, beside a hole in pattern C, else 2.6. Errors of displacements below 0.01 % under waves are overestimated, up to a
+"""95 % of the true errors are at most this factor times the computed ones (benchmarks/continuum_errors.py): 2.0 times
+for 455 rows with 0.01 % and more, 2.1 times for the 296 with 0.1 % and more. The largest are 3.4 times as large,
+beside a hole in pattern C, else 2.6. Errors of displacements below 0.01 % under waves are overestimated, up to a
 hundred times."""
 
 
@@ -78,7 +77,8 @@ def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[
     """Errors of velocities and of displacements by a continuum, RMS over RMS, at places (2,) m by name.
 
     None without a continuum, and for waves that jump. Displacements have longer waves than velocities, of which
-    elements and ties return less; those longer than the run are as one.
+    elements
+    and ties return less; waves longer than the run count as one length.
     """
     outside, signals = scene.outside, signals_of(scene.case)
     if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
@@ -128,7 +128,7 @@ def _near_errors(
 
 
 class _Parts(NamedTuple):
-    """What elements return, what ties return beside a single side, and what is the same at all places."""
+    """Errors by elements, by ties beside a single side, and those that are the same at all places."""
 
     elements: float
     ties: float
@@ -136,7 +136,7 @@ class _Parts(NamedTuple):
 
 
 def _parts(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal], lowest: float) -> _Parts:
-    """The parts; lowest : Hz, see `choice.energies`."""
+    """The parts of the error; lowest : Hz, see `choice.energies`."""
     settings, medium, mesh = outside.settings, outside.body.medium, outside.body.mesh
     passed = settings.order * choice.slowest(medium) / (PASSED * largest_element(outside))
     long = fastest(medium) / (2.0 * math.pi * mesh.inner)
@@ -165,10 +165,10 @@ def _source(scene: DiskScene, place: np.ndarray) -> np.ndarray | None:
 
 
 def _spread(scene: DiskScene, outside: Surroundings, source: np.ndarray, place: np.ndarray) -> float:
-    """What ties return at a place over what a single side returns to a source beside it.
+    """Waves returned by ties at a place over those that a single side returns to a source beside it.
 
     A wave spreads as 1/√(way), so that with the way r from the source and that over its image in a side, r′, it is
-    √(r/r′)/cos θ from each side; those of several sides add as squares.
+    √(r/r′)/cos θ from each side; contributions of several sides add as squares.
     """
     way = max(float(np.hypot(*(place - source))), scene.ground.brick.mean_diameter)
     planes = dict(zip(("left", "bottom", "right", "top"), outside.box, strict=True))

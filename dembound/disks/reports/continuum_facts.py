@@ -36,10 +36,10 @@ QUIET_STEPS, FLAT = 10_000, 31.0
 0.25 and 0.4 and elements as wide as high, see `Settings.sides`."""
 
 LARGE = 0.01
-"""Error of elements as small as is useful, above which there is a warning."""
+"""Error of the smallest useful elements, above which there is a warning."""
 
 LEEWAY = 1.05
-"""Part of an accuracy by which an error may exceed it without a word: spectra are sums over steps of the frequency."""
+"""Factor by which an error may exceed the accuracy without a warning: spectra are sums over steps of the frequency."""
 
 ANGLES = (0.0, 45.0, 60.0)
 """Angles of incidence (degrees) for which reflections are printed."""
@@ -66,7 +66,7 @@ def continuum_facts(scene: DiskScene) -> Entries:
 
 
 def _elements(outside: Surroundings) -> str:
-    """Nodes, elements and ties."""
+    """Numbers of nodes, elements and ties in words."""
     mesh = outside.body.mesh
     absorbing = 100.0 * float(mesh.absorbs.any(axis=1).mean())
     width, height = (_from_to(sizes) for sizes in mesh.element_sizes.T)
@@ -82,7 +82,7 @@ def _from_to(sizes: np.ndarray) -> str:
 
 
 def _skins(outside: Surroundings) -> str:
-    """How far inside those of the body the continuum's free edges lie."""
+    """Depths of the continuum's free edges inside those of the body, in words."""
     return ", ".join(f"{depth:.3f} m inside the {side} side" for side, depth in outside.skins.items())
 
 
@@ -118,7 +118,7 @@ def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -
 
 
 def _as_small(scene: DiskScene, error: float) -> str:
-    """In words that elements are too large for the accuracy of a case, as smaller ones shorten the step; or empty."""
+    """A note that elements are too large for the accuracy, as smaller ones shorten the step; or empty."""
     keys = scene.case.outside
     if keys.element is not None or error <= LEEWAY * keys.accuracy:
         return ""
@@ -127,7 +127,7 @@ def _as_small(scene: DiskScene, error: float) -> str:
 
 
 def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
-    """Where layers begin, their depth, and what they reflect."""
+    """Begin, depth and reflection of the layers, in words."""
     settings = outside.settings
     begin, depth = (_lengths(outside, count) for count in (settings.margin, settings.layers))
     angles = ", ".join(f"{angle:g}" for angle in ANGLES)
@@ -148,7 +148,7 @@ def _lengths(outside: Surroundings, count: int) -> str:
 
 
 def _reflections(outside: Surroundings, signals: Sequence[Signal]) -> tuple[list[float], list[float]]:
-    """Reflections of P and S waves at `ANGLES`, at the lowest dominant frequency; of several axes the largest."""
+    """Reflections of P and S waves at `ANGLES`, at the lowest dominant frequency; the largest over axes."""
     body = outside.body
     lowest = min((signal.wave.dominant_frequency() for signal in signals), default=math.inf)
     found = []
@@ -162,7 +162,7 @@ def _reflections(outside: Surroundings, signals: Sequence[Signal]) -> tuple[list
 
 
 def _cost(scene: DiskScene) -> str:
-    """Shares of a step's time."""
+    """Shares of a step's time, in words."""
     costs = step_cost.of_scene(scene)
     whole = sum(costs.values())
     shares = [f"{name} {100.0 * cost / whole:.0f} %" for name, cost in costs.items() if cost > 0.0]
@@ -205,11 +205,10 @@ def _is_flat(outside: Surroundings) -> bool:
 
 
 def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
-    """Elements too large for waves or for what is near, or too small for the disks.
+    """Warnings about elements too large for waves or nearby sources, or too small for the disks.
 
-    What they return is a share of what meets them: the part of the spectrum that has fewer nodes in its length than
-    `choice.NODES`. `expected_errors` at monitors are smaller: half of it comes there, and of longer waves it falls
-    gradually.
+    The returned share is the part of the spectrum with fewer than `choice.NODES` nodes per wavelength.
+    `expected_errors` at monitors are smaller: half of it arrives there, and for longer waves it falls gradually.
     """
     order, side = keys.order, largest_element(outside)
     signals, medium = signals_of(scene.case), outside.body.medium
@@ -244,7 +243,7 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
 
 
 def _lasting(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
-    """A margin that is too small for a force that stays."""
+    """A warning about a margin that is too small for a force that stays."""
     lasting, body = lasting_time(scene.case), outside.body
     speed = fastest(body.medium)
     error = choice.missing(lasting, speed, keys.shift, body.mesh.inner)
@@ -258,7 +257,7 @@ def _lasting(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked:
 
 
 def _from_the_surface(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
-    """A margin that is too small for waves that the free surface sends back along the layers."""
+    """A warning about a margin that is too small for surface reflections along the layers."""
     settings, medium, axis = outside.settings, outside.body.medium, outside.body.mesh.axes[0]
     sources = buried(scene.case, outside.box, outside.sides)
     error = max((each.error(settings, medium, settings.margin) for each in sources), default=0.0)

@@ -1,18 +1,18 @@
 """Snapshots of the continuum round the disks for ParaView: cells between its nodes, moved by their displacement.
 
-| name | unit | shape | what |
+| name | unit | shape | contents |
 |---|---|---|---|
 | ``linVelVec`` | m/s | (m, 3) | velocity, z = 0 |
-| ``speed`` | m/s | (m,) | its length |
+| ``speed`` | m/s | (m,) | length of ``linVelVec`` |
 | ``displacement`` | m | (m, 3) | since the start of the run, z = 0 |
 | ``stress`` | Pa | (m, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, with Z 0 |
-| ``absorbs`` | 1 | (m,) | 1 in the layer that absorbs, where motion is no longer that of the ground |
-| ``scattered`` | m | (m, 3) | beside a free-field column or under a wave at an angle: displacement without theirs |
-| ``scatteredVelocity`` | m/s | (m, 3) | the same of velocity |
+| ``absorbs`` | 1 | (m,) | 1 in the absorbing layer, where motion is no longer that of the ground |
+| ``scattered`` | m | (m, 3) | beside a free-field column or under an oblique wave: displacement without theirs |
+| ``scatteredVelocity`` | m/s | (m, 3) | velocity without theirs |
 | ``total`` | 1 | (m,) | 1 where the other fields contain the motion of the ground, 0 below that of a column |
 | ``peakVelocity`` | m/s | (m,) | largest speed in the whole run, in every file; if the case asks for it |
 
-Nodes on the first side of a periodic continuum are repeated on the side opposite, which the last cells reach.
+Nodes on the first side of a periodic continuum are repeated on the opposite side, which the last cells reach.
 
 ``linVelVec``, ``speed``, ``displacement``, ``stress`` and ``peakVelocity`` have the names of those of disks. Where
 there is ``scattered``, ``stress`` and ``peakVelocity`` are those of the scattered motion.
@@ -60,10 +60,11 @@ def continuum_mesh(columns: Arrays, snapshot: Arrays) -> meshio.Mesh:
 
 
 class Across(NamedTuple):
-    """What a periodic continuum has across its sides.
+    """Nodes and cells of a periodic continuum across its period.
 
-    node : (k,) nodes that are repeated. place : (k, 2) m, where, a period on. cell : (c, 4) corners of the cells
-    between the last nodes and those, which are numbered after all nodes.
+    node : (k,) nodes that are repeated. place : (k, 2) m, their places one period on. cell : (c, 4) corners of the
+    cells
+    between the last nodes and the repeated ones, which are numbered after all nodes.
     """
 
     node: np.ndarray

@@ -46,7 +46,7 @@ def disk_facts(scene: DiskScene) -> Entries:
 
 
 def _monitor_facts(scene: DiskScene) -> Entries:
-    """The particle of each monitor or that it is in the continuum, its place, and its twin in the free-field column."""
+    """For each monitor its particle, or that it is in the continuum, its place, and its free-field twin."""
     places = scene.monitored
     for name in (monitor.name for monitor in scene.case.monitor):
         what = "in the continuum" if name in scene.between else f"particle {scene.monitors[name]}"
@@ -144,7 +144,7 @@ def _static_facts(case: DiskCase) -> Entries:
 
 
 def _load_facts(scene: DiskScene) -> Entries:
-    """What each load acts on, its whole force, and its time factor."""
+    """For each load its particles or surface, its total force, and its time factor."""
     for load in scene.case.load:
         nodes, forces = forces_of(load, scene)
         what = "particle" if nodes[0] < scene.disk_count else "node"
@@ -155,7 +155,7 @@ def _load_facts(scene: DiskScene) -> Entries:
 
 
 def _images(scene: DiskScene, nodes: np.ndarray, forces: np.ndarray) -> str:
-    """What forces (k, 3) on nodes (k,) that are all beside a plane of symmetry are together with their images."""
+    """Text on the total force of a load and its image, if its nodes (k,) are all beside a plane of symmetry."""
     for side, edge in scene.edges.items():
         if scene.case.side(side).is_mirror and np.isin(nodes, edge.nodes).all():
             both = 2.0 * forces[:, :2].sum(axis=0) * (np.arange(2) != edge.axis)
@@ -164,7 +164,7 @@ def _images(scene: DiskScene, nodes: np.ndarray, forces: np.ndarray) -> str:
 
 
 def _whole_of(load: Load, scene: DiskScene, forces: np.ndarray) -> str:
-    """The force of a load on all its nodes, or its pressure with the length of wall that makes forces (k, 3)."""
+    """The total force of a load, or its pressure with the length of wall for its forces (k, 3)."""
     whole = forces[:, :2].sum(axis=0)
     if load.pressure is None:
         return "({:.4g}, {:.4g}) N/m".format(*whole)

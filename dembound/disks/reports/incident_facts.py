@@ -1,4 +1,4 @@
-"""A plane wave at an angle in words: its speed along the surface, what this sends back, and where monitors err."""
+"""An oblique plane wave in words: its speed along the surface, its reflections, and where monitors err."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STRAIGHT = 1e-9
 
 
 def incident_facts(scene: DiskScene) -> Entries:
-    """Facts about the wave at an angle of a scene that has one."""
+    """Facts about the oblique wave of a scene that has one."""
     waves, table, outside = scene.ground_waves, scene.case.incident, scene.outside
     assert waves is not None
     assert table is not None
@@ -49,7 +49,7 @@ def _way(angle: float) -> str:
 
 
 def _along(wave: ElasticPlaneWave, outside: Surroundings) -> str:
-    """The speed of its trace along the surface, or along x where there is none."""
+    """The speed of the wave's trace along the surface, or along x where there is none."""
     slowness, where = abs(wave.slowness[0]), "x" if outside.free_surface is None else "the surface"
     return f", at {1.0 / slowness:.5g} m/s along {where}" if slowness > STRAIGHT * abs(wave.slowness[1]) else ""
 
@@ -62,7 +62,7 @@ def arrival(scene: DiskScene, waves: GroundWaves) -> float:
 
 
 def _reflected(waves: GroundWaves) -> Iterator[str]:
-    """Kind, angle and amplitude of the waves that the surface sends back, the slower one first."""
+    """Kind, angle and amplitude of the waves reflected by the surface, the slower one first."""
     each: dict[tuple[float, float], np.ndarray] = {}
     for wave in waves.waves[1:]:
         each[wave.slowness] = each.get(wave.slowness, np.zeros(2)) + wave.motion
@@ -73,7 +73,7 @@ def _reflected(waves: GroundWaves) -> Iterator[str]:
 
 
 def _corners(scene: DiskScene) -> list[str]:
-    """Corners (m) of what lies within the layers, at which two layers begin."""
+    """Corners (m) of the region within the layers, at which two layers begin."""
     assert scene.outside is not None
     mesh = scene.outside.body.mesh
     (left, bottom), (right, top) = mesh.between_layers

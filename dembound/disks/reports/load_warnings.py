@@ -1,4 +1,4 @@
-"""Warnings about loads of which less than the given force acts, as a side takes or holds it."""
+"""Warnings about loads of which less than the given force acts, as a side carries part of it."""
 
 from collections.abc import Iterator, Sequence
 
@@ -18,7 +18,7 @@ ONE_WAY = 0.5
 
 
 def load_warnings(scene: DiskScene) -> Iterator[str]:
-    """All of them, one line each."""
+    """Warnings about loads, one line each."""
     yield from _twice(scene.case.load)
     yield from _hung(scene)
     for load in scene.case.load:
@@ -32,7 +32,7 @@ def load_warnings(scene: DiskScene) -> Iterator[str]:
 
 
 def _hung(scene: DiskScene) -> Iterator[str]:
-    """Bodies that settle under steady loads towards a free side, held at the opposite one, and so all in tension."""
+    """Warnings about bodies that steady loads pull towards a free side, held at the opposite one, all in tension."""
     static = scene.case.static
     if static is None or static.stress is not None:
         return
@@ -54,7 +54,7 @@ def _hung(scene: DiskScene) -> Iterator[str]:
 
 
 def _at_side(scene: DiskScene, load: Load, edge: Edge, forces: np.ndarray, on_side: np.ndarray) -> Iterator[str]:
-    """What a side makes of a load with forces (k, 3), of which some (k,) are on its disks, in words."""
+    """Effect of a side on a load with forces (k, 3), of which some (k,) are on the side's disks, in words."""
     table, side = scene.case.side(edge.side), edge.side
     prescribed = [axis for axis in load.axes if axis in table.prescribed(edge.axis)]
     if table.factors and on_side.all():
@@ -70,7 +70,7 @@ def _at_side(scene: DiskScene, load: Load, edge: Edge, forces: np.ndarray, on_si
 
 
 def _twice(loads: Sequence[Load]) -> Iterator[str]:
-    """Loads that are the same as an earlier one but for their name."""
+    """Warnings about loads that equal an earlier one except for their name."""
     seen: dict[str, str] = {}
     for load in loads:
         same = repr(load.model_copy(update={"name": ""}))

@@ -113,7 +113,7 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
 
 
 def places_of(particles: Arrays, snapshot: Arrays) -> np.ndarray:
-    """Where disks are drawn, (n, 3) m: at their positions at the start moved by their displacements."""
+    """Places (n, 3) m at which disks are drawn: their positions at the start plus their displacements."""
     return in_space(particles["position"] + snapshot["displacement"][:, :2])
 
 

@@ -9,7 +9,7 @@ from dembound.results.reader import laws_in_words
 from dembound.words import percent
 
 SHOWN = 1e-3
-"""Share of the stress below which what differs in the packing itself is not told."""
+"""Share of the stress below which deviations of the packing itself are not reported."""
 
 
 def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
@@ -30,7 +30,7 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list[str]:
-    """Number of all broken bonds and their modes, after those of the static stages, which have their own numbers."""
+    """Numbers and modes of all broken bonds, without those of the static stages, which are reported with them."""
     count = cracks["tension"] + cracks["shear"]
     if count == 0:
         return []
@@ -43,7 +43,7 @@ def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list
 
 
 def _settled(static: Mapping[str, Any], words: str) -> list[str]:
-    """Results of a static stage, after those of its free-field column if there is one."""
+    """Results of a static stage, preceded by those of its free-field column if there is one."""
     column = [] if static["column"] is None else [f"column settled in {_stage(static['column'])}"]
     return [*column, f"{words} in {_stage(static)}"]
 
@@ -59,7 +59,7 @@ def _stage(static: Mapping[str, Any]) -> str:
 
 
 def _even(uniformity: Mapping[str, Any]) -> str:
-    """How far blocks are from the stress asked for, in words."""
+    """Deviation of the stress in blocks from the requested stress, in words."""
     own, beyond, near = (uniformity[key] for key in ("packing", "beyond", "near_holes"))
     return (
         f", to {percent(uniformity['deviation'])} in {block_in_words(uniformity)}"

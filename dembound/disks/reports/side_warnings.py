@@ -1,4 +1,4 @@
-"""Warnings about sides that stand in for the ground beyond, and do so badly."""
+"""Warnings about sides that represent the ground beyond them poorly."""
 
 import math
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from dembound.disks.scene import DiskScene
 
 
 def side_warnings(scene: DiskScene) -> Iterator[str]:
-    """All of them, one line each."""
+    """Warnings about sides, one line each."""
     yield from _send_back(scene)
     yield from _take_from_waves(scene)
     yield from _hold_monitors(scene)
@@ -21,11 +21,11 @@ def side_warnings(scene: DiskScene) -> Iterator[str]:
 
 
 TAKEN = 0.1
-"""Share of a wave's velocity that sides along it may take without a warning; foreseen to within that."""
+"""Error, over a wave's velocity, by sides along it up to which there is no warning; known to within that."""
 
 
 def _send_back(scene: DiskScene) -> Iterator[str]:
-    """Dashpots and springs that send back much of plane waves along the side's normal, whoever chose their factors."""
+    """Warnings about dashpots and springs that reflect much of plane waves along the side's normal."""
     sides = [side for side in scene.edges if scene.case.side(side).factors]
     frequency = mean_frequency(scene.case) if sides else math.nan
     for side in sides:
@@ -36,7 +36,7 @@ def _send_back(scene: DiskScene) -> Iterator[str]:
 
 
 def _reason(scene: DiskScene, side: str, motion: Motion, beta: float, share: float, frequency: float) -> str:
-    """What a side sends back, and why: its factor, or else its springs or disks."""
+    """The reflection of a side, and its cause: its factor, or else its springs or disks."""
     matched = homogenised_beta(scene, side, motion)
     if abs(reflected(beta, matched)) > TOO_MUCH:
         return poor_factor(motion, share, beta, matched, scene.case.side(side).waves.get(motion))
@@ -53,7 +53,7 @@ def _reason(scene: DiskScene, side: str, motion: Motion, beta: float, share: flo
 
 
 def _take_from_waves(scene: DiskScene) -> Iterator[str]:
-    """Sides along the wave of a driven side that do not move as ground beyond them would."""
+    """Warnings about sides along the wave of a driven side that do not move as ground beyond them would."""
     for found in taken_from_waves(scene):
         place, most = max(found.shares.items(), key=lambda each: each[1])
         if most <= TAKEN:
@@ -69,7 +69,7 @@ def _take_from_waves(scene: DiskScene) -> Iterator[str]:
 
 
 def _hold_monitors(scene: DiskScene) -> Iterator[str]:
-    """Sides that hold the disk of a monitor still, so that there is nothing to see."""
+    """Warnings about sides that hold the disk of a monitor, so that it records no motion."""
     for side, edge in scene.edges.items():
         table = scene.case.side(side)
         if table.waves or not {0, 1} <= {*table.prescribed(edge.axis), *scene.ground.held}:
@@ -80,7 +80,7 @@ def _hold_monitors(scene: DiskScene) -> Iterator[str]:
 
 
 def _mirror_otherwise(scene: DiskScene) -> Iterator[str]:
-    """Planes of symmetry across which a lattice does not continue as its own mirror image."""
+    """Warnings about planes of symmetry across which a lattice does not continue as its own mirror image."""
     packing, brick = scene.case.packing, scene.ground.brick
     for side, edge in scene.edges.items():
         mirrored = scene.case.side(side).is_mirror and packing.is_lattice

@@ -1,4 +1,4 @@
-"""Warnings about springs of sides that are not those of the ground beyond: a source that is none, another modulus."""
+"""Warnings about springs of sides that differ from the ground beyond: wrong source, or another modulus."""
 
 import math
 from collections.abc import Iterator
@@ -13,14 +13,15 @@ UNLIKE = 2.0
 """Factor by which the springs' mean 1/L may differ from that of the nearest place where waves begin."""
 
 FAR = 10.0
-"""Distance over the diagonal of the scene above which, without such a place, a source is taken for a mistake."""
+"""Distance of a given source, over the scene's diagonal, above which it is taken for a mistake, if no place where
+waves begin is near it."""
 
 OTHER_MODULUS = 10.0
 """Factor by which the springs' G may differ from that of the disks."""
 
 
 def spring_warnings(scene: DiskScene) -> Iterator[str]:
-    """All of them, one line each."""
+    """Warnings about springs of sides, one line each."""
     places = places_of_sources(scene)
     for side in scene.edges:
         table = scene.case.side(side)
@@ -32,7 +33,7 @@ def spring_warnings(scene: DiskScene) -> Iterator[str]:
 
 
 def places_of_sources(scene: DiskScene) -> dict[str, np.ndarray]:
-    """Where waves begin or are scattered, by table: the middle (2,) m of loads with a place, and of holes."""
+    """Places where waves begin or are scattered, by table: the middle (2,) m of localised loads, and of holes."""
     places = {}
     for load in scene.case.load:
         if not load.is_everywhere:
@@ -46,7 +47,7 @@ def places_of_sources(scene: DiskScene) -> dict[str, np.ndarray]:
 
 
 def _wrong_source(scene: DiskScene, side: str, table: Springs, places: dict[str, np.ndarray]) -> Iterator[str]:
-    """A source from which the springs would be far softer or stiffer than from the places where waves begin."""
+    """A warning about a source with which springs are far softer or stiffer than for the places where waves begin."""
     if table.source is None:
         times = (table.distance or 0.0) / math.hypot(*scene.size)
         if times > FAR:
@@ -80,7 +81,7 @@ def _wrong_source(scene: DiskScene, side: str, table: Springs, places: dict[str,
 
 
 def _wrong_modulus(scene: DiskScene, side: str, table: Springs) -> Iterator[str]:
-    """A given modulus of springs that is not that of the disks."""
+    """A warning about a given modulus of springs that differs from that of the disks."""
     if table.young_modulus is None:
         return
     medium = boundary_medium(scene.case, scene.ground, scene.edges[side].axis)

@@ -1,4 +1,4 @@
-"""What a scene of disks takes on disk, for n disks with b contacts."""
+"""Bytes on disk of a scene of n disks with b contacts."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from dembound.motion.storage import POINT, Storage, mesh_bytes, paraview_bytes
 from dembound.outside.ram import memories_bytes
 
 CHANGING, CONSTANT = 44.0, 21.0
-"""Bytes of the motion of a disk for ParaView, and of those fields that remain; the numbers of broken bonds are among
-the latter, as most remain."""
+"""Bytes per disk for ParaView of its motion, and of the other fields; numbers of broken bonds count as constant, as
+most are."""
 
 NODE_HEADER, NODE_CELL, NODE_CHANGING = 62.0, 42.0, 52.0
 """Bytes of a node of a continuum in the record, positions and cells, of a cell in the VTKHDF file, and of its motion
@@ -37,7 +37,7 @@ def storage_of(scene: DiskScene) -> Storage:
 
 
 def _checkpoint_bytes(scene: DiskScene, sizes: SceneSizes) -> float:
-    """Bytes of a checkpoint: beside motion and pairs, datum, both loads and speeds (104 n); memories of a continuum.
+    """Bytes of a checkpoint: motion, pairs, datum, both loads and speeds (104 n); convolution variables of a continuum.
 
     Under a history-dependent law also the velocity at its change, the state at the last entry of the ledger and origins
     (88 n); after a static stage the forces that balance the stress, before and after, and their datum (98 n).

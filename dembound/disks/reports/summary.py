@@ -41,8 +41,10 @@ def asked_stress(scene: DiskScene) -> list[float] | None:
 def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
     """The static stage: steps, force ratio, mean reaction of supports and tractions and mean residual (N), stress (Pa).
 
-    Also whether it ended under the elastic law, how far the stress in blocks is from the one asked for, and the same
-    for the free-field column alone, if there is one, and before an excavation, if there was one. asked : target stress,
+    Also whether it ended under the elastic law, the deviation of the stress in blocks from the requested one, and the
+    same
+    entries for the free-field column, if there is one, and before an excavation, if there was one. asked : target
+    stress,
     Pa.
     """
     return {
@@ -61,7 +63,7 @@ def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, An
 
 
 def _describe_uniformity(found: Uniformity) -> dict[str, Any]:
-    """How far the stress in blocks is from the one asked for, see `Uniformity`."""
+    """The deviation of the stress in blocks from the requested one, see `Uniformity`."""
     return {
         "block": found.block.tolist(),
         "deviation": found.deviation,

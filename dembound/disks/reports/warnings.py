@@ -43,7 +43,7 @@ SPEED_ERROR = 0.1
 """Share by which the P-wave speed of the packing may differ from the given one without a warning."""
 
 UNEVEN = 0.01
-"""Share of the largest principal stress asked for by which a block may differ from it without a warning."""
+"""Deviation of a block, over the largest requested principal stress, up to which there is no warning."""
 
 AT_REST = 1e-14
 """Velocity over that of waves, so strain, below which the motion of a settled body is rounding.
@@ -53,7 +53,7 @@ Settled strains of 1e-6 to 1e-2 are known to 1e-16 of themselves; slopes under t
 
 
 def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
-    """All of them, one line each; time_step in s."""
+    """Warnings about a scene of disks, one line each; time_step in s."""
     return [
         *_empty_holes(scene),
         *_holes_at_periodic_sides(scene),
@@ -125,7 +125,7 @@ def _steady_without_static(scene: DiskScene) -> Iterator[str]:
 
 
 def _gives_way(scene: DiskScene, load: Load) -> str:
-    """What does not come to rest under a load that stays, in words."""
+    """The part of the body that does not come to rest under a lasting load, in words."""
     tables = scene.case.boundary.values()
     if any(table.factors for table in tables):
         return "; viscous sides creep under it"
@@ -150,7 +150,7 @@ def _locked_in(scene: DiskScene) -> Iterator[str]:
 
 
 def _settles_in_tension(scene: DiskScene) -> Iterator[str]:
-    """A stress to settle under whose largest principal stress is a tension above the bonds' strength."""
+    """A warning about a target stress whose largest principal stress is a tension above the bonds' strength."""
     static, strength = scene.case.static, scene.case.material.pb_ten
     if static is None or static.stress is None or strength is None:
         return
@@ -179,7 +179,7 @@ def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
 
 
 def _s_speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
-    """A given speed of S waves that the packing does not have: only the dashpots of its sides take it."""
+    """A warning about a given speed of S waves that the packing does not have: only dashpots of sides use it."""
     given = scene.case.material.s_wave_speed
     if given is None:
         return
@@ -226,7 +226,7 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
 
 
 def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:
-    """A stress asked for that blocks differ from; beside holes and under steady loads they should.
+    """A warning about blocks that deviate from the target stress; beside holes and under steady loads they should.
 
     static : of the summary.
     """
@@ -243,7 +243,7 @@ def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:
 
 
 def _whence(found: Mapping[str, Any]) -> str:
-    """What makes blocks differ, in words."""
+    """The reason why blocks deviate, in words."""
     if found["packing"] < SHOWN:
         return "sides that are held, contacts that slid or opened, or too large a static.ratio"
     return (
@@ -253,7 +253,7 @@ def _whence(found: Mapping[str, Any]) -> str:
 
 
 def _not_elastic(found: Mapping[str, Any] | None) -> Iterator[str]:
-    """A load factor below 1: the motion is not that of the material."""
+    """A warning about a load factor below 1: the motion is not that of the material."""
     if found is not None and found["factor"] is not None and found["factor"] < 1.0:
         law = f"take law = {with_history()}, or smaller waves"
         yield f'material.law: is "elastic", but {load_factor_in_words(found)}; {law}'

@@ -35,17 +35,17 @@ ROTATION = 2
 """The component of held motions that is the rotation of disks."""
 
 ROTATION_MATTERS = 0.02
-"""Relative change of the speed of S waves from which it is told that disks do not turn."""
+"""Relative change of the speed of S waves from which on there is a warning that disks do not rotate."""
 
 _TOO_LARGE = {
     False: "the elastic law is for small ones, are the units right?",
     True: "rock and soil break at a tenth of 3 %, are the units right?",
 }
-"""By whether the law has a history."""
+"""Advice on large strains, by whether the law is history-dependent."""
 
 
 def wave_warnings(scene: DiskScene, time_step: float) -> Iterator[str]:
-    """All of them, one line each; time_step in s."""
+    """Warnings about waves, one line each; time_step in s."""
     yield from _tension(scene)
     yield from _too_few_per_wavelength(scene)
     yield from _never_arrives(scene)
@@ -114,7 +114,7 @@ def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
 
 
 def _too_short(scene: DiskScene, wave: Wave, count: float) -> str:
-    """What is wrong with a wave with this number of particles in its shortest wavelength, and how much of it."""
+    """The problem of a wave with `count` particles in its shortest wavelength, and the share of its energy."""
     if count < 1.0:
         return "has a shortest wavelength below the diameter of a particle; the packing will disperse it"
     mean = slowest_speed(scene.ground) / mean_frequency_of(wave) / scene.ground.brick.mean_diameter
@@ -125,14 +125,14 @@ def _too_short(scene: DiskScene, wave: Wave, count: float) -> str:
 
 
 def _too_sudden(scene: DiskScene, wave: Constant) -> str:
-    """What is wrong with a constant that rises too fast for the particles, and which rise is long enough."""
+    """The problem of a constant that rises too fast for the particles, and a rise that is long enough, in words."""
     least = FEWEST_PER_WAVELENGTH * HANN_FADE * scene.ground.brick.mean_diameter / slowest_speed(scene.ground)
     rise = f"rises within {wave.rise:g} s" if wave.rise > 0.0 else "is a step (rise = 0)"
     return f"{rise}, which is shorter than the particles can follow, {least:.2g} s"
 
 
 def _never_arrives(scene: DiskScene) -> Iterator[str]:
-    """A wave at an angle that is not in the body before the run ends."""
+    """A warning about an oblique wave that does not reach the body before the run ends."""
     duration = scene.case.run.duration
     if scene.ground_waves is not None and (begin := arrival(scene, scene.ground_waves)) >= duration:
         yield f"incident: its wave reaches the disks at {begin:.4g} s only, after the end of the run at {duration:g} s"
@@ -146,7 +146,7 @@ def _travel_time(scene: DiskScene) -> float:
 
 
 def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
-    """Waves and loads whose stress is a very small part, or a large multiple, of the bonds' tensile strength."""
+    """Warnings about waves and loads whose stress is tiny or huge relative to the bonds' tensile strength."""
     strength, static = scene.case.material.pb_ten, scene.case.static
     if strength is None:
         return

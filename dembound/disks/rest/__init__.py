@@ -1,1 +1,1 @@
-"""The static stage: tractions and loading, the way to rest, what has settled."""
+"""The static stage: tractions and loading, the path to rest, the settled body."""

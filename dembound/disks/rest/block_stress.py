@@ -1,4 +1,4 @@
-"""The mean stress in blocks of a body, from the forces across its contacts, and how far it is from a given one."""
+"""Mean stress in blocks of a body, from the forces across its contacts, and its deviation from a given one."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Blocks:
     Attributes
     ----------
     low, size : (2,) m, lower left corner of the first one, and the size of each. count : (2,) along x and y. wraps :
-    (2,) bool, whether the body is periodic there; it then has no rim. diameter : m, mean of the disks.
+    (2,) bool, whether the body is periodic along the axis; it then has no rim. diameter : m, mean of the disks.
     """
 
     low: np.ndarray
@@ -57,7 +57,7 @@ class Blocks:
         return cls(scene.assembly.origin + low, (high - low) / count, count, wraps, diameter)
 
     def stress(self, found: Iterable[Piece], positions: np.ndarray) -> np.ndarray:
-        """Mean stress (nx, ny, 3) xx, yy, xy in Pa of each, tension positive; xy is the mean of both shear stresses.
+        """Mean stress (nx, ny, 3) xx, yy, xy in Pa of each block, tension positive; xy averages both shear stresses.
 
         It is Σ w f_a l_b over the block's area: with the force f on the first disk of a contact, the vector l from its
         centre to that of the second, and the part w, inside the block, of a square of a mean diameter round the middle
@@ -79,7 +79,7 @@ class Blocks:
         return (total / np.prod(self.size)).T.reshape(nx, ny, 3)
 
     def _shares(self, middle: np.ndarray, axis: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """The two columns or rows of blocks (k,) in which a square round each place (k,) m may lie, and its parts."""
+        """The two columns or rows of blocks (k,) that a square round each place (k,) m may touch, and its parts."""
         size, begin = float(self.size[axis]), middle - self.low[axis] - 0.5 * self.diameter
         first = np.floor(begin / size).astype(np.int64)
         beyond = np.clip(1.0 + (begin - (first + 1) * size) / self.diameter, 0.0, 1.0)
@@ -88,13 +88,13 @@ class Blocks:
 
     @property
     def middles(self) -> np.ndarray:
-        """(nx, ny, 2) m, of each."""
+        """Middle (nx, ny, 2) m of each block."""
         at = np.stack(np.meshgrid(*(np.arange(count) for count in self.count), indexing="ij"), axis=-1)
         middles: np.ndarray = self.low + (at + 0.5) * self.size
         return middles
 
     def near(self, box: tuple[float, float, float, float]) -> np.ndarray:
-        """Which blocks (nx, ny) bool come within the width of the rim of a box left, bottom, right, top, m."""
+        """Mask (nx, ny) of blocks within the width of the rim of a box left, bottom, right, top, m."""
         low, high = np.array(box[:2]) - RIM * self.diameter, np.array(box[2:]) + RIM * self.diameter
         half = 0.5 * self.size
         there: np.ndarray = np.asarray(((self.middles + half > low) & (self.middles - half < high)).all(axis=-1))
@@ -112,13 +112,15 @@ def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray)
 
 @dataclass(frozen=True, eq=False)
 class Uniformity:
-    """How far the stress in blocks is from the one asked for; all shares are of its largest principal stress.
+    """Deviation of the stress in blocks from the requested one, over its largest principal stress.
 
     Attributes
     ----------
-    block : (2,) m, width and height of a block. deviation : the largest of a component in a block, but for those near
-    holes; place : (2,) m, the middle of this block. packing : the largest in the elastic packing without sides, which
-    a random one has of its own. near_holes : the largest near holes; nan without any.
+    block : (2,) m, width and height of a block. deviation : the largest of a component in a block not near a hole;
+    place :
+    (2,) m, the middle of this block. packing : the largest in the elastic packing without sides, an inherent property
+    of a
+    random one. near_holes : the largest near holes; nan without any.
     """
 
     block: np.ndarray
@@ -130,7 +132,7 @@ class Uniformity:
 
     @classmethod
     def of(cls, scene: DiskScene, system: DiskSystem, displacement: np.ndarray, asked: np.ndarray) -> Uniformity:
-        """The uniformity of a body at displacements (3, n), where a stress (3,) Pa has been asked for."""
+        """The uniformity of a body at displacements (3, n), for a requested stress (3,) Pa."""
         blocks, stress = Blocks.of(scene), block_stress(scene, system, displacement)
         xx, yy, xy = asked
         largest = abs(0.5 * (xx + yy)) + np.hypot(0.5 * (xx - yy), xy)
@@ -154,12 +156,12 @@ class Uniformity:
         )
 
     def memory(self) -> Arrays:
-        """All numbers as arrays, from which `recalled` makes the same."""
+        """All numbers as arrays, from which `recalled` restores the object."""
         return {field.name: np.array(getattr(self, field.name)) for field in fields(self)}
 
     @classmethod
     def recalled(cls, memory: Arrays) -> Self:
-        """The uniformity restored from what `memory` has returned."""
+        """The uniformity restored from the arrays returned by `memory`."""
         block, place = (memory[name].copy() for name in ("block", "place"))
         numbers = {name: float(memory[name]) for name in ("deviation", "packing", "beyond", "near_holes")}
         return cls(block=block, place=place, **numbers)

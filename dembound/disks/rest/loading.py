@@ -1,10 +1,10 @@
-"""How a static stage loads a body whose contacts may slide and open and whose bonds may break.
+"""Loading of a body in a static stage whose contacts may slide and open and whose bonds may break.
 
-Where the elastic state is within all limits it is the answer, and is reached without slip: the body settles under the
-elastic law, in which the way to rest has no effect. If a contact or bond is beyond its limits there, the body follows
-the elastic path up to the first one that reaches them, and goes on from there under its own law, while what is still
-out of balance is put on slowly and in proportion. Put on at once, it would send waves through the body, and where these
-meet contacts would slide that are far from sliding at rest.
+Where the elastic state is within all limits it is the result, and is reached without slip: the body settles under the
+elastic law, in which the path to rest has no effect. If a contact or bond is beyond its limits there, the body follows
+the elastic path up to the first one that reaches them, and goes on from there under its own law, while the remaining
+unbalanced forces are applied slowly and in proportion. Applied at once, they would send waves through the body, and
+where these meet contacts would slide that are far from sliding at rest.
 """
 
 from __future__ import annotations
@@ -22,29 +22,28 @@ from dembound.kernels.contact_measures import slack
 from dembound.motion.state import Arrays, State
 
 LOOK = 100
-"""Steps between two increments of loads that are put on slowly, and between two evaluations of the force ratio."""
+"""Steps between two increments of slowly applied loads, and between two evaluations of the force ratio."""
 
 CROSSINGS = 3.0
-"""Time in which all loads are put on, in those in which the slowest waves cross a body along x and then along y.
+"""Time in which all loads are applied, over that in which the slowest waves cross a body along x and then along y.
 
 Slip where all contacts slide alike (square lattice, 96 disks wide, friction 0.3): the stress in blocks of eleven
-diameters differs by 2.2, 0.34, 0.20, 0.19 % for 0, 1, 3 and 8 of them.
-"""
+diameters differs by 2.2, 0.34, 0.20, 0.19 % for 0, 1, 3 and 8 of them."""
 
 LEAST = 20
-"""Least number of increments in which all loads are put on."""
+"""Least number of increments in which all loads are applied."""
 
 HALVINGS = 12
-"""How often the range is halved in which the elastic path reaches the first limit."""
+"""Number of bisections by which the first limit on the elastic path is located."""
 
 
 class Loading:
-    """Puts the loads of a static stage on.
+    """Applies the loads of a static stage.
 
     Parameters
     ----------
     body : the scene that settles.
-    system : its parts, which have begun: under the elastic law, or if their contacts have a history under their own.
+    system : its parts, which have begun: under the elastic law, or, if their contacts have a history, under their own.
     start : (3, n) displacements at which they have begun.
     step : s.
     """
@@ -59,20 +58,20 @@ class Loading:
                 self._raise_from(lacking, 1.0, 0)
 
     def is_rising(self, step: int) -> bool:
-        """Whether a part of the loads has still to be put on after so many steps."""
+        """Whether a part of the loads is not applied yet after this number of steps."""
         return step < self._begun + self._steps
 
     def put_on(self, state: State) -> None:
-        """Put on the loads of the present step."""
+        """Apply the loads of the present step."""
         load = self._load(state.displacement)
         if self.is_rising(state.step):
             load = load - (1.0 - (state.step - self._begun) / self._steps) * self._lacking
         self._system.apply(load)
 
     def is_the_answer(self, state: State) -> bool:
-        """Whether the state of rest is that of the body's own law; if not, the body is set to go on under that.
+        """Whether the state of rest is that of the body's own law; if not, set the body to go on under that.
 
-        It is, unless it is one of the elastic law with contacts or bonds beyond their limits. Without `elastic_start`
+        False for a state of the elastic law with contacts or bonds beyond their limits. Without `elastic_start`
         the body's own law takes over in any case.
         """
         if self._system.uses_history or not self._body.scene.has_history:
@@ -94,16 +93,16 @@ class Loading:
         return True
 
     def memory(self) -> Arrays:
-        """The loads that are put on slowly, and since when."""
+        """The slowly applied loads, and the step of their begin."""
         return {"lacking": self._lacking, "rising": np.array([self._begun, self._steps])}
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         self._lacking = memory["lacking"].copy()
         self._begun, self._steps = memory["rising"].tolist()
 
     def _go_on_from(self, share: float, state: State) -> None:
-        """Leave the elastic law where it has a share of all that it moves by up to rest."""
+        """Leave the elastic law at a share of its path to rest."""
         lacking = (1.0 - share) * self._out_of_balance()
         state.displacement = self._start + share * (state.displacement - self._start)
         state.velocity = np.zeros_like(state.displacement)
@@ -111,7 +110,7 @@ class Loading:
         self._raise_from(lacking, 1.0 - share, state.step)
 
     def _raise_from(self, lacking: np.ndarray, share: float, step: int) -> None:
-        """Put on forces (3, n) from a step on, in a share of the time for all."""
+        """Apply forces (3, n) from a step on, in a share of the time for all."""
         self._lacking, self._begun = lacking, step
         self._steps = LOOK * math.ceil(min(share, 1.0) * self._longest)
 
@@ -127,13 +126,13 @@ class Loading:
         return load + inner + system.forces.of_ties(start)
 
     def _load(self, displacement: np.ndarray) -> np.ndarray:
-        """All loads (3, n) at displacements (3, n); with sides that rotate only under a law whose forces do."""
+        """All loads (3, n) at displacements (3, n); they rotate with sides only under a law of updated geometry."""
         return self._body.load(displacement if self._system.uses_history else np.zeros_like(displacement))
 
     def _share_within(self, rest: np.ndarray) -> float:
-        """The largest share of the way (3, n) from the start to rest, up to 1, within the limits of the elastic law.
+        """The largest share, up to 1, of the path (3, n) from the start to rest within the limits of the elastic law.
 
-        All limits are convex, so what is between two states within them is within them, too.
+        All limits are convex, so a state between two states within them is within them, too.
         """
         way, low, high = rest - self._start, 0.0, 1.0
         if self._is_within(rest):
@@ -154,7 +153,7 @@ class Loading:
 
 
 def _crossing(scene: DiskScene) -> float:
-    """Time (s) in which the slowest waves cross a body along x and then along y; 0 if there are none."""
+    """Time (s) in which the slowest waves cross a body along x and then along y; 0 if no wave runs."""
     try:
         speed = slowest_speed(scene.ground)
     except CaseError:  # disks that only touch, without friction, have no stiffness against some motion

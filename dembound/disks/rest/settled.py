@@ -14,7 +14,7 @@ from dembound.motion.state import Arrays, within
 from dembound.table import every_key
 
 NUMBERS = ("steps", "ratio", "mean_reaction", "mean_residual", "stress")
-"""What is kept of a stage apart from its body, cracks and blocks."""
+"""Names of the numbers of a stage kept besides its body, cracks and blocks."""
 
 
 @dataclass(frozen=True)
@@ -24,15 +24,16 @@ class Settled:
     Attributes
     ----------
     start : the state in which the run begins.
-    steps : steps it took.
+    steps : number of steps of the stage.
     ratio : mean unbalanced over mean contact force at the end.
     mean_reaction : N, mean force of supports and tractions on the particles they act on.
     mean_residual : N, mean unbalanced force on all other particles, which F_0 balances too.
-    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive, see `block_stress`. uniformity : how
-    far blocks are from a target stress; None without one.
-    cracks : the bonds that broke on the way.
-    before : the same before an excavation, if there was one, with the numbering of particles before it. column : the
-    same for the free-field column alone, if there is one.
+    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive, see `block_stress`. uniformity :
+    deviation of blocks from a target stress; None without one.
+    cracks : the bonds that broke during the stage.
+    before : results before an excavation, if there was one, with the numbering of particles before it. column : results
+    of
+    the free-field column settled by itself, if there is one.
     """
 
     start: Start
@@ -60,7 +61,7 @@ class Settled:
 
     @classmethod
     def recalled(cls, scene: DiskScene, memory: Arrays) -> Self:
-        """The settled body restored from what `memory` has returned for an equal scene."""
+        """The settled body of an equal scene restored from the arrays returned by `memory`."""
         contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in memory) else {}
         for part, pairs in contacts.items():
             pairs.recall(within(memory, f"contacts/{part}"))
@@ -78,9 +79,9 @@ class Settled:
 
 
 def among(displacement: np.ndarray, scene: DiskScene) -> np.ndarray:
-    """Displacements (3, …) of a scene's disks as those of all its nodes, zero for those of continua.
+    """Displacements (3, …) of a scene's disks extended to all its nodes, zero for nodes of continua.
 
-    The displacement of a continuum is counted from rest: what its ties carry then is a part of what is balanced.
+    The displacement of a continuum is counted from rest: forces of its ties at rest are part of the balanced forces.
     """
     of_all = np.zeros((3, scene.count))
     of_all[:, : scene.disk_count] = displacement[:, : scene.disk_count]
@@ -88,11 +89,10 @@ def among(displacement: np.ndarray, scene: DiskScene) -> np.ndarray:
 
 
 def settling_keys(scene: DiskScene) -> dict[str, Any]:
-    """What the result of a scene's static stage depends on, as plain JSON values by key.
+    """All inputs that determine the result of a scene's static stage, as plain JSON values by key.
 
-    Of the boundaries these are free fields, which settle too, half cells, whose mass is halved, sides that belong to
-    the packing, and continua that settle beside a free-field column, with all settings, also chosen ones; of the loads
-    the steady ones.
+    Boundaries: free fields, which settle too, half cells, whose mass is halved, sides that belong to the packing, and
+    continua that settle beside a free-field column, with all settings, also chosen ones. Loads: the steady ones.
     """
     case = scene.case
     if case.static is None:

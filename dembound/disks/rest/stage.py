@@ -31,10 +31,10 @@ SAFETY = 0.9
 
 
 def settle(scene: DiskScene, on_look: OnLook | None = None, stages: Stages | None = None) -> Settled:
-    """Run a scene's static stage, or take what `stages` has kept of it.
+    """Run a scene's static stage, or take its result from `stages`.
 
     A scene with an excavation settles before it, and then again from this state, under the same loads and supports.
-    With a free field the column settles first, alone; the body starts from its state, and both settle together.
+    With a free field the column settles first, by itself; the body starts from its state, and both settle together.
     Otherwise the body could reach another state, as with friction there is more than one state of rest.
 
     Raises StalledError, with the force ratio reached, when the ratio no longer decreases or the steps exceed the
@@ -57,13 +57,13 @@ def stage_names(scene: DiskScene) -> list[str]:
 
 
 def _column(name: str) -> str:
-    """The name of the stage of the free-field column alone, before that of a body."""
+    """The name of the stage of the free-field column, which precedes the body's."""
     return f"{name}.column"
 
 
 @dataclass(frozen=True)
 class _Stage:
-    """One stage: its key in `stages`, its name in messages, who gets its progress, and what keeps it."""
+    """One stage: its key in `stages`, its name in messages, the receiver of its progress, and the store of results."""
 
     key: str
     name: str
@@ -72,7 +72,7 @@ class _Stage:
 
 
 def _settle_built(scene: DiskScene, stage: _Stage) -> Settled:
-    """The stage of a body as built, after that of its free-field column."""
+    """Settle a body as built, after its free-field column."""
     if scene.seam is None:
         return _settle(scene, lambda: None, stage)
     alone = replace(stage, key=_column(stage.key), name=f"{stage.name} of the free-field column alone")
@@ -81,7 +81,7 @@ def _settle_built(scene: DiskScene, stage: _Stage) -> Settled:
 
 
 def _excavate(scene: DiskScene, before: Start) -> Start:
-    """The state in which an excavated scene begins to settle: that before, with the history of its contacts."""
+    """The start of an excavated scene: the settled state before, with the history of the remaining contacts."""
     assert scene.kept is not None
     contacts = contact_lists(scene) if before.contacts else {}
     for name, pairs in contacts.items():
@@ -92,7 +92,7 @@ def _excavate(scene: DiskScene, before: Start) -> Start:
 
 
 def _beside(scene: DiskScene, column: Start) -> Start:
-    """The state in which a body with a settled column begins to settle: every particle and pair as its twin."""
+    """The start of a body with a settled column: every particle and pair in the state of its twin."""
     assert scene.seam is not None
     displacement = column.displacement[:, scene.seam.twin]  # of the disks
     contacts = contact_lists(scene) if column.contacts else {}
@@ -103,7 +103,7 @@ def _beside(scene: DiskScene, column: Start) -> Start:
 
 
 def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stage) -> Settled:
-    """One stage to rest, unless it is kept.
+    """Run one stage to rest, unless its result is kept.
 
     starting : returns its start, None for the scene as built.
     """

@@ -73,9 +73,9 @@ class StaticScene:
 
 
 def without_own_continua(scene: DiskScene) -> DiskScene:
-    """A scene without continua that are tied by the motion of its disks itself, in place of which supports hold it.
+    """A scene without continua tied by the absolute motion of its disks; supports hold it in their place.
 
-    Those tied by the motion relative to the free-field column stay, as a hole moves the ground round it.
+    Continua tied by the motion relative to the free-field column stay, as a hole moves the ground round it.
     """
     beyond = scene.outside if scene.outside is not None and scene.outside.twin is not None else None
     return replace(scene, outside=beyond, foot=None)

@@ -12,7 +12,7 @@ from dembound.packings.cut import BEYOND
 
 
 class Tractions:
-    """Forces on the sides of a body under a stress: those of the packing beyond, see `side_forces`.
+    """Forces of a target stress on the sides of a body: those of the packing beyond, see `side_forces`.
 
     Under them an elastic body has the stress everywhere.
 
@@ -36,7 +36,7 @@ class Tractions:
         """Forces and moments (3, n) N and N·m at displacements (3, n).
 
         With the updated geometry the forces rotate with their side, and grow with its length. Small additional
-        forces cancel what strained sides, or those that a hole reaches, leave of a resultant and a torque.
+        forces cancel the remaining resultant and torque of strained sides, or of sides that a hole reaches.
         """
         moved = displacement if self._follow else np.zeros_like(displacement)
         force = np.zeros_like(displacement)

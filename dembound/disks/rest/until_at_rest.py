@@ -1,4 +1,4 @@
-"""When a static stage ends: at rest, or with an error that names what is not."""
+"""The end of a static stage: at rest, or with an error that names the parts that are not."""
 
 import numpy as np
 
@@ -16,21 +16,21 @@ PATIENCE = 20_000
 """Steps after which a stage has stalled if the force ratio has not decreased by a tenth."""
 
 ELASTIC_PATIENCE = 5_000
-"""Steps after which a body without such a decrease leaves the elastic law."""
+"""Steps without such a decrease after which a body leaves the elastic law."""
 
 WORST = 3
 """Number of particles in the message about a stalled stage."""
 
 
 class UntilAtRest(Tracker):
-    """Ends a static stage that is at rest or has stalled; until then it puts the loads on.
+    """Ends a static stage that is at rest or has stalled; until then it applies the loads.
 
     Parameters
     ----------
     body : the scene that settles.
     system : its parts.
-    loading : puts its loads on.
-    on_look : gets the steps done and the force ratio from time to time.
+    loading : applies its loads.
+    on_look : receives the number of steps done and the force ratio from time to time.
     stage : its name in messages.
 
     Attributes
@@ -80,7 +80,7 @@ class UntilAtRest(Tracker):
         self._look_after(state.step)
 
     def _begin_anew(self, state: State) -> None:
-        """Forget the progress so far, as the loads or the law have changed."""
+        """Reset the record of progress, as the loads or the law have changed."""
         self._best, self._best_at = np.inf, state.step
 
     def _fail(self, run: Run) -> None:
@@ -95,13 +95,13 @@ class UntilAtRest(Tracker):
         return {**super().memory(), **best, **self._loading.memory()}
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         super().recall(memory)
         self._best, self._best_at = float(memory["best"]), int(memory["best_at"])
         self._loading.recall(memory)
 
     def take_cracks(self) -> Cracks:
-        """The bonds that broke since this was last called."""
+        """The bonds that broke since the last call."""
         return joined([pairs.take_cracks() for pairs in self._contacts.values()])
 
     def _contact_forces(self, displacement: np.ndarray) -> np.ndarray:

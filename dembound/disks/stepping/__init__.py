@@ -1,1 +1,1 @@
-"""What moves: disks, free-field column and continuum as parts, ties between them, stress, balance at rest."""
+"""Stepping: disks, free-field column and continuum as parts, ties between them, stress, balance at rest."""

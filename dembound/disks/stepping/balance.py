@@ -49,7 +49,7 @@ class Balance:
         self._torn = np.zeros(scene.count, dtype=np.bool_)
 
     def work(self, displacement: np.ndarray) -> float:
-        """Work (J) done up to displacements (3, n), without that of their rotation, which the kernels count."""
+        """Work (J) done up to displacements (3, n), without the work of their rotation, which the kernels count."""
         return self._of_ended + float(np.sum(self.force * (displacement - self.datum)))
 
     def memory(self) -> Arrays:
@@ -60,7 +60,7 @@ class Balance:
 
     @classmethod
     def recalled(cls, scene: DiskBody, memory: Arrays) -> Balance:
-        """The balance restored from what memory() returned in another run of the same case."""
+        """The balance restored from the arrays returned by `memory` in another run of the same case."""
         balance = cls(scene, memory["force"].copy(), *(memory[name].copy() for name in _FIXED))
         for name in _EVOLVING:
             setattr(balance, f"_{name}", memory[name].copy())
@@ -70,7 +70,7 @@ class Balance:
         return balance
 
     def count_breaks_from(self, parts: Sequence[DiskPart]) -> None:
-        """Ignore the bonds broken so far when debris is looked for; parts : those of the body."""
+        """Ignore the bonds broken so far when debris is looked for; parts : of the body."""
         for part in parts:
             assert part.contacts is not None
             part.contacts.note_cracks()
@@ -82,7 +82,7 @@ class Balance:
 
         A piece has broken off if neither bonds nor closed contacts connect it to the largest piece and one of its bonds
         has broken since the start. Ground that was loose at the start therefore keeps its confining forces.
-        displacement (3, n) and velocity (3, n) are those after a step (s). The ended forces are removed from load (3,
+        displacement (3, n) and velocity (3, n) : after a step (s). The ended forces are removed from load (3,
         n), all steady forces; forces that still act through a seam are cancelled by their constant part.
         """
         loose = np.zeros(len(self._ended), dtype=np.bool_)

@@ -13,7 +13,7 @@ def contact_lists(scene: DiskBody) -> dict[str, ContactList]:
 
 
 def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
-    """The pairs of the particles `nodes`, which are one part; across its sides a column also has those of the seam."""
+    """The pairs of one part's particles `nodes`; across its sides a column also has the pairs of the seam."""
     wide, high = scene.assembly.size.tolist()
     sides = zip((wide, high), scene.case.periodic, strict=True)
     along_x, along_y = (length if wraps else None for length, wraps in sides)

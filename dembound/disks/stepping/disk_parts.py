@@ -19,7 +19,7 @@ class DiskParts:
 
     Parameters
     ----------
-    scene : the scene. start : whose contacts they have if the scene's law has a history; None: contacts as built.
+    scene : the scene. start : gives the contacts if the scene's law has a history; None: contacts as built.
     watches : whether the loop returns before a contact leaves the elastic law.
 
     Attributes

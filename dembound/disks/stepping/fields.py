@@ -1,4 +1,4 @@
-"""What is recorded of a system of disks beside its motion: stresses, contacts, and the fields of its continuum."""
+"""Recorded fields of a system of disks besides its motion: stresses, contacts, and fields of its continuum."""
 
 from collections.abc import Sequence
 from itertools import chain
@@ -17,7 +17,7 @@ from dembound.outside.part import GridPart
 
 
 class RecordedDisks(System):
-    """A system of disks with the fields that records have of it.
+    """A system of disks with its recorded fields.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class RecordedDisks(System):
         """The contacts and bonds of the whole scene at displacements (3, n) of this one, see `contact_columns`.
 
         Only with output.contacts. If this scene is stepped in place of a larger one, which is under the elastic law,
-        the contacts are those of the larger one, whose disks move as these.
+        the contacts are those of the larger one.
         """
         scene, whole = self.scene, self.scene.whole
         if not scene.case.output.contacts:

@@ -3,7 +3,7 @@
 A scene whose law is history-dependent begins in one of three ways:
 
 - under the elastic law that replaces it until a contact is about to leave the elastic range: a body as built, one that
-  settled under the elastic law, and one of which `reduce.settled` finds that it is elastic about its settled state;
+  settled under the elastic law, and one that is elastic about its settled state according to `reduce.settled`;
 - under the history-dependent law from the start, with contacts as the elastic law leaves them;
 - under the history-dependent law, with the history that contacts have from a static stage.
 """
@@ -24,8 +24,8 @@ class FirstLaw(NamedTuple):
     """The law with which a run or a static stage begins.
 
     has_history : whether it is history-dependent, otherwise it is elastic. goes_on : whether contacts keep the history
-    that they have from a static stage. is_elastic_again : whether it is elastic although a static stage had left the
-    elastic law; refused : why it is not where the case asks for this, a line.
+    from a static stage. is_elastic_again : whether it is elastic although a static stage had left the
+    elastic law; refused : a line with the reason why it is not, if the case asks for it.
     """
 
     has_history: bool
@@ -35,7 +35,7 @@ class FirstLaw(NamedTuple):
 
 
 def first_law(scene: DiskBody, disks: DiskParts, start: Start | None, datum: np.ndarray, *, settling: bool) -> FirstLaw:
-    """The law that the disks of a scene begin with at rest at a datum (3, n).
+    """The first law of a scene's disks at rest at a datum (3, n).
 
     start : the settled body they start from, None for a body as built. settling : whether this is a static stage. If
     the elastic law is used again, contacts keep the slip with which it holds.
@@ -66,7 +66,7 @@ def balanced(
 
 
 def not_balanced(law: FirstLaw, scene: DiskBody, forces: RestForces, load: np.ndarray) -> np.ndarray:
-    """All steady forces (3, n) of a body as built or in a static stage; load : (3, n) those of loads.
+    """All steady forces (3, n) of a body as built or in a static stage; load : (3, n) forces of loads.
 
     The elastic law does not include the forces of the body as built, such as a locked-in stress, which are added.
     """

@@ -1,4 +1,4 @@
-"""The load factor of a run under the elastic law: up to how many times its waves this law holds.
+"""The load factor of a run under the elastic law: the multiple of its waves up to which this law holds.
 
 The law is linear, so the motion under f times the waves is u_rest + f·(u − u_rest). Every limit of a pair, also those
 of sizes such as |F_s| ≤ μF_n, is one of straight lines in its stretch, shear and turn, which this motion meets at a
@@ -23,10 +23,10 @@ from dembound.motion.trackers import Every, Run
 from dembound.table import EVERYWHERE, Box, is_within
 
 LIMITS = ("opens", "slides", "slides", "breaks in tension", "breaks in tension", "breaks in shear", "breaks in shear")
-"""What a pair does at each limit of `limit_lines`."""
+"""Description of each limit of `limit_lines`."""
 
 LOAD_FACTOR = "load factor"
-"""Name of what is found about it."""
+"""Name of the finding."""
 
 
 def limit_lines(constants: np.ndarray, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
@@ -68,8 +68,7 @@ class LoadFactor(Every):
 
     Parameters
     ----------
-    case : with friction and strength. system : its parts, of whose pairs all count that are in contact, or bonded, at
-    the start.
+    case : with friction and strength. system : its parts; all pairs count that are in contact, or bonded, at the start.
 
     Attributes
     ----------
@@ -119,11 +118,11 @@ class LoadFactor(Every):
         }
 
     def memory(self) -> Arrays:
-        """What has been found, and the next step."""
+        """The least factor found so far with its pair, and the next step."""
         return {**super().memory(), "factor": np.array(self.factor), "found": self._found}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         super().recall(memory)
         self.factor, self._found = float(memory["factor"]), memory["found"].copy()
 
@@ -135,7 +134,7 @@ def load_factor_of(run: Run) -> LoadFactor | None:
 
 
 def least_load_factor(run: Run, inside: Box | None = None) -> dict[str, Finding]:
-    """The load factor as a number that is compared between runs; empty without one, or if it is not reached inside."""
+    """The load factor as a finding to compare between runs; empty without one, or if it is not reached inside."""
     tracker = load_factor_of(run)
     found = None if tracker is None else tracker.describe(run)
     if found is None or not is_within(inside or EVERYWHERE, *found["position"]):
@@ -144,7 +143,7 @@ def least_load_factor(run: Run, inside: Box | None = None) -> dict[str, Finding]
 
 
 def limit_in_words(limit: int, constants: np.ndarray) -> str:
-    """What a pair with these constants (12,) does at a limit of `limit_lines`."""
+    """Description of a limit of `limit_lines` for a pair with these constants (12,)."""
     has_gap = constants[3] < constants[2]
     return "closes" if limit == 0 and has_gap else LIMITS[limit]
 

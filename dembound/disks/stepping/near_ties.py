@@ -1,7 +1,7 @@
 """Cracks, open contacts and slip near the ties to a continuum, which stays elastic.
 
-Beyond its sides the ground has the stiffness of the body as built, so what breaks, opens or slides right beside them is
-not that of a larger body.
+Beyond its sides the ground has the stiffness of the body as built, so breaks, opening and slip right beside them
+differ from those of a larger body.
 """
 
 from __future__ import annotations
@@ -19,17 +19,16 @@ from dembound.kernels.tables import Contacts
 from dembound.motion.state import Arrays, State
 
 NEAR = 2.0
-"""Mean diameters between the centres of a tied disk and of one that is near it, at most."""
+"""Largest distance, in mean diameters, between the centres of a tied disk and of one that counts as near it."""
 
 ROUNDING = 1e-9
 """Part of a distance by which it may be longer."""
 
 LOST = 1e-3
-"""Share that a contact must have lost to count as open or as having slid: of the largest force of all pairs, or of that
-which waves and loads will make.
+"""Share of force that a contact must have lost to count as open or as having slid: of the largest force of all pairs,
+or of the expected force of waves and loads.
 
-Where nothing presses contacts together, the smallest forerunner of a wave opens them.
-"""
+Where nothing presses contacts together, the smallest forerunner of a wave opens them."""
 
 
 OPENED = "opened_or_slid"
@@ -52,7 +51,7 @@ def sides_near(scene: DiskBody) -> np.ndarray:
 
 
 def strongest_force(scene: DiskBody) -> float:
-    """Force (N per metre) on a disk of waves and loads of a case at their peaks: ρ c_p D v, and that of a load."""
+    """Force (N per metre) on a disk by waves and loads of a case at their peaks: ρ c_p D v, or the load's force."""
     case, ground = scene.case, scene.ground
     diameter = ground.brick.mean_diameter
     speed = max(ground.wave_speeds(axis)[0] for axis in (0, 1))
@@ -135,15 +134,15 @@ class NearTies:
         return self._found[1:]
 
     def memory(self) -> Arrays:
-        """Slip at the start, and what was found."""
+        """Slip at the start, and the findings so far."""
         return {"slip": self._slip, "step": self.step, "place": self.place}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         self._slip, self.step, self.place = (memory[name].copy() for name in ("slip", "step", "place"))
 
     def describe(self, side: str, time_step: float) -> dict[str, Any] | None:
-        """Time (s) and place (m) of what was found near the ties of a side, for a summary; None for nothing."""
+        """Time (s) and place (m) of the first opening or slip near the ties of a side, for a summary; None for none."""
         number = SIDES.index(side)
         if self.step[number] < 0:
             return None
@@ -153,7 +152,7 @@ class NearTies:
 def near_tie_warnings(scene: DiskBody, summary: Mapping[str, Any], cracks: Arrays) -> Iterator[str]:
     """A warning for each side near whose ties a bond has broken or a contact has opened or slid, whichever was first.
 
-    summary : of the run; cracks : time (k,) s, position (k, 2) m and particles (k, 2) of those in its record.
+    summary : of the run; cracks : time (k,) s, position (k, 2) m and particles (k, 2) from its record.
     """
     if scene.outside is None or not scene.has_history:
         return

@@ -103,7 +103,7 @@ class DiskPart(Part):
         return strain_energy(u, self.pairs, self.geometry)
 
     def take_cracks(self, steps: int) -> Cracks:
-        """The bonds that broke since this was last called; none under a law without a history."""
+        """The bonds that broke since the last call; none under a law without a history."""
         return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
@@ -111,12 +111,12 @@ class DiskPart(Part):
         return {} if self.contacts is None else {"coordination": (self.contacts.coordination(self.geometry), "1")}
 
     def memory(self) -> Arrays:
-        """Whether the law in use has a history, and the pairs."""
+        """Whether the law in use has a history, and the pairs, for a checkpoint."""
         pairs = {} if self.contacts is None else self.contacts.memory()
         return {"uses_history": np.array(self.uses_history), **pairs}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         self.uses_history = bool(memory["uses_history"])
         if self.contacts is not None:
             self.contacts.recall(memory)

@@ -22,7 +22,7 @@ class RestForces:
         self._scene, self._disks = scene, disks
 
     def elastic(self, displacement: np.ndarray) -> np.ndarray:
-        """Forces of contacts and of the seam under the elastic law."""
+        """Forces (3, n) of contacts and of the seam under the elastic law."""
         force = np.zeros_like(displacement)
         for part in self._disks.parts:
             part.add_elastic_forces(displacement, force)
@@ -31,9 +31,9 @@ class RestForces:
         return force
 
     def with_history(self, displacement: np.ndarray, *, fresh: bool) -> np.ndarray:
-        """Forces of contacts and of the seam under the history-dependent law; fresh: of contacts without history yet.
+        """Forces (3, n) of contacts and of the seam under the history-dependent law.
 
-        Those are first set to the state of the elastic law.
+        fresh : contacts have no history yet, and are first set to the state of the elastic law.
         """
         if fresh:
             self._disks.adopt(displacement)
@@ -57,7 +57,7 @@ class RestForces:
         return force
 
     def of_ties(self, displacement: np.ndarray) -> np.ndarray:
-        """Forces of the ties to continua."""
+        """Forces (3, n) of the ties to continua."""
         scene = self._scene
         force, u = np.zeros_like(displacement), scene.layout.spread(displacement)
         for each in scene.continua:

@@ -20,7 +20,7 @@ def turned_as_a_whole(
     """Displacements and velocities (3, n) of a body rotated exactly, from those of linearised rotation.
 
     Under the law of small displacements a body that rotates by θ moves from r to r + θ ẑ × r + w, which stretches it by
-    ½θ². The corresponding exact motion is that from r to R(θ)(r + w). datum : (3, n) displacements at the start.
+    ½θ². The exact motion is from r to R(θ)(r + w). datum : (3, n) displacements at the start.
     """
     mass = scene.mass
     displacement, velocity = displacement.copy(), velocity.copy()

@@ -9,7 +9,7 @@ from dembound.kernels.tables import Contacts
 
 
 def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np.ndarray:
-    """Stress (m, 3) of one part's particles, see `particle_stress`: the total stress, that of a static stage included.
+    """Total stress (m, 3) of one part's particles, including that of a static stage, see `particle_stress`.
 
     displacement (3, n) m and rad. Under the history-dependent law its forces are those at the beginning of the last
     step.
@@ -22,14 +22,14 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
 
     A particle's stress is Σ f_a l n_b over its area, πR² plus its share of the pores, half of that for half cells, with
     f the force on it at a contact and l n the vector from its centre to the contact (Love's and Weber's mean). Forces
-    from outside on a side are not contact forces and are not included.
+    from outside on a side are no contact forces and are not included.
 
     Parameters
     ----------
     scene : the scene of the particles.
     contacts : its pairs.
     displacement : (3, n) m and rad.
-    geometry : of the forces and vectors of the pairs, see `contact_forces.pieces`.
+    geometry : of the forces and vectors of the pairs, see `forces.pieces`.
     """
     moments = np.zeros((3, scene.disk_count))
     for piece in pieces(scene.layout, contacts, displacement, geometry):

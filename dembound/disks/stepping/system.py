@@ -27,16 +27,17 @@ class DiskSystem(RecordedDisks):
     ----------
     scene : the scene to be moved.
     time_step : Δt in s.
-    start : a body that has settled; the forces on its particles are balanced from then on, unless it is `settling`
+    start : a settled body; the forces on its particles are balanced from then on, unless it is `settling`
     again. None: as built, with nothing balanced. settling : whether this is a static stage, in which forces are not
     balanced. load : (3, n) steady forces and moments (N, N·m); None: the scene's own.
 
     Attributes
     ----------
     forces : computes forces inside the scene at rest. balance : the forces that balance those in a settled body; None
-    for a body as built or settling. near_ties : what leaves the elastic range near ties to a continuum; None without
+    for a body as built or settling. near_ties : contacts outside the elastic range near ties to a continuum; None
+    without
     one, or without a history. is_elastic_again : whether the elastic law is used again after a static stage that left
-    it; refused : why not where it is asked for.
+    it; refused : why it is not, if requested.
     """
 
     def __init__(
@@ -136,7 +137,7 @@ class DiskSystem(RecordedDisks):
         state.laws.append((self.law_name, state.step))
 
     def saved(self, state: State) -> tuple[str, ...]:
-        """In words, for how many steps the elastic law was used after a static stage that left it, if it was."""
+        """In words, the number of steps under the elastic law after a static stage that left it; empty without any."""
         if not self.is_elastic_again:
             return ()
         steps = state.laws[1][1] if len(state.laws) > 1 else state.step
@@ -166,7 +167,7 @@ class DiskSystem(RecordedDisks):
         return memory
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         super().recall(memory)
         kept = within(memory, "balance")
         self.balance = Balance.recalled(self.scene, kept) if kept else None
