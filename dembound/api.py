@@ -151,7 +151,7 @@ def advise(
     longest: float | None = None,
     threads: int | None = None,
 ) -> Advice:
-    """How wrong a case is, and the cheapest choices for errors, see docs/tasks/trust_a_result.md.
+    """The errors of a case, and the cheapest choices for error bounds, see docs/tasks/trust_a_result.md.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def advise(
     seeds : random packings with which the case is run. longest : CPU seconds that the steps of a choice may take.
     threads : as for `run`.
 
-    Raises CaseError for cases without monitors, whose errors are not known, and for a bound or a key that is none.
+    Raises CaseError for cases without monitors, whose errors are not known, and for an invalid bound or key.
     """
     with _threads(threads):
         return find_advice(case, bounds, of, keep, seeds, longest)
@@ -207,7 +207,7 @@ def calibrate(case: Case, side: str, **options: Any) -> tuple[Case, Calibration]
 def calibrate_all(case: Case, **options: Any) -> tuple[Case, list[Calibration]]:
     """Find all factors β of all sides with dashpots, for the waves whose motion is not held; see `calibrate`.
 
-    options : those of `calibrate`, except motion.
+    options : as of `calibrate`, except motion.
     """
     found = all_sides.calibrate_all(_of_disks(case), **options)
     return change(case, all_sides.changes_of(found)), found

@@ -35,7 +35,7 @@ def check(case: Case, results: Path = Path("results")) -> tuple[dict[str, str], 
 
 
 def _run_facts(planned: Plan, results: Path) -> Entries:
-    """Steps, memory, space on the disk and time, and the reductions of the scene."""
+    """Steps, RAM, space on the disk and time, and the reductions of the scene."""
     scene = planned.stepped
     step, limit = planned.time_step, planned.step_limit
     yield "time step", f"{step:.4g} s, {step / limit:.3f} of the limit {limit:.6g} s"
@@ -51,7 +51,7 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
 
 
 def _errors(planned: Plan) -> Entries:
-    """What formulas say about the error of a run without its motion, and where the rest is found."""
+    """Errors of a run that formulas give without its motion, and the command that estimates the others."""
     from dembound.accuracy.judges import judge_of
 
     case = planned.scene.case
@@ -64,7 +64,7 @@ def _errors(planned: Plan) -> Entries:
 
 
 def _here() -> str:
-    """The memory of this machine, where it is known."""
+    """The RAM of this machine as text, where it is known."""
     here = memory_here()
     return "" if here is None else f"; {has_in_words(here)}"
 

@@ -30,7 +30,7 @@ CONTROL = re.compile(rf"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff{_HIDDEN}]")
 
 
 def escaped(found: re.Match[str]) -> str:
-    r"""What was found as escapes such as ``\x1b``."""
+    r"""A matched character as an escape such as ``\x1b``."""
     return found[0].encode("unicode_escape").decode()
 
 
@@ -83,7 +83,7 @@ class RunError(DemboundError):
 
 
 class NotAccurateError(DemboundError):
-    """No choice whose error is as small as asked for; the message has the best one."""
+    """No choice keeps the requested error bound; the message has the best one."""
 
     exit_code = 3
 

@@ -31,7 +31,7 @@ def _disks() -> Kind[Any, Any]:
 
 
 KINDS: Mapping[str, Callable[[], Kind[Any, Any]]] = {"bar": _bars, "disks": _disks}
-"""By the name of the kind, in the order of `SCHEMAS`; a run imports only the kind it needs."""
+"""Kinds of bodies by name, in the order of `SCHEMAS`; a run imports only the kind it needs."""
 
 
 def kind_of(case: Case) -> Kind[Any, Any]:

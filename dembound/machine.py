@@ -1,4 +1,4 @@
-"""The memory, disks and cores of this machine: how much there is, and how arrays that are removed give memory back."""
+"""RAM, disks and cores of this machine, and a setting by which removed arrays return their RAM."""
 
 import ctypes
 import os
@@ -12,15 +12,14 @@ OWN_PAGES = 1 << 20
 """Bytes from which on an array has pages of its own, which go back to the system when the array is removed.
 
 By default glibc raises this limit up to 32 MB as arrays are removed, and keeps their pages: a run of a million disks
-then takes a quarter more memory, and how much depends on the order in which arrays come and go.
-"""
+then takes a quarter more RAM, depending on the order in which arrays come and go."""
 
 _MMAP_THRESHOLD = -3
 """M_MMAP_THRESHOLD of glibc's malloc.h."""
 
 
 class Memory(NamedTuple):
-    """Memory in bytes: total, of the machine, or what a container may use of it; free, the part that nothing uses."""
+    """RAM in bytes: total, of the machine or available to a container; free, the unused part."""
 
     total: float
     free: float
@@ -44,10 +43,10 @@ def one_thread_for_matrices() -> None:
 
 
 def memory_here(root: Path = Path("/")) -> Memory | None:
-    """The memory this process may use; None where the system does not report it. root : of the file system.
+    """The RAM this process may use; None where the system does not report it. root : of the file system.
 
     On Linux the smallest of that of the machine and those of its control groups, by which containers are limited; pages
-    of files that the system would drop count as free. Elsewhere all memory of the machine counts as free.
+    of files that the system would drop count as free. Elsewhere all RAM of the machine counts as free.
     """
     known = [*_of_linux(root / "proc/meminfo"), *_of_groups(root)] or list(_of_machine())
     return Memory(min(m.total for m in known), min(m.free for m in known)) if known else None

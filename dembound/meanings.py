@@ -27,13 +27,13 @@ class Slip(NamedTuple):
 
 @dataclass(frozen=True)
 class Meaning:
-    """What numbers of a kind mean.
+    """The likely sizes of numbers with one meaning.
 
     Attributes
     ----------
     why : the reason for the sizes; for a meaning without sizes, the reason why there are none.
-    low, high : sizes below and above which a number other than 0 is unlikely; whose : what has such sizes, in words.
-    usual : sizes within which the value to write must be, so that a slip is offered.
+    low, high : sizes below and above which a number other than 0 is unlikely; whose : things of such sizes, in words.
+    usual : sizes within which a corrected value must be to be offered.
     slips : the usual mistakes. spared : sizes outside the limits that are likely all the same.
     """
 
@@ -47,13 +47,13 @@ class Meaning:
 
     @property
     def is_free(self) -> bool:
-        """Whether no size is unlikely."""
+        """Whether every size is likely."""
         return self.low == 0.0 and self.high == math.inf
 
     def doubt(self, value: float, unit: str, *, given: bool = True) -> str | None:
-        """What is unlikely about a value, in words, and what to write for it if it is given; None for a likely one.
+        """Why a value is unlikely, in words, and a correction if it is given; None for a likely one.
 
-        Not given are values that follow from others.
+        given : False for values derived from others.
         """
         size = abs(value)
         if size == 0.0 or self.low <= size <= self.high or size in self.spared:
@@ -238,7 +238,7 @@ MEANINGS: dict[str, Meaning] = {
 """Name -> meaning."""
 
 FADED = 0.01
-"""What an attenuation should leave of a wave along a bar at least."""
+"""Least amplitude that an attenuation should leave of a wave along a bar, over its initial one."""
 
 
 def fading(place: str, exponent: float, length: float) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Which of several points is nearest to a place, where more than one may be equally near.
+"""The nearest of several points to a place, where more than one may be equally near.
 
 Rounding of coordinates must not decide between them, nor the order in which they are numbered: both differ between
 boxes of the same ground. The lowest of these points is taken, of several of that height the leftmost.
@@ -9,12 +9,11 @@ import math
 import numpy as np
 
 EQUAL = 1e-6
-"""Part of the smallest distance by which other distances may differ from it and be as small.
+"""Relative difference from the smallest distance up to which other distances count as equal to it.
 
 Points that are equally near to a place are at least a diameter D apart, so the distance is D/2 or more, while
 coordinates X are rounded to 1e-16 X: far less than 1e-6 D/2 in bodies of less than 1e8 diameters. It also takes up the
-rounding of places that were typed with ten digits in bodies of 1e3 diameters.
-"""
+rounding of places that were typed with ten digits in bodies of 1e3 diameters."""
 
 
 def nearest(points: np.ndarray, places: np.ndarray) -> np.ndarray:

@@ -40,7 +40,7 @@ class Table(BaseModel):
 
     @classmethod
     def described(cls, name: str) -> Mapping[str, Any]:
-        """What `quantity` says about a field, its unit and its meaning by these names; empty for other fields."""
+        """Unit and meaning of a field as given by `quantity`, by these names; empty for other fields."""
         extra = cls.model_fields[name].json_schema_extra
         return extra if isinstance(extra, Mapping) else {}
 
@@ -177,7 +177,7 @@ EVERYWHERE: Box = (-math.inf, -math.inf, math.inf, math.inf)
 
 
 def is_within(box: Box, x: Any, y: Any) -> Any:
-    """Whether places (m), numbers or arrays, are in a rectangle or on its edge."""
+    """Whether places x, y (m), numbers or arrays, are in a rectangle or on its edge."""
     return (box[0] <= x) & (x <= box[2]) & (box[1] <= y) & (y <= box[3])
 
 

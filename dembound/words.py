@@ -1,4 +1,4 @@
-"""What tables and messages have in common: numbers as text, and texts by name."""
+"""Numbers as text, and texts by name, for tables and messages."""
 
 from collections.abc import Iterator
 
@@ -7,6 +7,6 @@ Entries = Iterator[tuple[str, str]]
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """A share in per cent, such as "0.13 %", with so many digits, or all of a whole number with more."""
+    """A share in per cent, such as "0.13 %", with `digits` digits; larger numbers with all digits before the point."""
     value = 100.0 * share
     return f"{value:.{digits}g} %" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f} %"

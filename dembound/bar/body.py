@@ -51,10 +51,9 @@ class BarBody(Scene):
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """The attributes of a record's header in addition to those of every run.
+        """Additional attributes of a record's header for bars: loaded end, and types of the left and the right end.
 
-        Which end is loaded, and the types of the left and the right end. Of a bar without ranges also its material, as
-        in `attributes_of_monitor`.
+        Of a bar without ranges also its material, as in `attributes_of_monitor`.
         """
         uniform = {} if self.case.bar.range else _attributes_of(self.case.bar)
         return uniform | {
@@ -63,11 +62,11 @@ class BarBody(Scene):
         }
 
     def attributes_of_monitor(self, name: str) -> dict[str, Any]:
-        """At a monitor's node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m.
+        """At a monitor's node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m; strength.
 
-        And its strength, Pa, at the slowest and at the fastest strain rate, infinite without one.
-
-        At an interface it is the range on the left; with ranges also their name.
+        Strength in Pa at the slowest and at the fastest strain rate, infinite without one. At an interface the range on
+        the
+        left counts; with ranges also their name.
         """
         bar, node = self.case.bar, self.monitors[name]
         number = next(k for k, part in enumerate(self.rod.ranges) if node <= part.last)
@@ -126,12 +125,12 @@ class BarBody(Scene):
 
     @property
     def damp(self) -> float:
-        """No local damping."""
+        """Local damping coefficient: 0."""
         return 0.0
 
     @property
     def threads(self) -> int:
-        """One: a step of a bar takes less time than the synchronisation of threads."""
+        """Number of threads: 1, as a step of a bar takes less time than their synchronisation."""
         return 1
 
     @property
@@ -176,7 +175,7 @@ class BarBody(Scene):
 
     @property
     def largest_memory(self) -> float:
-        """Largest memory (bytes) of a run."""
+        """Largest RAM (bytes) of a run."""
         return run_bytes(self.case)
 
 

@@ -1,9 +1,9 @@
-"""What an absorbing end of a bar returns of a wave: exactly, for the wave's own spectrum, its nodes, bonds and steps.
+"""Exact reflection of a wave by an absorbing end of a bar, for the wave's own spectrum, its nodes, bonds and steps.
 
 It is the largest difference of the velocity from a bar that goes on beyond this end, over the largest velocity of that
-bar; at any node and in any step of the run. So what returns of the shortest waves is included, in which sharp pulses,
-and pushes on single nodes, are rich; and so is its reflection at the other end. Short waves are slow: of them the more
-returns the longer a run is.
+bar, at any node and in any step of the run. So it includes reflections of the shortest waves, in which sharp pulses,
+and pushes on single nodes, are rich, and their reflection at the other end. Short waves are slow: the longer a run is,
+the more of them return.
 
 Both bars are stepped (linear_steps.py) under one step of the wave, which its values are convolved with. Where this
 would take too long, a bar is represented by `CELLS` of the range at this end, with the load or the wave at its other
@@ -51,10 +51,11 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Returned:
-    """What an end returns.
+    """The reflection of an end.
 
-    shares : by wave the largest motion that returns over that of the wave, with `ROUNDING`. within : s after the
-    wave for which it was followed, infinite if that is the whole run.
+    shares : by wave the largest reflected motion over the largest motion of the wave, including `ROUNDING`. within :
+    time
+    (s) after the wave for which it was followed, infinite if that is the whole run.
     """
 
     shares: dict[str, float]
@@ -62,7 +63,7 @@ class Returned:
 
 
 def returned_of_waves(scene: BarScene, side: str, time_step: float) -> Returned:
-    """What an end returns of every wave in use, which is empty where it is not computed.
+    """The reflection of every wave in use by an end; empty where it is not computed.
 
     Nothing is computed for ends that do not absorb, or where dashpots let a wave in, and for bonds and layers that are
     very long.
@@ -117,7 +118,7 @@ def _layered(case: BarCase, side: str) -> BarCase:
 
 
 def _pushes(scene: BarScene) -> dict[str, dict[bool, tuple[np.ndarray, np.ndarray]]]:
-    """By wave in use the forces (n,) N of its value 1, and apart from them the motions (n,) m/s that it prescribes.
+    """By wave in use the forces (n,) N of its value 1, and separately the motions (n,) m/s that it prescribes.
 
     Signals that are the velocity of no wave, of types from other packages, have the name "".
     """
@@ -132,7 +133,7 @@ def _pushes(scene: BarScene) -> dict[str, dict[bool, tuple[np.ndarray, np.ndarra
 
 
 def _signal(case: BarCase, name: str, step: float, ahead: float) -> np.ndarray:
-    """Values (k,) of a wave at whole steps and so many s later, from its start until it is over or the run is."""
+    """Values (k,) of a wave at whole steps plus `ahead` s, from its start until it is over or the run is."""
     wave = case.wave[name]
     first = step * math.floor(min(wave.start, case.run.duration) / step)
     count = min(math.ceil((min(wave.duration(), case.run.duration) - first) / step), LONG) + 1

@@ -32,9 +32,10 @@ def entering_pressure(case: BarCase, side: str, time: np.ndarray, *, loads: bool
 
 
 def moments(case: BarCase, side: str) -> np.ndarray:
-    """Times (s), ascending, at which to compute the wave that enters at an end: from its beginning until it is over.
+    """Times (s), ascending, at which to compute the wave that enters at an end, from its beginning to its end.
 
-    These are searched within the duration of the run or of the waves, whichever is longer. The times of the waves'
+    Begin and end are searched within the duration of the run or of the waves, whichever is longer. The times of the
+    waves'
     crests are included.
     """
     waves = [case.wave[load.wave] for load in case.load if load.side == side]

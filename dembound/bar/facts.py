@@ -51,7 +51,7 @@ def bar_facts(scene: BarScene, time_step: float) -> Entries:
 
 
 def _bar_facts(scene: BarScene) -> Entries:
-    """Length, section and material of a bar that is the same all along."""
+    """Length, section and material of a uniform bar."""
     described, bar = describe_bar(scene), scene.case.bar
     section = f"section {described['section']:.4g} m², density {described['density']:g} kg/m³"
     yield "bar", f"{bar.length:g} m long, {section}"
@@ -60,7 +60,7 @@ def _bar_facts(scene: BarScene) -> Entries:
 
 
 def _echo_in_words(scene: BarScene, side: str, time_step: float) -> str:
-    """The most that an absorbing end returns of every wave in use; empty where it is not known."""
+    """The largest reflection of every wave in use by an absorbing end; empty where it is not known."""
     found = returned_of_waves(scene, side, time_step)
     most = {name: share for name, share in found.shares.items() if share > 2.0 * ROUNDING}
     words = []
@@ -129,8 +129,8 @@ def _material_facts(bar: Bar) -> Entries:
 def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, float]]:
     """For every wave in use: cells in its shortest wavelength, and cells needed for a speed error below ERROR.
 
-    The shortest wavelength is that of the wave's highest frequency. Of the ranges it is the one where cells are fewest
-    for what is needed.
+    The shortest wavelength is that of the wave's highest frequency, in the range where cells are fewest relative to the
+    number needed.
     """
     rows = carrying_lattices(scene, time_step)
     needed = [

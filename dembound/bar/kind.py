@@ -53,7 +53,7 @@ class Bars(Kind[BarCase, BarScene]):
         return build_bar(case)
 
     def expected_memory(self, case: BarCase) -> float:
-        """Largest memory (bytes) of a run, from the number of nodes and the method."""
+        """Largest RAM (bytes) of a run, from the number of nodes and the method."""
         return run_bytes(case)
 
     def choose_step(self, scene: BarScene) -> tuple[float, float]:
@@ -69,7 +69,7 @@ class Bars(Kind[BarCase, BarScene]):
         return Beginning(scene.system(time_step))
 
     def trials(self, case: BarCase, *, full: bool = False) -> tuple[list[Trial], list[str]]:
-        """The whole bar, at every stage of its method."""
+        """The bar at every stage of its method."""
         return trials_of_bar(case)
 
     def sources(self, scene: BarScene) -> list[Source]:

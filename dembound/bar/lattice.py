@@ -1,4 +1,4 @@
-"""The infinite row of nodes with the same bonds as the inside of a bar."""
+"""The infinite row of nodes with the bonds of the inside of a bar."""
 
 import math
 from collections.abc import Iterable, Iterator

@@ -1,13 +1,13 @@
-"""What a matched layer returns of a harmonic wave: exactly, for its steps, nodes and bonds.
+"""Exact reflection of a harmonic wave by a matched layer, for its steps, nodes and bonds.
 
 In steps of Δt = 2h a motion e^{iωt} has δ = (2i/Δt) sin ωh in place of ∂t, and μ = cos ωh in place of means of two half
 steps. By kernels/bar_layer.py nodes and bonds then obey
 
     m (δ + (d + γ)μ + dγμ²/δ) v = F,    (δ + dμ) f = k (v_j − v_i) ,
 
-a system of linear equations with few bands for the velocities v. A force is put on a node between the layer and one on
-the other side that is `LONG`. The wave that returns is the difference from what the same force moves between two long
-ones, whose own echoes are some 1e-11. It is measured some nodes away, without what remains near the layer.
+a system of linear equations with few bands for the velocities v. A force is put on a node between the layer and another
+one on the other side that is `LONG`. The reflected wave is the difference from the motion by the same force between two
+long layers, whose own echoes are some 1e-11. It is measured some nodes away, outside the near field of the layer.
 """
 
 import math
@@ -32,7 +32,7 @@ WIDEST = 30
 
 
 def returned(layer: EndLayer, frequency: float, time_step: float) -> float:
-    """Velocity of the wave that returns over that of the wave that arrives, at a frequency (Hz); time_step s.
+    """Velocity of the reflected wave over that of the arriving wave, at a frequency (Hz); time_step s.
 
     nan for frequencies at which no wave runs along the bar, and for bonds longer than `WIDEST`.
     """

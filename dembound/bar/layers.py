@@ -97,7 +97,7 @@ class EndLayer:
 
     @cached_property
     def bonds(self) -> np.ndarray:
-        """(b, b + N) N/m, stiffness of the bonds that reach into the layer, 0 where there is none; rows as above."""
+        """Stiffness (b, b + N) N/m of the bonds that reach into the layer, 0 where there is none; rows as in bands."""
         length = np.arange(1, len(self.inner) + 1)[:, None]
         outer = np.arange(self.count) + length
         return np.where((len(self.inner) <= outer) & (outer < self.count), self.stiffness[:, None], 0.0)
@@ -149,7 +149,7 @@ def continued(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Stiffness bands (b, n') N/m, masses (n',) kg and held nodes of a bar and its layers, in their order along it.
 
-    bands (b, n), mass (n,), held (h,) : of the bar alone.
+    bands (b, n), mass (n,), held (h,) : of the bar without layers.
     """
     if not layers:
         return bands, mass, held
@@ -201,7 +201,7 @@ class LayerTie(Tie):
         return {name: getattr(arrays, name) for name in ("velocity", "displacement", "force", "through")}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         for name, values in self.memory().items():
             values[...] = memory[name]
 

@@ -1,4 +1,4 @@
-"""The steps of a linear bar and its layers as arrays of numpy: what single forces do to it.
+"""The steps of a linear bar and its layers as numpy arrays: its motion under single forces.
 
 Bonds of bar and layers obey one pair of equations, those of kernels/bar_layer.py; in the bar the rates of decay are
 zero, and the dashpots of supported nodes stand in place of attenuation:
@@ -59,7 +59,7 @@ class LinearSteps:
         self._mobility = moves * step / ((1.0 + lost) * (mass + slowed))
 
     def _lay(self, layer: EndLayer, place: np.ndarray, outwards: int) -> None:
-        """Add the bonds of a layer, whose nodes, with those of the bar that it is bonded to, have these numbers."""
+        """Add the bonds of a layer; place : the numbers of its nodes and of the bar nodes that it is bonded to."""
         half = 0.5 * self._step
         for row, (stiffness, rate) in enumerate(zip(layer.bonds, layer.bond_rates, strict=True)):
             begins = np.flatnonzero(stiffness > 0.0)

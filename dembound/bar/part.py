@@ -148,7 +148,7 @@ class BarPart(Part):
         }
 
     def recall(self, memory: Arrays) -> None:
-        """Restore the arrays that `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         self.law_name = str(memory["law"])
         self.bond_updates, self._reported = int(memory["bond_updates"]), int(memory["reported"])
         self._unstable = bool(memory["unstable"])

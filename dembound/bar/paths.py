@@ -1,4 +1,4 @@
-"""Where the motion of a bar starts, and how far its waves can have come at a time."""
+"""Sources of motion of a bar, and the front of its waves."""
 
 import numpy as np
 

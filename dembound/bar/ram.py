@@ -5,14 +5,14 @@ from dembound.motion.ram import largest, ledger_bytes, must_fit, record_bytes
 
 
 def must_fit_here(case: BarCase) -> None:
-    """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
+    """Raise CaseError if a run of a case needs more RAM than is free on this machine, without building it."""
     lengths = case.method.largest_horizon
     horizon = f" with a horizon of {lengths:,} spacings" if lengths > 1 else ""
     must_fit(run_bytes(case), "bar.spacing", f"{case.bar.nodes:,} nodes{horizon}")
 
 
 def run_bytes(case: BarCase) -> float:
-    """Largest memory (bytes) of a run; temporary arrays are those of the largest moment of a stage."""
+    """Largest RAM (bytes) of a run, with the temporary arrays of its largest moment."""
     nodes, lengths = float(case.bar.nodes), max(case.method.largest_horizon, 1)
     run = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + motion_bytes(nodes) + ledger_bytes(nodes)
     run += record_bytes(len(case.monitor), 2048, 7, sum(load.nodes for load in case.load) + 2.0)
@@ -53,7 +53,7 @@ def motion_bytes(nodes: float) -> float:
 
 
 def damage_bytes(nodes: float, lengths: int) -> float:
-    """Bytes of the damage in a snapshot: families (32 m n), volumes, factors and what is whole, by pair (90 m n)."""
+    """Bytes of the damage in a snapshot: families (32 m n), and per pair volumes and factors (90 m n)."""
     return (32 + 90) * lengths * nodes
 
 

@@ -13,14 +13,14 @@ from dembound.bar.scene import BarScene
 from dembound.casefile.bar import BarCase
 
 ALIKE = 1e-3
-"""Relative difference of Δx/c up to which it is the same."""
+"""Relative difference up to which values of Δx/c count as equal."""
 
 UNLIKE_SECTIONS = 100.0
 """Ratio of the sections of neighbours above which it is taken for a mistake: at 100 hardly 4 % of a force passes."""
 
 
 def range_warnings(case: BarCase, time_step: float) -> Iterator[str]:
-    """All of them, one line each; time_step in s."""
+    """Warnings about ranges of a bar, one line each; time_step in s."""
     yield from _sections(case)
     yield from _bonded_impacts(case)
     yield from never_closing(case).values()
@@ -28,7 +28,7 @@ def range_warnings(case: BarCase, time_step: float) -> Iterator[str]:
 
 
 def _sections(case: BarCase) -> Iterator[str]:
-    """Sections that are left to the default beside others that are given, and neighbours of very unlike sections."""
+    """Warnings about sections left to the default while others are given, and neighbours of very unlike sections."""
     parts, names = case.bar.parts, [each.name for each in case.bar.range]
     given = [part.section is not None or part.diameter is not None for part in parts]
     reported = set()
@@ -133,7 +133,7 @@ def monitors_in_gaps(scene: BarScene) -> Iterator[str]:
 
 
 def monitors_between_sections(scene: BarScene) -> Iterator[str]:
-    """Monitors at the node that two bonded ranges of other sections share: its stress is that of neither."""
+    """Warnings about monitors between two bonded ranges of different sections, whose stress is that of neither."""
     names, ranges = [each.name for each in scene.case.bar.range], scene.rod.ranges
     for monitor, node in scene.monitors.items():
         for number, (left, right) in enumerate(itertools.pairwise(ranges[: len(names)])):

@@ -35,7 +35,7 @@ class BarScene(BarBody):
 
 
 def build_bar(case: BarCase) -> BarScene:
-    """Place a bar's nodes and support them; raises CaseError when a run needs more memory than there is."""
+    """Place a bar's nodes and support them; raises CaseError when a run needs more RAM than there is."""
     must_fit_here(case)
     bar = case.bar
     rod = _rod(bar).continued(*(case.method.horizon_beyond if case.side(side).layer else 0 for side in ENDS))

@@ -1,4 +1,4 @@
-"""What a bar takes on disk, for n nodes with bonds of m lengths."""
+"""Bytes on disk of a bar of n nodes with bonds of m lengths."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ OF_DISKS = {"beta_s", "matched_p", "matched_s", "half_mass"}
 
 
 def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
-    """Entries of a bar's summary in addition to those of every run: plain JSON values, SI units."""
+    """Additional entries of a summary for bars: plain JSON values, SI units."""
     bar = part_of(run)
     found, at_ends = spalls_of(scene, run)
     return {
@@ -50,7 +50,7 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
 
 
 def _note(scene: BarScene) -> str:
-    """Whether spalls after the first converge."""
+    """A note on whether spalls after the first converge."""
     return AT_ONE_HORIZON if scene.case.bar.opens else LATER_SPALLS
 
 

@@ -30,7 +30,7 @@ from dembound.words import percent
 _TOO_LARGE = "solids break or yield at a tenth of 3 %, are the units right?"
 
 LIKELY = (100.0, 10_000.0)
-"""Slowest and fastest waves (m/s) of bars of solids; those of soft rubber and of hard ceramics are within it."""
+"""Slowest and fastest waves (m/s) of bars of solids, from soft rubber to hard ceramics."""
 
 BLURRED = 0.8
 """Share of its peak that a load spread over nodes must let in; peridynamic bars need one on as many as the horizon.
@@ -44,7 +44,7 @@ at 0.4 up to 1.3, at 0.8 up to 1.8 under a pulse of 2.6 strengths."""
 
 
 def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
-    """All of them, one line each; time_step in s."""
+    """Warnings about a bar, one line each; time_step in s."""
     case = scene.case
     times = list(time_warnings(case, time_step, case.bar.travel_time))
     return [

@@ -48,10 +48,11 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
 
 
 def _swings(case: BarCase, file: h5py.File) -> Iterator[str]:
-    """Velocities in snapshots that swing from step to step, as impacts leave them at the limit of the time step.
+    """A warning about velocities in snapshots that swing from step to step, as after impacts at the step limit.
 
-    They are those of half steps. Monitors have the mean of two, and the stress of a node is that of both its springs,
-    in which this swing cancels.
+    Snapshots have velocities of half steps. Monitors have the mean of two, and the stress of a node is the mean over
+    both
+    its springs, in which the swing cancels.
     """
     if "energy" not in file or not any(each.interface == "contact" for each in case.bar.range):
         return
@@ -122,7 +123,7 @@ def _pull(case: BarCase, side: str, until: float) -> float:
 
 
 def _pushing(case: BarCase) -> Iterator[tuple[str, str, str, str, str]]:
-    """Loads and driven ends that can move: key, what it is, side, name of its wave, and what keeps the bar whole."""
+    """Loads and driven ends that can move: key, description, side, name of the wave, and what keeps the bar whole."""
     horizon, finer = case.method.largest_horizon, "take a smaller bar.spacing"
     for load in case.load:
         cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else finer

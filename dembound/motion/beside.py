@@ -1,4 +1,4 @@
-"""Nodes of a scene that are recorded apart from its particles, such as those of a continuum round a body."""
+"""Nodes of a scene that are recorded separately from its particles, such as those of a continuum round a body."""
 
 from abc import ABC, abstractmethod
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class Beside(ABC):
-    """The m nodes of a scene that are recorded apart.
+    """The m nodes of a scene that are recorded separately.
 
     Attributes
     ----------
@@ -22,7 +22,7 @@ class Beside(ABC):
 
     @abstractmethod
     def motion(self, values: np.ndarray, of: str, time: float) -> dict[str, np.ndarray]:
-        """Motion (m, 3) of these nodes, from that of all nodes (n, 3) of the scene, by the kind of motion.
+        """Motion (m, 3) of these nodes by prefix of its name, from the motion of all nodes (n, 3) of the scene.
 
-        "" is what they move by. of : "displacement" or "velocity"; time : s, of the values.
+        The prefix "" is the total motion. of : "displacement" or "velocity"; time : s, of the values.
         """

@@ -1,4 +1,4 @@
-"""The motion of a place that is no node, from that of several nodes."""
+"""The motion of a place that is no node, from the motion of several nodes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Between:
-    """A place whose motion is a sum over nodes, and maybe of a motion that is known in advance.
+    """A place whose motion is a sum over nodes, plus, if any, a motion that is known in advance.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Between:
         return self.motion(record) if self.known is None else self.motion(record) + self.known(times)
 
     def motion(self, record: np.ndarray) -> np.ndarray:
-        """The sum over its nodes (s, 6) in s steps, from displacement and velocity of these (s, k, 6).
+        """The weighted sum (s, 6) over its nodes' displacements and velocities (s, k, 6) in s steps.
 
         Sums are in the order of the nodes, so that they have the same bits for any number of steps.
         """

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 MANY = 10
-"""Bonds broken in a run up to which it is not said to be one draw of many."""
+"""Most broken bonds of a run without a note that it is one draw of many."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""When the first echoes of artificial sides come to monitors, from travel times of waves."""
+"""Times of the first echoes of artificial sides at monitors, from travel times of waves."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ def echoes(planned: Plan) -> Entries:
 
 
 def _echoes(planned: Plan) -> Iterator[str]:
-    """When the first echo of each artificial side that no wave drives comes to a monitor."""
+    """A line for each artificial side without waves: when its first echo comes to a monitor."""
     scene = planned.scene
     sources = planned.kind.sources(scene)
     speed, places = planned.kind.front(scene, planned.time_step).speed, monitored(scene)

@@ -96,7 +96,7 @@ def _start(layout: Layout, mass: np.ndarray, inertia: np.ndarray, moves: np.ndar
 def _largest_of(diagonal: list[float], beside: list[float], size: float) -> tuple[float, float]:
     """Largest eigenvalue of a symmetric tridiagonal matrix (k diagonal, k − 1 entries beside it), and its residual.
 
-    size : that of the vector after the last one, by whose share in the eigenvector the residual is found.
+    size : norm of the vector after the last one, whose share in the eigenvector gives the residual.
     """
     from scipy.linalg import eigh_tridiagonal
 

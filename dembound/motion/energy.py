@@ -3,8 +3,8 @@
 For central differences the balance is exact with ½m v⁻·v⁺ (the velocities half a step before and after), the strain
 energy of the step itself, and for the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. The first is divided into the
 kinetic energy of the mean velocity, ⅛m (v⁻ + v⁺)², and −⅛m (v⁺ − v⁻)², of second order in the step: it is more than the
-kinetic energy where velocities change their sign within a step, as at impacts. What contacts take or give as they open
-or close within a step is a column of its own. The remaining error comes from rotating normals and from rounding.
+kinetic energy where velocities change their sign within a step, as at impacts. Energy that contacts take or give as
+they open or close within a step has its own column. The remaining error comes from rotating normals and from rounding.
 """
 
 from dataclasses import dataclass, fields
@@ -28,17 +28,20 @@ AT_REST = 1e-13
 
 @dataclass(frozen=True)
 class Entry:
-    """One line of the ledger: time in s, energies in J per metre of thickness.
+    """One line of the ledger: time in s, energies in J per metre of thickness (of a bar in J).
 
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
-    and driven loads; loads, the part of it that is of the loads; damping, friction, crack, dissipated by them, friction
-    of a bar by impacts of its ranges; closing, taken by contacts that open and close within a step, less what sliding
-    contacts and breaking bonds add whose force changes its sign in one (see kernels.contacts.push); law_switch, added
-    by a change of method or law; stepping, at most 0, what velocities that change within a step add to the balance of
-    what is stored; supplied, the kinetic energy at the start plus the largest values so far of outside, at any step,
-    and of load, at any entry; error, stored and dissipated energy minus what came in and what the motion at the start
-    had. In J for a bar.
+    and driven loads; loads, the part of `outside` by loads; damping, friction, crack, dissipated by each, friction of a
+    bar
+    by impacts of its ranges; closing, taken by contacts that open and close within a step, less the energy added by
+    sliding
+    contacts and breaking bonds whose force changes its sign in one (see kernels.contacts.push); law_switch, added by a
+    change of method or law; stepping, at most 0, contribution of velocities that change within a step to the stored
+    energy;
+    supplied, the kinetic energy at the start plus the largest values so far of outside, at any step, and of load, at
+    any
+    entry; error, stored and dissipated energy minus the energy that came in and the kinetic energy at the start.
     """
 
     time: float
@@ -60,9 +63,9 @@ class Entry:
 
 
 class SideEntry(NamedTuple):
-    """What one side has done since the start, energies as of `Entry`.
+    """Energies that one side has supplied, absorbed and stored since the start, as of `Entry`.
 
-    The work from outside is the sum over the sides of came_in − absorbed − stored, plus that of the loads.
+    The work from outside is the sum over the sides of came_in − absorbed − stored, plus the work of the loads.
 
     came_in : energy of waves that enter through dashpots, ∫Σ C v_i² dt; work of prescribed motion, of the ground beyond
     a free-field side and of waves on springs, which may be negative. absorbed : energy that leaves through dashpots,
@@ -129,7 +132,7 @@ class Ledger(Tracker):
             self.due = state.step + 1
 
     def _kept(self, number: int, values: np.ndarray) -> np.ndarray:
-        """A copy of values, in memory that was used for the entry before; new memory takes as long as the copy."""
+        """A copy of values in the buffer of the entry before, as allocating a new one takes as long as the copy."""
         if len(self._space) <= number:
             self._space.append(np.empty_like(values))
         np.copyto(self._space[number], values)
@@ -226,7 +229,7 @@ class Ledger(Tracker):
         }
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         self.due = int(memory["due"])
         self.entries = [Entry(*row) for row in memory["entries"].tolist()]
         self.sides = list(memory["sides"])
@@ -238,7 +241,7 @@ class Ledger(Tracker):
 
     @property
     def regular_entries(self) -> int:
-        """Number of entries without that of the last step, unless it belongs to the interval."""
+        """Number of entries without the entry of the last step, unless it belongs to the interval."""
         return len(self.entries) - (len(self.entries) > 0 and self._step_of_last() % self._interval > 0)
 
     def _step_of_last(self) -> int:
@@ -259,5 +262,5 @@ class Ledger(Tracker):
 
 
 def _by_node(values: np.ndarray, state: State) -> np.ndarray:
-    """Values (3, slots) as those of nodes (3, n), row after row in memory, so that sums have one order of terms."""
+    """Values (3, slots) reordered by node (3, n), contiguous by row, so that sums have one order of terms."""
     return np.take(values, state.layout.slot, axis=1)

@@ -54,7 +54,7 @@ class Plan(Generic[S]):
     """A case before its first step: the scene, the time step and its limit (s), the number of steps.
 
     stepped : the scene whose motion is computed, the scene itself or a smaller one, and refused : see `Reduction`.
-    regular_steps : steps from which intervals of ledger and snapshots are found: those of the run as it was begun.
+    regular_steps : number of steps of the run as it was begun, from which intervals of ledger and snapshots follow.
     """
 
     kind: Kind[Any, S]
@@ -141,7 +141,7 @@ class Kind(ABC, Generic[C, S]):
 
     @abstractmethod
     def expected_memory(self, case: C) -> float:
-        """Largest memory (bytes) of a run of a case, computed without building it."""
+        """Largest RAM (bytes) of a run of a case, computed without building it."""
 
     def is_planned_quickly(self, case: C) -> bool:
         """Whether a run is planned without a long search for the stability limit; by default if a step is given."""
@@ -152,7 +152,7 @@ class Kind(ABC, Generic[C, S]):
         """Time step to run with and the stability limit (s); raises CaseError for a given step above the limit."""
 
     def reduced(self, scene: S) -> Reduction[S]:
-        """A smaller scene, from whose motion that of a scene follows; by default the scene itself."""
+        """A smaller scene from whose motion that of the given scene follows; by default the scene itself."""
         return Reduction(scene)
 
     @abstractmethod
@@ -163,12 +163,12 @@ class Kind(ABC, Generic[C, S]):
         """
 
     def trackers(self, run: Run) -> list[Tracker]:
-        """Trackers of a run that its case asks for, in addition to those of every run; by default none."""
+        """Additional trackers that the case of a run asks for; by default none."""
         return []
 
     @abstractmethod
     def trials(self, case: C, *, full: bool = False) -> tuple[list[Trial], list[str]]:
-        """The scenes in which the largest stable step of a case is measured, and how they differ from it, in words.
+        """The scenes in which the largest stable step of a case is measured, and their differences from it, in words.
 
         full : the whole scene, where it consists of copies of a part, instead of fewer of them. Raises the errors of
         building a scene.
@@ -176,14 +176,14 @@ class Kind(ABC, Generic[C, S]):
 
     @abstractmethod
     def sources(self, scene: S) -> list[Source]:
-        """Where the motion of a scene starts."""
+        """The sources of motion of a scene: places, times and speeds."""
 
     @abstractmethod
     def front(self, scene: S, time_step: float) -> Front:
         """The fastest waves of a scene that is stepped by time_step (s)."""
 
     def late(self, scene: S) -> float | None:
-        """Time (s) by which all motion is later than that of waves through the planes of sides; by default not.
+        """Time (s) by which all motion is later than waves through the planes of sides; by default 0.
 
         None where several waves are late by different times.
         """
@@ -194,7 +194,7 @@ class Kind(ABC, Generic[C, S]):
         """Bytes on disk of what is written of a scene."""
 
     def stage_keys(self, scene: S) -> dict[str, Any]:
-        """What the results of the stages before a run depend on, as plain JSON values by key."""
+        """All inputs that determine the results of the stages before a run, as plain JSON values by key."""
         return {}
 
     def stage_names(self, scene: S) -> list[str]:
@@ -210,7 +210,7 @@ class Kind(ABC, Generic[C, S]):
         """Facts about a case with a time step (s); printed by `dembound check`."""
 
     def not_estimated(self, case: C) -> list[str]:
-        """What steps of a run the time estimate from a trial of the first ones does not include, in words."""
+        """Work of a run that a time estimate from its first steps does not include, in words."""
         return []
 
     @abstractmethod
@@ -223,7 +223,7 @@ class Kind(ABC, Generic[C, S]):
 
     @abstractmethod
     def summarise(self, scene: S, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
-        """Entries of a summary in addition to those of every run: plain JSON values, SI units."""
+        """Additional entries of a summary for this kind of body: plain JSON values, SI units."""
 
     @abstractmethod
     def work(self, run: Run) -> int:
@@ -242,14 +242,14 @@ class Kind(ABC, Generic[C, S]):
 
     @abstractmethod
     def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
-        """One snapshot of a record for ParaView, and the cracks until then; each with its columns by name.
+        """Meshes for ParaView of one snapshot of a record, with the cracks until then, by the names of their files.
 
-        Meshes by the names of their files.
+        particles, snapshot, cracks : columns by name.
         """
 
     @abstractmethod
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
-        """The pictures of a run by name, other than that of its monitors' velocities."""
+        """The pictures of a run by name, besides the picture of its monitors' velocities."""
 
     @abstractmethod
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:

@@ -11,7 +11,7 @@ ALIGNMENT = 64
 
 
 def aligned_zeros(*shape: int, dtype: Any = np.float64) -> np.ndarray:
-    """Zeros of this shape and type, aligned in memory (`ALIGNMENT`)."""
+    """Zeros of this shape and type, at an aligned address (`ALIGNMENT`)."""
     kind = np.dtype(dtype)
     size = int(np.prod(shape)) * kind.itemsize
     room = np.zeros(size + ALIGNMENT, dtype=np.uint8)
@@ -21,7 +21,7 @@ def aligned_zeros(*shape: int, dtype: Any = np.float64) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Which slot holds which of n nodes.
+    """The assignment of n nodes to slots.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Layout:
 
     @cached_property
     def is_plain(self) -> bool:
-        """Whether slots are the nodes in their order."""
+        """Whether each slot holds the node of the same number."""
         return len(self.slot) == self.count and bool((self.slot == np.arange(self.count)).all())
 
     def spread(self, values: np.ndarray) -> np.ndarray:
@@ -56,9 +56,9 @@ class Layout:
         return spread
 
     def gather(self, values: np.ndarray) -> np.ndarray:
-        """Values (..., slots) of slots as those of nodes (..., n), not to be written to; a view where it can be.
+        """Values (..., slots) reordered by node (..., n), not to be written to; a view where possible.
 
-        Row after row in memory, as in a checkpoint: the order in which numpy adds numbers up depends on it.
+        Contiguous by row, as in a checkpoint: the order in which numpy adds numbers up depends on it.
         """
         gathered = values[...] if self.is_plain else np.take(values, self.slot, axis=-1)
         gathered.flags.writeable = False

@@ -12,7 +12,7 @@ class MovingPicture(Protocol):
     ----------
     times : (k,) of the snapshots, s.
     width, height : of each frame in inches.
-    words : what is drawn.
+    words : description of the drawn field.
     """
 
     times: np.ndarray

@@ -47,7 +47,7 @@ class Part(ABC):
 
     @abstractmethod
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
 
     def blown_up(self, velocity: np.ndarray) -> int | None:
         """The node of an instability that adds energy, if the part can detect it; velocity (3, slots) m/s."""
@@ -59,11 +59,11 @@ class Part(ABC):
 
 
 class Tie(ABC):
-    """A coupling between nodes of two parts, or of a part and what lies beyond it.
+    """A coupling between nodes of two parts, or of a part and the medium beyond it.
 
     Attributes
     ----------
-    name : in the state, where it has a memory.
+    name : in the state, where it has arrays to save.
     """
 
     name: str = "tie"
@@ -82,7 +82,7 @@ class Tie(ABC):
         return {}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         return
 
 
@@ -91,14 +91,14 @@ class System:
 
     Parameters
     ----------
-    parts, ties : those of the scene.
+    parts, ties : of the scene.
     load : (3, n) N and N·m, steady forces and moments of loads.
 
     Attributes
     ----------
     steady : (3, n) N and N·m, all steady forces that kernels add, or (3, 0) for none.
-    turning : those of them that rotate with their sides; None if there are none.
-    refused : laws of less cost that the case asks for and that cannot be used, each in a line with the reason.
+    turning : the steady forces that rotate with their sides; None if there are none.
+    refused : cheaper laws that the case asks for and that cannot be used, each in a line with the reason.
     """
 
     refused: tuple[str, ...] = ()
@@ -157,7 +157,7 @@ class System:
         return None
 
     def saved(self, state: State) -> tuple[str, ...]:
-        """In words, what was saved by a law that takes less computing, a line each."""
+        """A line for each cheaper law used, with its number of steps."""
         return ()
 
     def take_cracks(self, steps: int) -> Cracks:
@@ -181,7 +181,7 @@ class System:
     def contact_forces(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Columns of the contacts of the whole scene at displacements (3, n), by name: values (b, …) and unit.
 
-        By default none; only if the case asks for them.
+        Empty by default, and unless the case asks for them.
         """
         return {}
 
@@ -198,7 +198,7 @@ class System:
         return memory
 
     def recall(self, memory: Mapping[str, Any]) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         self.load, self.steady = memory["load"].copy(), memory["steady"].copy()
         for each in self._remembering:
             each.recall(within(memory, each.name))

@@ -13,7 +13,7 @@ from dembound.boundaries import is_far, normal_axis
 from dembound.table import Box
 
 PRECURSOR = 10.0
-"""Where a precursor ends, as the argument z of Airy's function: Ai(z) is 1e-9 of Ai(0) at 9.6."""
+"""Argument z of Airy's function at which a precursor ends: Ai(z) is 1e-9 of Ai(0) at 9.6."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Front:
     Attributes
     ----------
     speed : m/s.
-    grain : a, m: distance of neighbours, with peridynamic bonds of a row that disperses alike.
+    grain : a, m: distance of neighbours; with peridynamic bonds that of a row with equal dispersion.
     """
 
     speed: float
@@ -40,7 +40,7 @@ class Front:
 
 @dataclass(frozen=True)
 class Source:
-    """Where motion starts.
+    """A source of motion.
 
     Attributes
     ----------
@@ -78,9 +78,9 @@ def first_arrivals(sources: Sequence[Source], front: Front, places: np.ndarray) 
 
 
 def plane_needed(side: str, sources: Sequence[Source], places: np.ndarray, front: Front, duration: float) -> float:
-    """Where along its normal (m) a side has to be that nothing comes back from it to places (k, 2) m within `duration`.
+    """Place (m along its normal) of a side from which nothing comes back to places (k, 2) m within `duration` (s).
 
-    duration : s. Infinitely far inwards where nothing comes at all.
+    Infinitely far inwards where nothing comes at all.
     """
     axis, sign = normal_axis(side), 1.0 if is_far(side) else -1.0
     needed = -np.inf

@@ -20,7 +20,7 @@ run after an installation also compiles, which takes up to 250 MB more.
 """
 
 DRIVEN_BYTES = 64e6
-"""Largest memory for the drives of a block; with many driven nodes blocks are shorter."""
+"""Largest RAM for the drives of a block; with many driven nodes blocks are shorter."""
 
 F = 8.0
 """Bytes of a double, and of an int64."""
@@ -52,7 +52,7 @@ def largest(stages: dict[str, float], case: Case) -> float:
 
 
 def must_fit(need: float, key: str, things: str) -> None:
-    """Raise CaseError if a run needs more memory (bytes) than is free here.
+    """Raise CaseError if a run needs more RAM (bytes) than is free on this machine.
 
     key : of the case, which determines the number of things; things : their number in words.
     """
@@ -63,12 +63,12 @@ def must_fit(need: float, key: str, things: str) -> None:
 
 @lru_cache(maxsize=1)
 def _memory(read: Callable[[], Memory | None], second: int) -> Memory | None:
-    """The memory, read once a second: a search plans hundreds of scenes, and reading takes as long as planning one."""
+    """The RAM, read once a second: a search plans hundreds of scenes, and reading takes as long as planning one."""
     return read()
 
 
 def has_in_words(here: Memory) -> str:
-    """The memory of this machine as text."""
+    """The RAM of this machine as text."""
     return f"this machine has {in_words(here.total)}, {in_words(here.free)} of it free"
 
 

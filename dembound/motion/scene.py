@@ -36,7 +36,7 @@ class Scene(ABC):
     kind : name of the kind of body in records.
     energy_unit : the unit of its energies.
     record_width : columns of a probe's record, see kernels.tables.Log.
-    in_snapshots : names of what each snapshot has of this kind of body, beside its motion.
+    in_snapshots : names of the fields that each snapshot has for this kind of body, besides its motion.
     block : steps between two returns of the compiled loop.
     has_history : whether its law is history-dependent.
     weight : energies of the whole scene over those of this one, see `whole`.
@@ -81,7 +81,7 @@ class Scene(ABC):
         """(2,) width and height, m."""
 
     def plane(self, side: str) -> float:
-        """Where (m, along its normal) a side of the body is."""
+        """Position (m, along its normal) of a side of the body."""
         low, high = self.low.tolist(), (self.low + self.size).tolist()
         return plane_of(side, (*low, *high))
 
@@ -120,10 +120,10 @@ class Scene(ABC):
 
     @property
     def forces_by_side(self) -> Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Nodes (k,) and forces (2, k) N by which each side holds a body at rest, by side; empty where not known.
+        """By side, nodes (k,), forces (2, k) N by which it holds a body at rest, and recorded forces; empty if unknown.
 
-        Beside them the forces (2, k) N with which the side is recorded, in all those along its length; the sum of all
-        sides is the same.
+        The recorded forces (2, k) N add up to the stress times the length of the side; the sum over all sides is the
+        same.
         """
         return {}
 
@@ -135,12 +135,12 @@ class Scene(ABC):
     @property
     @abstractmethod
     def largest_memory(self) -> float:
-        """Largest memory (bytes) of a run of it, or of the scene it is stepped in place of."""
+        """Largest RAM (bytes) of a run of the scene, or of the scene it is stepped in place of."""
 
     @property
     @abstractmethod
     def attributes(self) -> dict[str, Any]:
-        """The attributes of a record's header in addition to those of every run."""
+        """Additional attributes of a record's header for this kind of body."""
 
     def attributes_of_monitor(self, name: str) -> dict[str, Any]:
         """The attributes of a monitor's history in addition to its places; by default none."""
@@ -153,7 +153,7 @@ class Scene(ABC):
 
     @property
     def beside(self) -> Beside | None:
-        """The nodes that are recorded apart from particles, those of a continuum; None, the default, without any."""
+        """The nodes that are recorded separately, those of a continuum; None, the default, without any."""
         return None
 
     @property
@@ -186,16 +186,16 @@ class Scene(ABC):
 
     @property
     def uniform_axes(self) -> tuple[int, ...]:
-        """Axes along which all of the whole scene moves alike, so that one row of it is stepped."""
+        """Axes along which the motion of the whole scene does not vary, so that one row of it is stepped."""
         return ()
 
     @property
     def reduced(self) -> tuple[str, ...]:
-        """In words, how this scene is smaller than the whole one, a line each."""
+        """A line for each way in which this scene is smaller than the whole one."""
         return ()
 
     def widened(self, name: str, values: np.ndarray) -> np.ndarray:
-        """Values (n, …) of its nodes as those of the nodes of the whole scene; name : of the quantity in records."""
+        """Values (n, …) of its nodes expanded to the nodes of the whole scene; name : of the quantity in records."""
         return values
 
     def observed(self, record: np.ndarray, times: np.ndarray) -> np.ndarray:
@@ -246,7 +246,7 @@ class Scene(ABC):
     def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:
         """Smallest and largest velocity (k, 3, 2) of the nodes of a side of the whole scene.
 
-        peaks : (q, 3, 2) those of `tracked`.
+        peaks : (q, 3, 2) of the nodes `tracked`.
         """
         sides = list(self.edges)
         first = sum(len(self.edges[name].nodes) for name in sides[: sides.index(side)])

@@ -1,7 +1,7 @@
 """The sides of a run: their mean displacements, and the forces from outside on their nodes.
 
-Sides are those of the scene of the case. Of a smaller scene that is stepped in place of it, each node represents
-several, and the forces on these are computed from the motion of the one.
+Sides are those of the scene of the case. Each node of a smaller scene stepped in its place represents
+several nodes, and the forces on these are computed from its motion.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class NodeSides:
         return np.array([(share * force[:2, node]).sum(axis=1) for node, share in self._bearers])
 
     def _bearing(self, table: tables.Sides) -> tables.Sides:
-        """A table with the same for the kernels."""
+        """The table with the nodes' shares of steady forces added."""
         slot = self._scene.layout.slot
         share = np.concatenate([share for _, share in self._bearers], axis=1)
         return table._replace(
@@ -196,7 +196,9 @@ class NodeSides:
     ) -> Iterator[_Batch]:
         """Elements at nodes (k,) of the whole scene with constants (k,) as batches of lines of the support table.
 
-        Nodes of which a smaller scene supports none have no force on them. column : (k,) of the signals of drives.
+        Nodes that have no supported counterpart in a smaller scene have no force on them. column : (k,) of the signals
+        of
+        drives.
         """
         follow = np.zeros(len(node)) if follow is None else follow
         column = np.full(len(node), -1) if column is None else column
@@ -239,13 +241,13 @@ class NodeSides:
 
 
 def _with_power(number: int, signal: int) -> _Batch:
-    """The power of the waves that enter through a side by forces alone, a signal."""
+    """A batch for the power of the waves that enter through a side by forces only, given as a signal."""
     nothing = np.zeros(0, dtype=np.int64)
     return _Batch(kinds.POWER, number, 0, signal, nothing, np.zeros(0), np.zeros(0), nothing)
 
 
 def _has_loads(scene: Scene) -> bool:
-    """Whether forces on a scene that are not of its sides follow a wave."""
+    """Whether loads that follow a wave act on a scene, in addition to its sides."""
     shares = scene.supports.shares
     of_sides = 0 if shares is None else int(np.count_nonzero(shares.signal >= 0))
     return bool(len(scene.supports.drive_row) > of_sides)
@@ -256,10 +258,11 @@ def _bearers(
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """For each side nodes (q,) and the shares (2, q) of the steady forces on them, along x and y, that belong to it.
 
-    The force on a node of several sides is the sum of what each side would exert with the mean traction of its other
-    nodes, which are on no other side, and of a rest, which belongs to the side along whose normal it is. Under a
-    uniform stress there is no rest. known : by side, nodes (k,), forces (2, k) N on them, in the proportion of which
-    sides share nodes, and those (2, k) N with which it is recorded; empty where they are not known.
+    The force on a node of several sides is the sum of the forces that each side would exert with the mean traction of
+    its
+    other nodes, which are on no other side, and of a rest, which belongs to the side along whose normal it is. Under a
+    uniform stress there is no rest. known : by side, nodes (k,), forces (2, k) N on them, in proportion to which sides
+    share nodes, and recorded forces (2, k) N; empty where they are not known.
     """
     node = np.unique(np.concatenate([np.zeros(0, np.int64), *(edge.nodes for edge in edges)]))
     on = np.array([np.isin(node, edge.nodes) for edge in edges]).reshape(len(edges), len(node))
@@ -295,9 +298,9 @@ def _in_proportion(
 
 
 def _of_rest(on: np.ndarray, across: np.ndarray) -> np.ndarray:
-    """Shares (s, q) of a component of forces on nodes of some sides, on (s, q): of those it is along the normal of.
+    """Shares (s, q) by side of the rest of a force component on nodes; on (s, q): which nodes are on which side.
 
-    across : (s,) bool, sides with such a normal. Where there is none, all sides share it equally.
+    across : (s,) bool, sides whose normal is along the component. Where a node has none, all its sides share equally.
     """
     chosen = on & across[:, None]
     chosen = np.where(chosen.any(axis=0), chosen, on)

@@ -14,7 +14,7 @@ from dembound.motion.trackers import Run, Tracker
 
 @dataclass(frozen=True)
 class Silent:
-    """When a run is over: all monitors silent for so long, and not before the waves of all sources have passed them.
+    """The rule for the end of a run: all monitors silent for a time, after the waves of all sources have passed them.
 
     level : share of its own largest velocity so far below which a monitor is silent.
     hold : s, for which all must be silent.
@@ -70,9 +70,9 @@ def last_loud(speeds: np.ndarray, level: float, peaks: np.ndarray) -> int:
 
 
 class Silence(Tracker):
-    """Ends a run when all monitors have been silent for long enough; one that has not moved yet is silent, too.
+    """Ends a run when all monitors have been silent for long enough; a monitor that has not moved yet is silent, too.
 
-    It looks after every return of the loop, which it neither makes nor changes, so histories have the same bits.
+    It checks after every return of the loop, which it neither makes nor changes, so histories have the same bits.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class Silence(Tracker):
         self._loud = -1
 
     def handle(self, run: Run) -> None:
-        """Does nothing, as it is never due."""
+        """Do nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Find the last step at which any monitor was loud, and end the run if that is long ago."""
@@ -109,6 +109,6 @@ class Silence(Tracker):
         return {**super().memory(), "peaks": self._peaks, "loud": np.array(self._loud)}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned."""
+        """Restore the arrays returned by `memory`."""
         super().recall(memory)
         self._peaks, self._loud = memory["peaks"].copy(), int(memory["loud"])

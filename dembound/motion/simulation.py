@@ -43,8 +43,8 @@ class Simulation:
     Attributes
     ----------
     state : all arrays that change during the run.
-    trackers : those that are called during the run; at first a `Watch`, which all runs should have. stopped : whether a
-    tracker has ended the run. sides : those that are measured; None for none. side_samples : of the last steps.
+    trackers : called during the run; at first a `Watch`, which all runs should have. stopped : whether a
+    tracker has ended the run. sides : the measured sides; None for none. side_samples : of the last steps.
     """
 
     def __init__(

@@ -22,7 +22,7 @@ class Owner(Protocol):
         """All arrays that change during a run, by name."""
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
 
 
 @dataclass
@@ -61,7 +61,7 @@ class State:
 
     @property
     def displacement(self) -> np.ndarray:
-        """(3, n) m and rad, to be read or replaced as a whole; copy it to keep it."""
+        """Displacements (3, n) m and rad, to be read or replaced as a whole; copy them to keep them."""
         return self.layout.gather(self.u)
 
     @displacement.setter
@@ -70,7 +70,7 @@ class State:
 
     @property
     def velocity(self) -> np.ndarray:
-        """(3, n) m/s and rad/s, half a time step behind, to be read or replaced as a whole; copy it to keep it."""
+        """Velocities (3, n) m/s and rad/s, half a time step behind, to be read or replaced as a whole; copy to keep."""
         return self.layout.gather(self.v)
 
     @velocity.setter
@@ -90,7 +90,7 @@ class State:
     def arrays(self, *, copies: bool = True) -> dict[str, np.ndarray]:
         """All arrays, by name; a run continued from them in another process gives the same bits.
 
-        copies : that remain as they are while this run goes on; otherwise some are those of the run.
+        copies : whether to copy all arrays; otherwise some are those of the run, which change as it goes on.
         """
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"work/{name}": self.work[:, column] for column, name in enumerate(WORK)}
@@ -102,7 +102,7 @@ class State:
         return {name: np.array(values) for name, values in arrays.items()} if copies else arrays
 
     def take(self, arrays: Arrays) -> None:
-        """Restore what `arrays` has returned in another run of the same case."""
+        """Restore the arrays returned by `arrays` in another run of the same case."""
         for name in _ARRAYS:
             if name != "switch_velocity" and arrays[name].shape != getattr(self, name).shape:  # absent at first
                 raise ValueError(f"{name} has the shape {arrays[name].shape}, must have {getattr(self, name).shape}")
@@ -119,5 +119,5 @@ _ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_ve
 
 
 def within(arrays: Arrays, owner: str) -> dict[str, np.ndarray]:
-    """The arrays whose names begin with that of an owner, under names without it."""
+    """The arrays whose names begin with that of an owner, under names without this prefix."""
     return {name.removeprefix(f"{owner}/"): values for name, values in arrays.items() if name.startswith(f"{owner}/")}

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from dembound.casefile.output import ParaView
 
 TEXT = 4.0 / 3.0
-"""Bytes in a VTU file for each byte of data: it is base64 text."""
+"""Bytes in a VTU file for each byte of data, as it is base64 text."""
 
 POINT = 24.0
 """Bytes of a position, three doubles."""
@@ -24,7 +24,7 @@ class Storage(NamedTuple):
 
 
 def paraview_bytes(files: ParaView, vtu: float, vtkhdf: float) -> float:
-    """Bytes of the files for ParaView that a case asks for, from what is in those of one form and of the other."""
+    """Bytes of the files for ParaView that a case asks for, from the bytes of each form."""
     return vtu * (files != "vtkhdf") + vtkhdf * (files != "vtu")
 
 

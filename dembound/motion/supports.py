@@ -15,7 +15,7 @@ class NodeSupports:
     Parameters
     ----------
     scene : the supported scene.
-    ties : those that act on nodes of the table.
+    ties : ties that act on nodes of the table.
     time_step : Δt in s.
 
     Attributes
@@ -23,7 +23,7 @@ class NodeSupports:
     nodes : (k,) ascending.
     slots : (k,) where kernels hold them.
     inertia, keep, mobility, stiffness, prescribed, follow : (k, 3), see kernels.tables.Supports.
-    twin : (k,) slots, see there.
+    twin : (k,) slots, see kernels.tables.Supports.
     """
 
     def __init__(self, scene: Scene, ties: tuple[Tie, ...], time_step: float) -> None:

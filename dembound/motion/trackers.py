@@ -63,7 +63,7 @@ class Tracker(ABC):
         return {"due": np.array(self.due)}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         self.due = int(memory["due"])
 
 
@@ -98,7 +98,7 @@ class Watch(Every):
     name = "watch"
 
     def see(self, run: Run) -> None:
-        """Nothing, as the check is made after every return of the loop."""
+        """Do nothing, as the check is made after every return of the loop."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Raise RunError, with time and place, when a node is faster than waves can make it."""
@@ -130,7 +130,7 @@ class Records(Tracker):
         self.records: list[np.ndarray] = []
 
     def handle(self, run: Run) -> None:
-        """Does nothing, as it is never due."""
+        """Do nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Keep the record."""

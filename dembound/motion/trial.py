@@ -26,8 +26,8 @@ class Trial:
     ----------
     name : of the law or stage.
     scene : its arrays.
-    limit : s, the stability limit computed from the largest eigenvalue; step : s, that of the case.
-    system : its parts and ties for a time step (s); anew for every run.
+    limit : s, the stability limit computed from the largest eigenvalue; step : s, of the case.
+    system : its parts and ties for a time step (s); new for every run.
     is_linear : whether forces are linear, so that central differences conserve an energy exactly.
     step_cost : time of a step on one core, counted, ns.
     """
@@ -43,9 +43,11 @@ class Trial:
     def noise(self, part: str | None = None) -> np.ndarray:
         """Random velocities (3, n), m/s and rad/s, of all nodes or of those of one part; the same in every call.
 
-        Times the root of the mass, all directions are equally likely: every mode of vibration has the same expected
-        energy. There is neither momentum nor angular momentum: a free body would drift and turn, and what its
-        displacements are rounded by would grow. A body of which a component is held cannot turn as a whole.
+        Scaled with the root of the mass, all directions are equally likely: every mode of vibration has the same
+        expected
+        energy. There is neither momentum nor angular momentum: a free body would drift and rotate, and the rounding
+        error of
+        its displacements would grow. A body of which a component is held cannot rotate as a whole.
         """
         scene = self.scene
         mass = np.stack([scene.mass, scene.mass, scene.inertia])
@@ -68,10 +70,11 @@ class Trial:
 
     @property
     def parts(self) -> Iterator[str]:
-        """Names of the parts to put noise in: all of them, each of which moves independently of those after it.
+        """Names of the parts in which noise is put: all parts, each of which moves independently of those after it.
 
-        A body and its continuum are tied: the energy of each is at most that of the noise in it. Under a law with a
-        history only the last one that is recorded, the body, as the energies of a ledger are those of all parts.
+        A body and its continuum are tied: the energy of each is at most that of the noise in it. Under a
+        history-dependent law
+        only the last recorded part, the body, as the energies of a ledger are those of all parts.
         """
         system = self.system(self.step)
         parts = system.parts if self.is_linear else system.recorded_parts[-1:]
@@ -85,5 +88,5 @@ def at_rest(case: C) -> C:
 
 
 def left_out(case: Case) -> list[str]:
-    """What `at_rest` leaves out, in words."""
+    """Features of a case that `at_rest` leaves out, in words."""
     return ["no loads and waves"] * bool(case.load or case.wave)

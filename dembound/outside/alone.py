@@ -1,4 +1,4 @@
-"""A scene of a continuum alone, without particles, and its largest stable time step."""
+"""A scene of a continuum without particles, and its largest stable time step."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -20,7 +20,7 @@ from dembound.outside.part import GridPart
 
 
 class GridScene(Scene):
-    """A continuum alone.
+    """A continuum without particles.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class GridScene(Scene):
 
     @property
     def inertia(self) -> np.ndarray:
-        """(n,) that of the mass at a metre, kg·m²; nodes do not rotate."""
+        """Moment of inertia (n,) kg·m² of the mass at a distance of 1 m; nodes do not rotate."""
         return self.body.mass
 
     @property
@@ -129,9 +129,9 @@ class GridScene(Scene):
 
 
 def step_limit(body: GridBody) -> float:
-    """Largest stable step 2/ω_max (s) of central differences of a continuum alone, with its layers' delay τ.
+    """Largest stable step 2/ω_max (s) of central differences of a continuum only, with its layers' delay τ.
 
-    The layers' memories are not counted: they make no step unstable that is stable without them.
+    The layers' convolution variables are not counted: they make no step unstable that is stable without them.
     """
     slot = body.blocks.slot - body.first_slot
     layout = Layout(slot, body.blocks.end - body.first_slot)

@@ -37,7 +37,7 @@ class ElementBlocks:
 
     @cached_property
     def elements(self) -> np.ndarray:
-        """(B, 8) the elements of every block, −1 for none; those of a block are of one kind and shape."""
+        """Elements (B, 8) of every block, −1 for none; all of one block have the same kind and shape."""
         blocks = []
         for kind, shape in np.ndindex(4, len(self.mesh.shapes)):
             members = np.flatnonzero((self._kinds == kind) & (self.mesh.element_shape == shape))
@@ -137,7 +137,7 @@ class ElementBlocks:
         )
 
     def _entries(self, nodes: np.ndarray, shared: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Where the forces on every shared node are stored, see `Blocks`; nodes (B, R, 8) of the rims."""
+        """Places at which the forces on every shared node are stored, see `Blocks`; nodes (B, R, 8) of the rims."""
         place = np.arange(nodes.size).reshape(nodes.shape)
         place = 2 * place - place % LANES  # eight along x, then eight along y
         rank = np.full(self.mesh.count + 1, -1)  # the last one is that of lanes without an element
@@ -168,7 +168,7 @@ def elements_of(blocks: ElementBlocks, medium: Medium, thickness: float = 1.0) -
 
 
 def absorber_of(blocks: ElementBlocks, medium: Medium, settings: Absorption, step: float) -> Absorber:
-    """The layer's coefficients for time steps of `step` (s), and its memories at rest."""
+    """The layer's coefficients for time steps of `step` (s), and its convolution variables at rest."""
     mesh, count = blocks.mesh, blocks.mesh.order + 1
     elements = blocks.elements[len(blocks.elements) - blocks.layers :]
     columns = np.zeros((3, len(elements), 2, count, LANES))  # B, A and τ

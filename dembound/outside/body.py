@@ -82,7 +82,7 @@ class GridBody:
 
     @cached_property
     def _elastic(self) -> Grid:
-        """The law without its layers' memories."""
+        """The law without its layers' convolution variables."""
         nothing = np.zeros(0)
         return self.bundle(Absorber(np.zeros(0, dtype=np.int64), *[nothing] * 5))
 

@@ -1,10 +1,10 @@
-"""The settings of a continuum that the waves of a case need, for an error of their velocities that is asked for.
+"""The settings of a continuum that the waves of a case need for a given error of their velocities.
 
 Each function gives one setting. Their numbers are measured: bodies of 40 × 20 disks (D = 1 m, pattern A, c_s =
 707 m/s) with a force on the surface or inside, a cosine pulse of 0.1, 0.2 or 0.4 s or a Ricker wavelet of 5 or 10 Hz,
-beside bodies so large that nothing returns. Errors are the RMS of the velocities of all disks farther than 5 m from the
-force, over that of these velocities; on the surface beside the force, where Rayleigh waves have more of the high
-frequencies, they are two to three times as large.
+compared with bodies so large that nothing returns. Errors are the RMS error of the velocities of all disks farther than
+5 m from the force, over the RMS of these velocities; on the surface beside the force, where Rayleigh waves have more of
+the high frequencies, they are two to three times as large.
 """
 
 from __future__ import annotations
@@ -34,20 +34,18 @@ by a half, and in random packings to a quarter.
 """
 
 NODES = {3: 7.0, 4: 6.0, 5: 6.0, 6: 6.0}
-"""By order: nodes in the length of an S wave that elements still pass on.
+"""By order: nodes per wavelength of the shortest S wave that elements still transmit.
 
-They return waves shorter than that, so the error of a pulse is the root of their share of its energy. From errors of
+They return shorter waves, so the error of a pulse is the root of their share of its energy. From errors of
 cosine pulses between 17 % and 0.02 % follow 3 to 5 nodes with any order. Ricker wavelets, which have hardly any shorter
-waves, need as many as are given here for an error of 0.1 %.
-"""
+waves, need as many as are given here for an error of 0.1 %."""
 
 WITHIN = 0.4
-"""Part of the depth of layers that counts as distance from what sends waves, where these run along the layers.
+"""Part of the depth of layers that counts as distance from the source, where waves run along the layers.
 
 Measured with a tunnel (radius 20 m, ν = 0) 75, 150 and 225 m below the surface, layers that begin 10 to 90 m beside a
 box of 60 m round it, and pulses of 0.1, 0.25 and 0.5 s, both P and S: errors of 13 to 0.1 % are 0.4 to 2.4 times those
-of `grazing_error`.
-"""
+of `grazing_error`."""
 
 FLATTEST = 0.9
 """Largest cosine of the angle of incidence that is asked for: two depths to the side."""
@@ -58,39 +56,37 @@ LAYER_ERRORS = {
     5: {2: 8e-4, 3: 6e-5, 4: 2e-5},
     6: {2: 1e-4, 3: 5e-5},
 }
-"""By order and number of elements that absorb: error of displacements, which is larger there than that of velocities.
+"""By order and number of absorbing elements: error of displacements, which is larger than that of velocities.
 
 It does not depend on the length of the waves: layers of 0.2 to 3 wavelengths of S waves at the cut-off frequency have
-the same errors. With R0 = 1e-4, or 1e-5 where that is less.
-"""
+the same errors. With R0 = 1e-4, or 1e-5 where that gives less."""
 
 LASTING = 2e-5
-"""Displacement that is missing at a time t under a force that stays, over (α0 t)².
+"""Missing displacement at a time t under a force that stays, over (α0 t)².
 
 The shift α0 of the layers' poles makes them reflect frequencies below α0. Measured to 12 s with L_inner from 80 m to
-360 m and α0 of 0.1 and 0.3 times c_p/(2 L_inner), α0 t = 3 to 22, beside a margin of 480 m: 0.02 % to 1.0 %. Three
-elements of order 4 add up to 0.1 %, and more with a smaller α0; four add nothing to that.
-"""
+360 m and α0 of 0.1 and 0.3 times c_p/(2 L_inner), α0 t = 3 to 22, compared with a margin of 480 m: 0.02 % to 1.0 %.
+Three elements of order 4 add up to 0.1 %, and more with a smaller α0; four add nothing to that."""
 
 POINTS_IN_TIME = 64
 """Samples of a wave in a period of its highest frequency."""
 
 LONGER = 8
-"""Length over which spectra are taken, over that of the wave."""
+"""Length over which spectra are taken, over the length of the wave."""
 
 
 class Signal(NamedTuple):
-    """What starts waves: the velocity of a side, or a force."""
+    """A source signal of waves: the velocity of a side, or a force."""
 
     wave: Wave
     is_force: bool
 
 
 def energies(signal: Signal, lowest: float = math.inf) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (m,) Hz and the energies (m,) of velocities there, of any unit.
+    """Frequencies (m,) Hz and the energies (m,) of velocities at them, in any unit.
 
-    Of a force they are the body waves' of a plane medium, whose velocities are √ω times its spectrum. Of a wave that
-    stays constant in the end, only its rise counts. lowest : frequency (Hz) from which on they are those of
+    For a force those of the body waves of a plane medium, whose velocities are √ω times its spectrum. Of a wave that
+    stays constant in the end, only its rise counts. lowest : frequency (Hz) from which on they are the energies of
     displacements, smaller by its square over that of the frequency.
     """
     wave = signal.wave
@@ -106,7 +102,7 @@ def energies(signal: Signal, lowest: float = math.inf) -> tuple[np.ndarray, np.n
 
 
 def jumps(signal: Signal) -> bool:
-    """Whether its wave changes at once."""
+    """Whether a signal's wave is discontinuous."""
     return not math.isfinite(signal.wave.highest_frequency())
 
 
@@ -166,7 +162,7 @@ def element_size(signals: Sequence[Signal], medium: Medium, order: int, accuracy
 
 
 def least_size(order: int, diameter: float, *, is_random: bool) -> float:
-    """Smallest useful side (m) of elements beside disks of this mean diameter, m; is_random : not of a lattice."""
+    """Smallest useful side (m) of elements beside disks of this mean diameter, m; is_random : for a random packing."""
     return max(order * LEAST_SPACING, order**2 * (LEAST_RANDOM if is_random else LEAST_LATTICE)) * diameter
 
 
@@ -199,9 +195,9 @@ def offset(depth: float, ratio: float, reflection: float, accuracy: float) -> fl
 
 
 def grazing_error(depth: float, ratio: float, reflection: float, beside: float) -> float:
-    """Error of velocities beside layers that much to the side (m) of a hole or force at a depth (m): cf. `offset`.
+    """Velocity error at layers at a horizontal distance `beside` (m) from a hole or force at a depth (m): cf. `offset`.
 
-    Waves that the free surface sends back meet the layers at an angle θ with cos θ = beside/√(beside² + depth²), and S
+    Waves reflected by the free surface meet the layers at an angle θ with cos θ = beside/√(beside² + depth²), and S
     waves keep R0^(cos θ/ratio). ratio : of the slowest speed to the fastest.
     """
     return float(reflection ** (beside / math.hypot(beside, depth) / ratio))
@@ -218,9 +214,9 @@ def reflection(accuracy: float) -> float:
 def element_error(
     signals: Sequence[Signal], medium: Medium, order: int, side: float, lowest: float = math.inf
 ) -> float:
-    """Error of velocities with elements of this side (m), of the worst signal: the reverse of `element_size`.
+    """Error of velocities with elements of this side (m), for the worst signal: the inverse of `element_size`.
 
-    lowest : Hz, from which on it is that of displacements, see `energies`.
+    lowest : frequency (Hz) from which on it is the error of displacements, see `energies`.
     """
     passed = order * slowest(medium) / (NODES[order] * side)
     errors = [1.0]
@@ -231,6 +227,6 @@ def element_error(
 
 
 def layer_error(order: int, layers: int) -> float:
-    """Error of displacements with this number of elements that absorb, at least: that of the next smaller one known."""
+    """Error of displacements with this number of absorbing elements, or with the next smaller known number."""
     errors = LAYER_ERRORS[order]
     return errors[max(count for count in errors if count <= layers)]

@@ -7,7 +7,7 @@ from dembound.outside.mesh import Mesh
 
 
 def is_free(mesh: Mesh, side: str) -> bool:
-    """Whether a mesh ends at a side, with a free edge."""
+    """Whether a mesh ends at a side with a free edge."""
     axis, end = divmod(SIDES.index(side), 2)
     return not (mesh.periodic[axis] or mesh.layer.along(axis)[end] or mesh.mirror.along(axis)[end])
 

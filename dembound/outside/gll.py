@@ -1,4 +1,4 @@
-"""Gauss–Lobatto–Legendre points: those of the element's nodes and of its quadrature."""
+"""Gauss–Lobatto–Legendre points, used as the element's nodes and for quadrature."""
 
 from functools import cached_property
 

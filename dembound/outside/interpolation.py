@@ -8,7 +8,7 @@ from dembound.outside.mesh import Mesh
 
 
 class Interpolation(NamedTuple):
-    """How displacements at k points follow from those of nodes: Σ weight·u over node, both (k, N²)."""
+    """Interpolation of nodal displacements at k points: Σ weight·u over node, both (k, N²)."""
 
     node: np.ndarray
     weight: np.ndarray
@@ -17,7 +17,7 @@ class Interpolation(NamedTuple):
 def located(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The element (k,) of a mesh nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside.
 
-    Above the free surface beside the box it is the highest one there, and beyond periodic sides that at their images.
+    Above the free surface beside the box the highest element there, and beyond periodic sides the element at the image.
     """
     places = np.asarray(points) - mesh.origin
     places = np.where(mesh.periodic, places % mesh.size, places)
@@ -43,9 +43,9 @@ def _nearest_to_box(mesh: Mesh, places: np.ndarray) -> np.ndarray:
 
 
 def interpolation(mesh: Mesh, points: np.ndarray) -> Interpolation:
-    """How displacements at points (k, 2) m follow from those of nodes.
+    """The interpolation of nodal displacements at points (k, 2) m.
 
-    Those of a point within no element are extrapolated from the nearest one.
+    Displacements of a point within no element are extrapolated from the nearest one.
     """
     chosen, local = located(mesh, points)
     x, y = (mesh.rule.shape(local[:, a]) for a in (0, 1))

@@ -5,7 +5,7 @@ In a layer of thickness L a derivative along its normal is divided by s = κ + �
     κ = 1,  σ = σ0 q²,  σ0 = 3 c_p ln(1/R0)/(2L),  α = α0 (1 − q),  α0 = 0.3 c_p/(2 L_inner)
 
 (Roden & Gedney 2000, Microw. Opt. Technol. Lett. 27, 334–339; Komatitsch & Martin 2007, Geophysics 72, SM155–SM167). In
-time ∂u becomes ∂u/κ + ψ with a memory ψ ← Bψ + A∂u at every step,
+time ∂u becomes ∂u/κ + ψ with a convolution variable ψ ← Bψ + A∂u at every step,
 
     B = exp(−(σ/κ + α)Δt),  A = σ(B − 1)/(κ(σ + κα)).
 

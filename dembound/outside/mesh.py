@@ -13,7 +13,7 @@ from dembound.outside.gll import Rule
 from dembound.table import Box
 
 WHOLE = 1e-9
-"""Part of an element by which a length may exceed a whole number of them."""
+"""Part of an element by which a length may exceed a whole number of elements."""
 
 
 class Around(NamedTuple):
@@ -261,7 +261,7 @@ class Mesh:
 
     @property
     def sides(self) -> tuple[float, float, float, float]:
-        """Left, right, lower and upper side of the box, m; of a mesh without one those of the mesh."""
+        """Left, right, lower and upper side of the box, m; of the mesh if it has no box."""
         left, bottom, right, top = self.box or (0, 0, *self.cells)
         x, y = (self.origin[a] + axis.edges for a, axis in enumerate(self.axes))
         return float(x[left]), float(x[right]), float(y[bottom]), float(y[top])

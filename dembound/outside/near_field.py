@@ -2,8 +2,8 @@
 
 Measured in boxes of 3 to 36 m × 3 to 36 m of disks (D = 0.25, 0.5, 1 m, pattern A, ν = 0.25) round circles and squares
 with half sides of 0.2 to 0.8 of the box's, under a pressure and in P and S waves of 4 Hz; with one to four elements a
-side, of orders 3 to 6, at nine places, beside 2.5 times larger boxes with finer elements. Of 214 errors with one
-element a side under a pressure the median is 0.82 times what is given here, 90 % are 0.2 to 2.3 times.
+side, of orders 3 to 6, at nine places, compared with 2.5 times larger boxes with finer elements. Of 214 errors with one
+element a side under a pressure the median is 0.82 times the error given here, 90 % are 0.2 to 2.3 times.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ power of the side.
 """
 
 HOLES = {3: 6e-2, 4: 2e-2, 5: 1e-2, 6: 4e-3}
-"""By order: error beside elements as wide as a box round a hole under a pressure; 0.75 of that round circles, up to 1.8
-times round squares. That with two elements a side is smaller by 2 to the power of the order and one more."""
+"""By order: error beside elements as wide as a box round a hole under a pressure; 0.75 of that round circles, up to
+1.8 times round squares. The error with two elements a side is smaller by 2 to the power of the order and one more."""
 
 WIDER = 2.5
 """Power of the side with which it grows where elements are wider than that: 10 and 22 % with two and three times."""
 
 PASSED = 1.5
-"""That beside a hole which waves pass, over k L²/(gap + L), the motion that the hole adds: the wave number k times half
-the length L of the hole, times how much of it reaches the elements. It falls with a power of the side that is smaller
-by two. Largest errors round holes that S waves pass, with kL of 0.1 to 0.4 and L/(gap + L) of 0.2 to 0.8, are 0.5 to
-1.5 times that with one element a side (90 %), 0.4 to 1.1 times with two."""
+"""Error beside a hole which waves pass, over k L²/(gap + L), the scattered motion: the wave number k times half the
+length L of the hole, times the share of it that reaches the elements. It falls with a power of the side that is
+smaller by two. Largest errors round holes that S waves pass, with kL of 0.1 to 0.4 and L/(gap + L) of 0.2 to 0.8,
+are 0.5 to 1.5 times that with one element a side (90 %), 0.4 to 1.1 times with two."""
 
 TIES = 0.2
-"""What ties return of the field of a hole under a pressure at its distance d from them, over (D/d)²."""
+"""Part of the field of a hole under a pressure returned by ties at a distance d, over (D/d)²."""
 
 INWARD, OUTWARD = 2, 4
 """Powers of the distance with which the error under a pressure grows up to the elements and falls beyond, over the
@@ -47,7 +47,7 @@ class NearField(NamedTuple):
     """The field of one force or hole beside elements on one side of a box.
 
     place : the rectangle (m) of the hole, or a force's middle twice. gap : m, from there to the elements. source :
-    what makes the field, a pressure in a hole, waves that pass a hole, with an RMS wave number (1/m), or a force.
+    the cause of the field: a pressure in a hole, waves that pass a hole, with an RMS wave number (1/m), or a force.
     """
 
     place: Box

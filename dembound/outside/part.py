@@ -53,7 +53,7 @@ class GridPart(Part):
         return self._law
 
     def react(self, why: int, steps: int, state: State) -> None:
-        """Nothing: its law is the same throughout."""
+        """Do nothing, as the law never changes."""
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Strain energy (J) at displacements (3, slots) of the elements that do not absorb.
@@ -74,12 +74,12 @@ class GridPart(Part):
         return {"stress": (stress(self.body, displacement[:2, self.nodes]), "Pa")}
 
     def memory(self) -> Arrays:
-        """The memories of the layers."""
+        """The convolution variables of the layers."""
         absorber = self._law.absorber
         return {"strain_memory": absorber.strain_memory, "force_memory": absorber.force_memory}
 
     def recall(self, memory: Arrays) -> None:
-        """Restore what `memory` has returned in another run of the same case."""
+        """Restore the arrays returned by `memory` in another run of the same case."""
         for name, values in self.memory().items():
             values[:] = memory[name]
 
@@ -87,7 +87,7 @@ class GridPart(Part):
 def stress(body: GridBody, displacement: np.ndarray) -> np.ndarray:
     """Stress (n, 3) Pa of every node: σ_xx, σ_yy, σ_xy at displacements (2, n) m, tension positive.
 
-    The mean of that of its elements, weighted by area; in layers without memories.
+    The mean over its elements, weighted by area; in layers without convolution variables.
     """
     mesh = body.mesh
     derivative = mesh.rule.derivative

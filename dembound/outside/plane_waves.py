@@ -1,4 +1,4 @@
-"""Plane waves of a medium at any angle, and those that its free surface sends back.
+"""Plane waves of a medium at any angle, and their reflections at its free surface.
 
 A plane wave u = p g(t − s·x) with slowness s = n/c and polarisation p obeys (eᵀCe − ρ)p = 0, where e(s) p is the strain
 per unit of −ġ. All waves that the surface y = H links have the same s_x. The four s_y of one s_x are the roots of
@@ -7,7 +7,7 @@ per unit of −ġ. All waves that the surface y = H links have the same s_x. The
 
 two of them with energy that runs up, two with energy that runs down, or evanescent waves in place of two of them: then
 the incident wave is beyond the critical angle, and the reflected motion has not the wave's form. Otherwise the surface
-sends back the two that run down, with the amplitudes with which the tractions σ·(0, 1) of all three together are −m ü
+reflects the two that run down, with the amplitudes with which the tractions σ·(0, 1) of all three together are −m ü
 on it, where m is the mass on the surface (kg/m²), 0 for a homogeneous medium.
 """
 
@@ -122,12 +122,12 @@ def downgoing(medium: Medium, sx: float) -> list[ElasticPlaneWave] | None:
 def reflected_waves(
     medium: Medium, incident: ElasticPlaneWave, surface: float, mass: float = 0.0
 ) -> list[ElasticPlaneWave] | None:
-    """The waves that a free surface y = `surface` (m) sends back; None beyond the critical angle.
+    """The waves that a free surface y = `surface` (m) reflects; None beyond the critical angle.
 
-    That is also where the energy of the incident wave runs down, as that of flat P waves in anisotropic media may.
+    None also where the energy of the incident wave runs down, as that of flat P waves in anisotropic media may.
 
     mass : on the surface, kg/m². In the first order in ω·mass/(ρc) a wave is then A g + A′ ġ, which is the sum of two
-    with A/2 ± A′/ε whose delays differ by ε, the time that waves take through as much of the medium as has that mass.
+    with A/2 ± A′/ε whose delays differ by ε, the travel time of waves through as much of the medium as has that mass.
     """
     sx, sy = incident.slowness
     waves = downgoing(medium, sx)

@@ -66,7 +66,7 @@ def body_bytes(z: GridSizes) -> float:
     By node: positions twice, crossing lines, depths (64), number, area, slots and their nodes, two masses, mass and
     inertia in the scene (72), where its entries begin (3). By element: its place (16), lines (16 a row of points),
     nodes twice (16 a point); those of its rim, and their entries (8), and the forces on them under both laws (32). Of
-    layers: memories, and coefficients (48 a row).
+    layers: convolution variables, and coefficients (48 a row).
     """
     row = z.order + 1
     element = 16 + 16 * row + 16 * z.points + 40 * z.rim
@@ -74,7 +74,7 @@ def body_bytes(z: GridSizes) -> float:
 
 
 def memories_bytes(z: GridSizes) -> float:
-    """Bytes of the memory variables of absorbing layers, eight numbers a point."""
+    """Bytes of the convolution variables of absorbing layers, eight numbers a point."""
     return 64.0 * z.points * z.absorbing
 
 

@@ -23,9 +23,9 @@ class Traction:
 
     Attributes
     ----------
-    node : (k,) on which it acts, ascending. share : (k,) of the whole force: shape functions integrated over the part,
+    node : (k,) on which it acts, ascending. share : (k,) of the total force: shape functions integrated over the part,
     so that resultant and moment are those of the traction. length : m, of the part. least : m, the longest of the
-    elements' edges in it. absorbs : whether it reaches elements that absorb, whose nodes are left out.
+    elements' edges in it. absorbs : whether it reaches absorbing elements, whose nodes are left out.
     """
 
     node: np.ndarray
@@ -38,7 +38,7 @@ class Traction:
 def traction_in(mesh: Mesh, region: Box, depth: Mapping[str, float | np.ndarray] = NO_DEPTH) -> Traction:
     """The uniform traction on the free edges in a region; without any its length is zero.
 
-    depth : by side, how deep the mesh's edge lies below that of the ground, m, everywhere or at each node (n,); the
+    depth : by side, depth of the mesh's edge below that of the ground, m, uniform or at each node (n,); the
     region may contain either.
     """
     parts = [_part(mesh, side, region, depth.get(side, 0.0)) for side in SIDES if is_free(mesh, side)]

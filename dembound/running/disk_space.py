@@ -1,6 +1,6 @@
 """The size of the results of a run, computed from its plan, and the free space of the disk they are written to.
 
-Of a run that is continued, the size is that of what is still to be written.
+For a continued run, the size is that of the files still to be written.
 """
 
 from collections.abc import Iterator

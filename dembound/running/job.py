@@ -84,7 +84,7 @@ def resume_case(
     """Continue a run from its last checkpoint, to the same results as if it had never stopped; returns its folder.
 
     folder : of its results, the partial one or the complete one. until : s, another duration; histories, ledger and
-    snapshots keep their intervals. Without it a run that is complete cannot be continued. shared: as of `run_case`.
+    snapshots keep their intervals. A complete run cannot be continued without it. shared: as of `run_case`.
 
     Raises CaseError if there is no checkpoint, one of another version or of another case than the record, or of a run
     that has reached that time, RecordError if it is damaged; else errors as `run_case`.
@@ -155,7 +155,7 @@ class _Job:
             logging.getLogger(__name__).info(f"{self.case.name}: {space_in_words(planned, results, written)}")
 
     def _plan(self) -> Plan:
-        """The plan; that of a resumed run has the time step of its checkpoint, and a record in which it can go on."""
+        """The plan; for a resumed run with its checkpoint's time step, after checking that its record can go on."""
         planned = plan(self.case, self.clock)
         if self.found is None:
             if self.begun_for is None:

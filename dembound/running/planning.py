@@ -102,7 +102,7 @@ def warnings_before(planned: Plan) -> list[str]:
 
 
 def _all_before(planned: Plan) -> list[str]:
-    """All of them, silent waves included."""
+    """All warnings before the run, including those about silent waves."""
     return [
         *unlikely(planned.scene.case),
         *_unused_waves(planned.scene.case),

@@ -27,7 +27,7 @@ class Reports(Tracker):
         self._progress, self._steps = progress, steps
 
     def handle(self, run: Run) -> None:
-        """Does nothing, as it is never due."""
+        """Do nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Report."""

@@ -1,4 +1,4 @@
-"""What the runs of a batch share: stages before the run."""
+"""Results shared by the runs of a batch: stages before the run."""
 
 import hashlib
 import json
@@ -18,7 +18,7 @@ LOOK = 0.5
 
 @dataclass(frozen=True)
 class Shared:
-    """What a run shares with others; by default nothing.
+    """Results that a run shares with others; by default none.
 
     Attributes
     ----------

@@ -82,9 +82,9 @@ class Unfinished:
         return Checkpoint.read(self.path / FILE).arrays
 
     def require_record(self, scene: Scene) -> None:
-        """Raise RecordError if the record of the run, if it has begun, lacks what the whole scene appends to it.
+        """Raise RecordError if the record of the run, if it has begun, lacks datasets that the scene appends to.
 
-        Also where the times of its histories do not increase, to which none can be added.
+        Also where the times of its histories do not increase.
         """
         if (counts := self.facts["counts"]) is not None:
             record = self.path / "run.h5"
@@ -94,9 +94,9 @@ class Unfinished:
                     increasing(group["time"])
 
     def copy_to(self, partial: Path) -> None:
-        """Copy what a run is continued from to its partial folder, unless it is there.
+        """Copy the files from which a run is continued to its partial folder, unless they are there.
 
-        Raises CaseError if another process has taken it away since it was found.
+        Raises CaseError if another process has taken them away since they were found.
         """
         if not (self.path / FILE).is_file():
             raise CaseError([f"{self.path}: has been changed by another run meanwhile; nothing is left to resume"])
@@ -216,7 +216,7 @@ def _case_of(facts: dict[str, Any], path: Path) -> Case:
 
 
 def _silent(path: Path) -> frozenset[str]:
-    """The waves that stand for none, from the record beside a checkpoint, if the run itself has begun."""
+    """Names of the waves that stand for no motion, from the record beside a checkpoint, if the run itself has begun."""
     if not (path / "run.h5").is_file():
         return frozenset()
     with open_record(path / "run.h5") as record:
