@@ -77,7 +77,7 @@ Longest = Annotated[
 ]
 
 
-@app.command("advise", rich_help_panel="Cases")
+@app.command("advise")
 def advise_cases(
     cases: Cases,
     error: Error = None,
@@ -88,7 +88,9 @@ def advise_cases(
     changes: Settings = None,
     threads: Threads = None,
 ) -> None:
-    """Print how wrong a case is and why, and the cheapest cases for errors of 10, 3, 1 and 0.3 %.
+    """Predict the error of a case, and find the cheapest accurate one.
+
+    Prints the cause of each error at every monitor, and the cheapest cases for errors of 10, 3, 1 and 0.3 %.
 
     With --error it writes the cheapest case for this error as CASE_1pct.toml, without replacing a file.
 

@@ -49,8 +49,24 @@ def _one_line_at_signals() -> Iterator[None]:
         raise typer.Exit(exit_code_of(stop)) from None
 
 
+MORE = "More"
+"""Panel of the help with the commands that are not the usual steps of work."""
+
+ORDER = (
+    *("new", "check", "run", "advise", "plot", "report", "calibrate", "chart", "sweep"),
+    *("cases", "schema", "packing", "boundary", "stability", "dispersion", "exact"),
+    *("resume", "rerun", "library", "respond"),
+    *("estimate", "compare", "signals", "view", "movie", "gauge", "hopkinson", "cache"),
+)
+"""All commands in the order of work: the usual steps, then those of `MORE`."""
+
+
 class _Commands(TyperGroup):
     """All commands; signals end them as by `_one_line_at_signals`, also while options are read."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names of the commands, as the help lists them."""
+        return sorted(super().list_commands(ctx), key=ORDER.index)
 
     def make_context(self, *arguments: Any, **more: Any) -> Any:
         """Read the options."""

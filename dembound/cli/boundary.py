@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing, writable
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import INTERVAL, compact_table, err, out
 from dembound.machine import one_thread_for_matrices
@@ -33,7 +33,7 @@ NEAR_GAP = 1.25
 """Frequency of a gap of the packing over the highest one measured, below which it is named."""
 
 
-@app.command("boundary", rich_help_panel="Cases")
+@app.command("boundary", rich_help_panel=MORE)
 def boundary(
     case: OneCase,
     sides: Annotated[
@@ -61,7 +61,7 @@ def boundary(
     table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,
 ) -> None:
-    """Measure how much energy the sides of a case send back, by angle and frequency, for P and S waves.
+    """Compute the energy that sides return, by angle and frequency.
 
     Nothing is run. With several sides, pictures and tables have their names.
     """

@@ -50,7 +50,7 @@ class CalibrationMethod(StrEnum):
     homogenised = "homogenised"
 
 
-@app.command("calibrate", rich_help_panel="Cases")
+@app.command("calibrate")
 def calibrate_sides(
     case: OneCase,
     boundary: Annotated[
@@ -86,7 +86,7 @@ def calibrate_sides(
     name: Name = None,
     threads: Threads = None,
 ) -> None:
-    """Find the β with which viscous sides absorb, or transmit, a plane wave completely.
+    """Find the factors β with which viscous sides absorb plane waves.
 
     Prints β and M_out/M_in of every pass; writes the passes in HDF5, a picture of them, and the case with β in place.
 

@@ -14,6 +14,7 @@ import typer
 
 from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within
 from dembound.cli.app import (
+    MORE,
     Cases,
     Name,
     Output,
@@ -36,9 +37,12 @@ if TYPE_CHECKING:
     from dembound.running import Progress
 
 
-@app.command("check", rich_help_panel="Cases")
+@app.command("check")
 def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None) -> None:
-    """Print the facts of a run: particles, bonds, time step, memory, time, resolution. Writes nothing."""
+    """Print size, time step, cost and warnings of cases; runs nothing.
+
+    Warnings are about what is probably a mistake. Writes nothing.
+    """
     from dembound.check import check
     from dembound.cli.progress import print_warning
 
@@ -54,7 +58,7 @@ def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None)
             print_warning(case.name, warning)
 
 
-@app.command("run", rich_help_panel="Cases")
+@app.command("run")
 def run(
     cases: Cases,
     output: Output = Path("results"),
@@ -66,7 +70,7 @@ def run(
     keep: Keep = None,
     longest: Longest = None,
 ) -> None:
-    """Run cases one after another; each writes its folder of results.
+    """Run cases; each writes its folder of results.
 
     All case files are read before the first is run, so a mistake in the last one is found at once.
 
@@ -109,13 +113,15 @@ def run(
         spent = {}  # counted for the first case only
 
 
-@app.command("resume", rich_help_panel="Cases")
+@app.command("resume", rich_help_panel=MORE)
 def resume(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results, or NAME.partial.")],
     until: Annotated[float | None, typer.Option(min=0.0, help="New duration in s; needed for a complete run.")] = None,
     threads: Threads = None,
 ) -> None:
-    """Continue runs from their last checkpoints, to the same results as without the interruption.
+    """Continue stopped runs from their last checkpoints.
+
+    The results are the same as without the interruption.
 
     A complete run is continued to a later time; histories, ledger and snapshots keep their intervals.
     """
@@ -135,7 +141,7 @@ def resume(
             print_estimate(done)
 
 
-@app.command("rerun", rich_help_panel="Cases")
+@app.command("rerun", rich_help_panel=MORE)
 def rerun(
     record: Annotated[Path, typer.Argument(metavar="RESULTS", help="Folder of results, or its run.h5.")],
     output: Output = Path("results"),
@@ -143,7 +149,9 @@ def rerun(
     name: Name = None,
     threads: Threads = None,
 ) -> None:
-    """Run the case of a record again, from the record alone: case, seeds and wave files are in it.
+    """Run the case of a record again, from the record alone.
+
+    Case, seeds and wave files are in it.
 
     Ledger and snapshots of a run that was continued have the intervals of the record, unless the duration is changed.
     """

@@ -45,7 +45,7 @@ class ChartReference(StrEnum):
     finest = "finest"
 
 
-@app.command("chart", rich_help_panel="Cases")
+@app.command("chart")
 def chart(
     case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
     vary: Vary = None,
@@ -78,7 +78,7 @@ def chart(
     name: Name = None,
     threads: Annotated[int, typer.Option(min=1, help="Cores to use; CPU times vary least with one.")] = 1,
 ) -> None:
-    """Run a case over many choices of its keys, and draw the error of each against its cost.
+    """Chart the errors of many choices of keys against their cost.
 
     Choices are given by --vary, by the table chart of the case, or else chosen: radii, steps, sides, methods.
 

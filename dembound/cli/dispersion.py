@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, PictureTitle, Settings, app, load_case, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, app, load_case, writable
 from dembound.cli.console import compact_table, out
 from dembound.errors import CaseError
 
@@ -34,7 +34,7 @@ def _several(default: Sequence[float]) -> str:
     return f"May be repeated; by default {', '.join(f'{value:g}' for value in default)}."
 
 
-@app.command("dispersion", rich_help_panel="Cases")
+@app.command("dispersion", rich_help_panel=MORE)
 def dispersion(
     cases: Annotated[
         list[Path] | None, typer.Argument(metavar="CASE", help="Case files (TOML) of bars, to show their lattices.")
@@ -59,9 +59,9 @@ def dispersion(
     table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,
 ) -> None:
-    """Print wave speeds on a bar of nodes, peridynamic or central differences, and the nodes a wavelength needs.
+    """Print wave speeds on bars, and the nodes a wavelength needs.
 
-    Computed for the bars of cases, or for all combinations of the options.
+    Of peridynamics and of central differences, for the bars of cases, or for all combinations of the options.
     """
     from dembound.plot.dispersion import plot_dispersion
     from dembound.plot.style import save

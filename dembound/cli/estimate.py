@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.app import Threads, app, prepare_computing
+from dembound.cli.app import MORE, Threads, app, prepare_computing
 from dembound.cli.console import err, out
 from dembound.cli.results import results_file
 from dembound.errors import CaseError, DemboundError, RecordError
@@ -21,13 +21,13 @@ Repeat = Annotated[
 ]
 
 
-@app.command("estimate", rich_help_panel="Results")
+@app.command("estimate", rich_help_panel=MORE)
 def estimate(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
     repeat: Repeat = False,
     threads: Threads = None,
 ) -> None:
-    """Estimate how wrong runs are: by their sides, their grid and their time step, at every monitor.
+    """Estimate the errors of runs by sides, grid and time step.
 
     Writes estimate.h5 and the entry error_estimate of summary.json; see docs/tasks/trust_a_result.md.
     """

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from dembound.cli.app import Name, Output, Settings, app, load_disks
+from dembound.cli.app import MORE, Name, Output, Settings, app, load_disks
 from dembound.cli.console import out
 
 
-@app.command("exact", rich_help_panel="Cases")
+@app.command("exact", rich_help_panel=MORE)
 def exact(
     path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
     problem: Annotated[
@@ -21,7 +21,7 @@ def exact(
     changes: Settings = None,
     name: Name = None,
 ) -> None:
-    """Write the exact motion at the monitors of a case, as long as it is known.
+    """Write the exact solution at the monitors of a case, if known.
 
     Known are Lamb's and Garvin's problem, and a circular hole under a pressure or under a plane wave.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, PictureTitle, app
+from dembound.cli.app import MORE, PICTURE, PictureTitle, app
 from dembound.cli.console import compact_table, err, out
 from dembound.cli.option_tables import with_tables
 from dembound.cli.results import results_file
@@ -24,7 +24,7 @@ MPA = 1e6
 """Pascals in a megapascal."""
 
 
-@app.command("gauge", rich_help_panel="Results")
+@app.command("gauge", rich_help_panel=MORE)
 @with_tables
 def gauge(
     record: Annotated[
@@ -62,7 +62,7 @@ def gauge(
     *,
     signal: SignalOptions,
 ) -> None:
-    """Estimate from a gauge on a bar: wave speed, attenuation, and the stress at which the bar spalled.
+    """Evaluate a gauge on a bar: wave speed, attenuation, strength.
 
     Results contain position, length, density, speed and attenuation. Strengths need --spall or --free-end.
     """

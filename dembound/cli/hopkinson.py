@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, PictureTitle, app, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, app, writable
 from dembound.cli.console import compact_table, err, out
 from dembound.cli.option_tables import with_tables
 from dembound.cli.results import results_file
@@ -105,7 +105,7 @@ class PulseOptions:
     ] = False
 
 
-@app.command("hopkinson", rich_help_panel="Results")
+@app.command("hopkinson", rich_help_panel=MORE)
 @with_tables
 def hopkinson(
     incident: Annotated[
@@ -133,7 +133,7 @@ def hopkinson(
     ] = None,
     signal: SignalOptions,
 ) -> None:
-    """Compute stress, strain and strain rate of a specimen in a split Hopkinson test from gauges on its bars.
+    """Evaluate a split Hopkinson test: stress, strain, strain rate.
 
     By one, two and three waves, with the time in which the specimen is in equilibrium.
     """

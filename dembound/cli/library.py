@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.app import Name, Output, Settings, Threads, app, load_disks, prepare_computing
+from dembound.cli.app import MORE, Name, Output, Settings, Threads, app, load_disks, prepare_computing
 from dembound.cli.console import err, out
 
 if TYPE_CHECKING:
     from dembound.studies.library import LoadFactor
 
 
-@app.command("library", rich_help_panel="Cases")
+@app.command("library", rich_help_panel=MORE)
 def library(
     path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of disks under the elastic law.")],
     spacing: Annotated[float, typer.Option(help="Time between two values of the records (s).", min=1e-12)],
@@ -26,7 +26,7 @@ def library(
     name: Name = None,
     threads: Threads = None,
 ) -> None:
-    """Run each input of a case once, so that histories under any record follow without a run.
+    """Run each input of a case once, so that respond needs no run.
 
     Inputs are the waves of the case. Its folder is named after the case with "_library"; see `dembound respond`.
     """
@@ -41,7 +41,7 @@ def library(
     out.print(f"{case.name}: library of {', '.join(made.inputs)}, {made.clock.duration:g} s, {step}, in {folder}")
 
 
-@app.command("respond", rich_help_panel="Cases")
+@app.command("respond", rich_help_panel=MORE)
 def respond(
     folder: Annotated[Path, typer.Argument(metavar="LIBRARY", help="Folder written by `dembound library`.")],
     records: Annotated[
@@ -62,7 +62,7 @@ def respond(
         ),
     ] = None,
 ) -> None:
-    """Write the histories of all monitors under records, from a library, without a run.
+    """Write histories under records from a library, without a run.
 
     They are those of a direct run with the record as a file wave, to rounding, and are plotted and compared like it.
     """

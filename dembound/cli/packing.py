@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.app import PICTURE, Cases, PictureTitle, Settings, Side, app, load_disks
+from dembound.cli.app import MORE, PICTURE, Cases, PictureTitle, Settings, Side, app, load_disks
 from dembound.cli.console import out
 from dembound.errors import CaseError
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from dembound.disks.scene import DiskScene
 
 
-@app.command("packing", rich_help_panel="Cases")
+@app.command("packing", rich_help_panel=MORE)
 def packing(
     cases: Cases,
     output: Annotated[Path, PICTURE] = Path("packing.png"),
@@ -25,7 +25,7 @@ def packing(
     brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
     changes: Settings = None,
 ) -> None:
-    """Draw packings: one side of each case next to each other, or one brick."""
+    """Draw one side of the packing of each case, or one brick (PNG)."""
     from dembound.disks.scene import build
     from dembound.plot.packing import plot_brick, plot_patterns
     from dembound.plot.style import save

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 from rich.table import Column
 
-from dembound.cli.app import PICTURE, PictureTitle, Side, app, png, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, Side, app, png, writable
 from dembound.cli.console import compact_table, out
 from dembound.cli.plotted import (
     CALIBRATIONS,
@@ -31,7 +31,7 @@ class Field(StrEnum):
     displacement = "displacement"
 
 
-@app.command("plot", rich_help_panel="Results")
+@app.command("plot")
 def plot(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[Path, PICTURE] = Path("plot.png"),
@@ -67,7 +67,9 @@ def plot(
         typer.Option(help="Table of the lines drawn to write as well (CSV), in their units.", callback=writable),
     ] = None,
 ) -> None:
-    """Overlay the histories of several runs, or the passes of several calibrations, in one picture.
+    """Draw histories of runs, or a field or the energies of one (PNG).
+
+    Histories of several runs are drawn over each other, and so are the passes of several calibrations.
 
     With free-field sides, a monitor's twin in the free-field column is drawn as a dashed line.
     """
@@ -104,7 +106,7 @@ def _kind(file: Path) -> str:
     return CALIBRATIONS if file.name == "calibration.h5" else f"runs of {kind_of_record(file).plural}"
 
 
-@app.command("view", rich_help_panel="Results")
+@app.command("view", rich_help_panel=MORE)
 def view_disks(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
     snapshot: Annotated[
@@ -122,7 +124,7 @@ def view_disks(
         float, typer.Option(help="Show disks moved by this many times their displacement; 0: where they began.")
     ] = 0.0,
 ) -> None:
-    """Show the disks of a run in a window to zoom into, with a slider over its snapshots.
+    """Show the disks of a run in a window, with a slider in time.
 
     A window needs a display; without one, --output draws a picture.
     """
@@ -136,11 +138,14 @@ def view_disks(
         out.print(f"wrote {picture}")
 
 
-@app.command("cache", rich_help_panel="Results")
+@app.command("cache", rich_help_panel=MORE)
 def cache(
     delete: Annotated[bool, typer.Option("--clear", help="Delete all cached bricks.")] = False,
 ) -> None:
-    """Show where packed bricks are kept (DEMBOUND_CACHE moves it), or delete them."""
+    """Show where packed bricks are kept, or delete them.
+
+    The environment variable DEMBOUND_CACHE sets another folder.
+    """
     from dembound.packings.cache import cache_folder, clear
 
     out.print(str(cache_folder()))
@@ -148,7 +153,7 @@ def cache(
         out.print(f"deleted {clear()} bricks")
 
 
-@app.command("compare", rich_help_panel="Results")
+@app.command("compare", rich_help_panel=MORE)
 def compare_histories(
     reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="Results to measure against.")],
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
@@ -163,7 +168,7 @@ def compare_histories(
         bool, typer.Option("--as-recorded", help="Leave motion as late or early as waves enter disks.")
     ] = False,
 ) -> None:
-    """Print the differences between the histories of runs and those of a reference, monitor by monitor.
+    """Print the errors of histories against those of a reference run.
 
     RMS is that of the difference of vectors in % of the reference's, largest the largest difference in % of its peak.
 

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from dembound.cli.app import app, writable
+from dembound.cli.app import MORE, app, writable
 from dembound.cli.console import INTERVAL, err, out
 from dembound.cli.plotted import SceneField
 from dembound.cli.results import results_file
@@ -25,14 +25,14 @@ def _page(path: Path) -> Path:
     return path
 
 
-@app.command("report", rich_help_panel="Results")
+@app.command("report")
 def report(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Page to write (HTML).", callback=_page)] = Path(
         "report.html"
     ),
 ) -> None:
-    """Write a page of one or several runs for any browser: scenes, histories and spectra to zoom, energies, cases.
+    """Write an HTML page of runs: scenes, histories, spectra, energy.
 
     The page is one file and loads nothing; pictures and tables are there without scripts and in print, too.
     """
@@ -50,7 +50,7 @@ def _movie(path: Path) -> Path:
     return path
 
 
-@app.command("movie", rich_help_panel="Results")
+@app.command("movie", rich_help_panel=MORE)
 def movie(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
     output: Annotated[
@@ -78,7 +78,7 @@ def movie(
     size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200)] = 960,
     every: Annotated[int, typer.Option(help="Show every so many-th snapshot.", min=1)] = 1,
 ) -> None:
-    """Write a movie of a run: its snapshots, and below them histories with a line at the time.
+    """Write a movie of a run and its histories (GIF, or PNG frames).
 
     There is a frame for each snapshot: run the case with --set output.snapshots=100 or so.
     """

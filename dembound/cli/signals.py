@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.app import PICTURE, PictureTitle, app
+from dembound.cli.app import MORE, PICTURE, PictureTitle, app
 from dembound.cli.console import out
 from dembound.cli.plotted import Component, ComponentOfMotion, Monitors, Quantity, QuantityOfMonitors
 from dembound.cli.results import results_file
@@ -29,7 +29,7 @@ class Shown(StrEnum):
     hodograph = "hodograph"
 
 
-@app.command("signals", rich_help_panel="Results")
+@app.command("signals", rich_help_panel=MORE)
 def signals(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     show: Annotated[
@@ -50,7 +50,7 @@ def signals(
         str | None, typer.Option(metavar="NAME", help="With --show transfer: monitor that is the input.")
     ] = None,
 ) -> None:
-    """Draw spectra of the monitors of runs, record sections or hodographs, and write what is drawn as a table.
+    """Draw spectra, record sections or hodographs (PNG and CSV).
 
     The table has the name of the picture, with the ending .csv.
     """

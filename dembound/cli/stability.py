@@ -10,7 +10,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from dembound.cli.app import PICTURE, PictureTitle, Settings, Threads, app, load_case, prepare_computing, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Threads, app, load_case, prepare_computing, writable
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import compact_table, err, out
 from dembound.errors import RunError
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from dembound.studies.stability import Stability
 
 
-@app.command("stability", rich_help_panel="Cases")
+@app.command("stability", rich_help_panel=MORE)
 def stability(
     case: OneCase,
     steps: Annotated[
@@ -39,7 +39,9 @@ def stability(
     changes: Settings = None,
     threads: Threads = None,
 ) -> None:
-    """Measure the largest stable time step of a scene with noise, and whether energy grows at its own step.
+    """Measure the largest stable time step of a scene, by noise.
+
+    Also whether the energy of noise grows at its own step.
 
     Loads and waves are left out. Ends with exit code 3 if the case's own step is not stable.
     """

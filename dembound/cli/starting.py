@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from dembound import shipped
-from dembound.cli.app import app, writable
+from dembound.cli.app import MORE, app, writable
 from dembound.cli.console import out
 from dembound.errors import CaseError
 from dembound.starting import DEFAULT, ENDING, names, starting_point, titles
@@ -17,10 +17,10 @@ SCHEMA_FILE = "dembound.schema.json"
 """File name of the schema that is written next to new cases."""
 
 cases = typer.Typer(invoke_without_command=True)
-app.add_typer(cases, name="cases", rich_help_panel="Cases")
+app.add_typer(cases, name="cases", rich_help_panel=MORE)
 
 
-@app.command("new", rich_help_panel="Cases")
+@app.command("new")
 def new(
     path: Annotated[
         Path, typer.Argument(metavar="FILE", help="File to write; .toml is added to a name without ending.")
@@ -37,7 +37,7 @@ def new(
     listed: Annotated[bool, typer.Option("--list", help="List the starting points and stop.")] = False,
     schema: Annotated[bool, typer.Option(help=f"Write {SCHEMA_FILE} next to it, for editors.")] = True,
 ) -> None:
-    """Write a commented case to start from."""
+    """Write a commented case file to start from."""
     if listed:
         _print_titles(titles())
         return
@@ -100,13 +100,13 @@ def _schema() -> str:
     return json.dumps(json_schema(SCHEMAS), indent=1, ensure_ascii=False) + "\n"
 
 
-@app.command("schema", rich_help_panel="Cases")
+@app.command("schema", rich_help_panel=MORE)
 def schema(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="File to write (JSON).", callback=writable)
     ] = None,
 ) -> None:
-    """Print a JSON schema of case files, with which editors complete and check them."""
+    """Print the JSON schema of case files, for editors."""
     if output is None:
         typer.echo(_schema(), nl=False)
         return

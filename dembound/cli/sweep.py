@@ -41,7 +41,7 @@ class SweepAction(StrEnum):
     calibrate = "calibrate"
 
 
-@app.command("sweep", rich_help_panel="Cases")
+@app.command("sweep")
 def sweep(
     case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
     vary: Vary = None,
@@ -72,7 +72,7 @@ def sweep(
     changes: Settings = None,
     name: Name = None,
 ) -> None:
-    """Run, or calibrate, a case with many values of its keys, several at once; one table of all results.
+    """Run or calibrate a case for many values of its keys.
 
     Values are given by --vary, or by sweep.vary in the case. Means are over members that differ in seeds alone.
 

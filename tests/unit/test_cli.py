@@ -23,7 +23,7 @@ from rich.text import Text
 
 from dembound import cli, starting
 from dembound.boundaries import SIDES
-from dembound.cli.app import Side
+from dembound.cli.app import ORDER, Side
 from dembound.cli.progress import Lines, progress_of
 from dembound.kinds import load
 from dembound.machine import Memory
@@ -46,6 +46,7 @@ BLOW_UP = {"boundary.left": {"type": "velocity", "wave_p": "pulse"}, "run.durati
 
 
 def test_the_module_is_the_command_which_tells_its_version_and_commands(monkeypatch, capsys, dembound) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
     # .ci/run starts commands as processes of their own
     monkeypatch.setattr(sys, "argv", ["dembound", "--version"])
     with pytest.raises(SystemExit) as ended:
@@ -55,8 +56,9 @@ def test_the_module_is_the_command_which_tells_its_version_and_commands(monkeypa
 
     told = dembound("--help")
     assert told.code == 0
-    assert {"new", "cases", "schema", "check", "run", "calibrate"} <= set(told.out.split())
-    assert {"plot", "report", "movie", "dispersion", "stability", "gauge"} <= set(told.out.split())
+    rows = re.findall(r"^│ (\w*) +\S.*│$", told.out.partition("─ Commands ─")[2], flags=re.MULTILINE)
+    assert tuple(rows) == ORDER  # one line each
+    assert told.out.index(" new ") < told.out.index(" sweep ") < told.out.index("─ More ─") < told.out.index(" cases ")
     assert tuple(Side) == SIDES
 
 
