@@ -36,8 +36,8 @@ def part(difference: np.ndarray, of: np.ndarray) -> np.ndarray:
 
 
 # measured: A 0.43 % (P 0.24 %). The elements have the moduli of an endless packing; B and C near a box add what their
-# disks do beyond the mean strain, and at the surface that they are softer there (place 4), docs/evidence/ground_boxes.md:
-# 2.2 and 3.8 %, C 2.8 %
+# disks do beyond the mean strain, and at the surface that they are softer there (place 4): 2.2 and 3.8 %, C 2.8 %, see
+# docs/evidence/ground_boxes.md
 @pytest.mark.parametrize(
     ("pattern", "within", "wave"),
     [("A", 6e-3, "wave_s"), ("B", 4.5e-2, "wave_p"), pytest.param("C", 3.5e-2, "wave_s", marks=pytest.mark.slow)],
