@@ -1,12 +1,15 @@
 """Settings of the site: `sphinx-build -W docs site` builds it, without a network."""
 
+import re
+from typing import Any
+
 from dembound.version import __version__
 
 project = "dembound"
 author = "the authors of dembound"
 version = release = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton", "sphinx_design"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton", "sphinx_design"]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 exclude_patterns = ["zh/_*"]
@@ -18,3 +21,28 @@ html_css_files = ["site.css"]
 html_show_sphinx = False
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
+default_role = "code"
+
+FIELDS = {"Parameters": "param", "Attributes": "ivar"}
+ITEM = re.compile(r"(?:^|(?<=[.;]) )(\w+(?:, \w+)*) : ")
+
+
+def in_fields(app: Any, what: str, name: str, item: Any, options: Any, lines: list[str]) -> None:
+    """Turn sections of a docstring with entries "name : meaning" into fields; napoleon would take meanings for types."""
+    text = "\n".join(lines)
+    for section, kind in FIELDS.items():
+        head, found, rest = text.partition(f"{section}\n{'-' * len(section)}\n")
+        if found:
+            body, _, rest = rest.partition("\n\n")
+            _, *parts = ITEM.split(" ".join(body.split()))
+            fields = [
+                f":{kind} {names.replace(', ', '/')}: {meaning}"
+                for names, meaning in zip(parts[::2], parts[1::2], strict=True)
+            ]
+            text = "\n".join([head, *fields, "", rest])
+    lines[:] = text.split("\n")
+
+
+def setup(app: Any) -> None:
+    """Have the sections of docstrings read."""
+    app.connect("autodoc-process-docstring", in_fields)

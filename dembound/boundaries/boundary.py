@@ -14,10 +14,7 @@ Place = tuple[Edge, BoundaryMedium]
 
 
 class Boundary(Table):
-    """A side's table: the base of all types.
-
-    A type is a subclass with a literal `type`, its keys, and the method `support`. The defaults of the other members
-    are those of a side without waves, dashpots and prescribed motion.
+    """What acts on a side; a side without a table is free.
 
     Attributes
     ----------
@@ -30,6 +27,11 @@ class Boundary(Table):
     may_halve : whether the side's particles may be half cells, see `with_half_cells`.
     needs_column : whether the side needs a free-field column, which moves with the waves of the ground.
     beyond_dashpots : text for reports, naming what `dashpots_alone` leaves out.
+
+    Notes
+    -----
+    A type is a subclass with a literal `type`, its keys, and the method `support`. The defaults of the other members
+    are those of a side without waves, dashpots and prescribed motion.
     """
 
     for_bars: ClassVar[bool] = False

@@ -8,7 +8,7 @@ from dembound.table import quantity
 
 
 class Fixed(Boundary):
-    """A rigid wall to which the edge particles are fixed; it reflects a wave with the opposite sign of the velocity."""
+    """A rigid wall: its particles neither move nor turn; reflected velocities have the opposite sign."""
 
     for_bars: ClassVar[bool] = True
     for_static: ClassVar[bool] = True

@@ -7,7 +7,7 @@ from dembound.table import quantity
 
 
 class Free(Boundary):
-    """No support; a wave is reflected, and doubles the motion of the side."""
+    """No forces act on the side; a reflected wave doubles its motion."""
 
     for_bars: ClassVar[bool] = True
     for_static: ClassVar[bool] = True

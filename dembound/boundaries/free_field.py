@@ -16,7 +16,10 @@ from dembound.boundaries.viscous import Dashpots, Viscous
 
 
 class FreeField(Dashpots):
-    """The column's seam forces, and F = −βρcD·(v − v_ff), v_ff the velocity of the particle's twin in the column."""
+    """Continues as ground without the body: F = F_ff − βρcD·(v − v_ff) (Z eq. 21); left and right only.
+
+    F_ff is the seam force of the free-field column, v_ff the velocity of the particle's twin in it.
+    """
 
     may_halve: ClassVar[bool] = False
     needs_column: ClassVar[bool] = True

@@ -17,20 +17,32 @@ from dembound.table import quantity
 
 
 class MatchedLayer(Drivable):
-    """Absorbs all wavelengths in a layer of nodes beyond the end; a wave may enter through it."""
+    """Absorbs all wavelengths in nodes beyond the end of a bar, through which a wave may enter; not for disks."""
 
     for_bars: ClassVar[bool] = True
 
     type: Literal["matched_layer"]
-    nodes: int = quantity(40, unit="1", means="count", help="number of nodes in the layer", ge=4, le=10_000)
+    nodes: int = quantity(
+        40,
+        unit="1",
+        means="count",
+        help="number N of nodes beyond the end, at least twice the horizon",
+        ge=4,
+        le=10_000,
+    )
     power: float = quantity(
-        3.0, unit="1", means="setting", help="power p of the depth with which waves decay", ge=1.0, le=10.0
+        3.0,
+        unit="1",
+        means="setting",
+        help="power p with which the rate of decay rises with the depth",
+        ge=1.0,
+        le=10.0,
     )
     reflection: float | None = quantity(
         None,
         unit="1",
         means="share",
-        help="R0, returned by the layer's outer end in theory; absent: by the number of nodes",
+        help="R0, what the outer end returns in theory; absent: 10^−(4 + N/20), at least 1e-12",
         gt=0.0,
         lt=1.0,
     )

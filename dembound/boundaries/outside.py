@@ -10,8 +10,10 @@ from dembound.boundaries.sides import OPPOSITE, SIDES
 
 
 class Outside(Drivable):
-    """A continuum of the packing's moduli, whose far part absorbs; its settings are those of the table ``[outside]``.
+    """Continues as an elastic continuum that absorbs, see `[outside]`; waves may enter through a bottom of this type.
 
+    Notes
+    -----
     Through the bottom of a body that is periodic sideways plane waves may enter from below (disks/beyond/incident.py).
     """
 

@@ -8,7 +8,7 @@ from dembound.boundaries.sides import OPPOSITE, normal_axis
 
 
 class Periodic(Boundary):
-    """Bonds cross the seam; the tiling creates them, and no support is needed."""
+    """The side is connected to the opposite one, which must be periodic, too."""
 
     is_periodic: ClassVar[bool] = True
 

@@ -7,8 +7,10 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Wa
 
 
 class Symmetry(Boundary):
-    """Every edge disk is bonded to its own mirror image, which it touches, or faces across a gap as disks of a lattice.
+    """The body continues as its mirror image: each disk of the side is bonded to its own image.
 
+    Notes
+    -----
     The mirror plane is half a disk diameter outside the disk's centre, or half the distance of equal disks of the
     packing straight across the side (disks/material/mirrored.py). The image of (u_n, u_s, θ) is (−u_n, u_s, −θ):
     the elongation between the two is 2u_n, their bond bends by 2θ, and as both rotate by opposite angles the contact

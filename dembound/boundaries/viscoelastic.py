@@ -47,10 +47,13 @@ class Springs(Boundary):
         le=0.5,
     )
     distance: float | None = quantity(
-        None, unit="m", means="length", help="distance L from the source of the waves", gt=0.0
+        None, unit="m", means="length", help="distance L from the source of the waves; give this or source", gt=0.0
     )
     source: tuple[float, float] | None = quantity(
-        None, unit="m", means="place", help="where the waves come from; L is each particle's own distance from there"
+        None,
+        unit="m",
+        means="place",
+        help="place [x, y] the waves come from; L is each particle's own distance from there",
     )
 
     @model_validator(mode="after")
@@ -113,7 +116,7 @@ class Springs(Boundary):
 
 
 class Viscoelastic(Dashpots, Springs):
-    """Absorbs and holds: F = −βρcD·v − K·D·u, K = α_n G/L along the normal and α_s G/L across (Z eq. 17)."""
+    """Absorbs and holds: F = −βρcD·v − K·D·u, K = α_n G/L along the normal and α_s G/L across it (Z eq. 17)."""
 
     type: Literal["viscoelastic"]
 

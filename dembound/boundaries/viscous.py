@@ -27,12 +27,22 @@ class Dashpots(Boundary):
     may_halve: ClassVar[bool] = True
 
     beta_p: Given = quantity(
-        "matched", unit="1", means="factor of dashpots", help="factor of the P dashpots, along the side's normal"
+        "matched",
+        unit="1",
+        means="factor of dashpots",
+        help='factor β of the dashpots along the side\'s normal; "matched": that of the impedance of the packing',
     )
     beta_s: Given = quantity(
-        "matched", unit="1", means="factor of dashpots", help="factor of the S dashpots, across the side's normal"
+        "matched",
+        unit="1",
+        means="factor of dashpots",
+        help="factor β of the dashpots across the side's normal, likewise",
     )
-    half_mass: bool = quantity(False, unit="1", help="whether the side's particles are half cells")
+    half_mass: bool = quantity(
+        False,
+        unit="1",
+        help="whether the particles are half cells, on sides of disks in one row; not beside a free field",
+    )
 
     @property
     def factors(self) -> Mapping[Motion, Factor]:
@@ -72,7 +82,7 @@ class Dashpots(Boundary):
 
 
 class Viscous(Dashpots):
-    """Absorbs: F = −βρcD·v (Z eq. 4)."""
+    """Absorbs by dashpots: F = −βρcD·v (Z eq. 4), D the diameter of a particle; of a bar F = −βρcA·v."""
 
     for_bars: ClassVar[bool] = True
 

@@ -14,27 +14,27 @@ MOST_REPEATS = 1000
 
 
 class ChartChoice(Table):
-    """A named choice: some keys of the case, each with another value."""
+    """A choice of which several keys change together."""
 
     name: str = quantity(..., unit="1", help="name of the choice in the chart", min_length=1)
-    set: dict[str, Any] = quantity(..., unit="1", help='changed keys, such as {"run.safety" = 0.5}')
+    set: dict[str, Any] = quantity(..., unit="1", help='changed keys, such as { "run.safety" = 0.5 }')
 
 
 class Chart(Table):
-    """The choices of a chart, how often each is run, and what errors are measured against."""
+    """Choices that `dembound chart` compares; runs do not depend on it."""
 
     vary: Vary = quantity(
-        {}, unit="1", help="key -> list of values or range; all combinations of the keys' values are choices"
+        {}, unit="1", help='key -> list of values, or range such as "1:20"; all combinations are choices'
     )
-    choice: tuple[ChartChoice, ...] = quantity((), unit="1", help="additional choices, a table each")
+    choice: tuple[ChartChoice, ...] = quantity((), unit="1", help="additional choices, a table [[chart.choice]] each")
     repeats: int = quantity(
         3, unit="1", means="count", help="timed runs of every choice, after one that compiles", ge=1, le=MOST_REPEATS
     )
     reference: ReferenceName | None = quantity(
-        None, unit="1", help="what errors are measured against; absent: the first of these that the case allows"
+        None, unit="1", help="what errors are measured against; absent: the first that the case allows"
     )
     until: End = quantity(
         "break",
         unit="1",
-        help='up to when histories are compared: the first spall or broken bond of the reference, or the "end"',
+        help='up to when histories are compared: "break", the first spall or broken bond of the reference; "end"',
     )

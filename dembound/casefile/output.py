@@ -15,7 +15,7 @@ ParaView = Literal["vtu", "vtkhdf", "both"]
 
 
 class Output(Table):
-    """The data that is written."""
+    """What a run records and writes."""
 
     history_interval: float = quantity(
         0.0, unit="s", help="time between two samples of the histories; 0: every step", ge=0.0

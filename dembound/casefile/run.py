@@ -10,7 +10,7 @@ SILENT_KEYS = ("silent_level", "silent_for")
 
 
 class Run(Table):
-    """The simulated time, the time step, and whether the run ends once nothing moves any more."""
+    """Simulated time and time step, and whether the run ends once nothing moves any more."""
 
     duration: float = quantity(..., unit="s", help="simulated time", gt=0.0)
     time_step: Annotated[float, Field(gt=0.0)] | Literal["auto"] = quantity(
@@ -38,7 +38,10 @@ class Run(Table):
         lt=1.0,
     )
     silent_for: float | None = quantity(
-        None, unit="s", help="time over which all monitors must be silent; absent: see below", gt=0.0
+        None,
+        unit="s",
+        help="time over which all monitors must be silent; absent: the longest wave, or echo from a side",
+        gt=0.0,
     )
 
     @model_validator(mode="after")

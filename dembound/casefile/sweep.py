@@ -14,11 +14,15 @@ MOST_PROCESSES = 10_000
 
 
 class Sweep(Table):
-    """The varied keys of a sweep, what is done with every member, and by how many processes."""
+    """Members of `dembound sweep`, whose options override it; runs do not depend on it."""
 
-    vary: Vary = quantity({}, unit="1", help='key -> list of values, or a range such as "1:20"')
+    vary: Vary = quantity(
+        {}, unit="1", help='key -> list of values, or range such as "1:20" or, with a step, "0:100:25"'
+    )
     together: bool = quantity(
-        False, unit="1", help="whether the keys' first values are one member, their second ones the next"
+        False,
+        unit="1",
+        help="whether the first values of all keys are one member, the second ones the next; else all combinations",
     )
     action: Action = quantity("run", unit="1", help="what is done with every member")
     method: Method = quantity("impedance", unit="1", help="how β is calibrated")

@@ -13,8 +13,8 @@ class Circle(Hole):
     """A tunnel or a borehole."""
 
     type: Literal["circle"]
-    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="where its centre is")
-    radius: float = quantity(..., unit="m", means="length", help="its radius", gt=0.0)
+    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="centre [x, y]")
+    radius: float = quantity(..., unit="m", means="length", help="radius", gt=0.0)
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
         """Which positions (k, 2) m lie in it, (k,) bool; those on its rim do not."""

@@ -16,10 +16,12 @@ class Ellipse(Hole):
     """A cavern, or a crack where one axis is short."""
 
     type: Literal["ellipse"]
-    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="where its centre is")
-    semi_axes: tuple[Length, Length] = quantity(..., unit="m", means="length", help="half its length, half its width")
+    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="centre [x, y]")
+    semi_axes: tuple[Length, Length] = quantity(
+        ..., unit="m", means="length", help="[a, b], half its length and half its width"
+    )
     angle: float = quantity(
-        0.0, unit="degrees", means="direction", help="from the x axis to the first semi-axis, counter-clockwise"
+        0.0, unit="degrees", means="direction", help="from the x axis to the semi-axis a, counter-clockwise"
     )
 
     @property

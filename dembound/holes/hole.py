@@ -22,11 +22,11 @@ class Hole(Table, ABC):
     """An area without particles: those centred in it are removed, and also those that this separates from the body."""
 
     type: str
-    name: FileName = quantity(..., unit="1", help="name of the hole in messages")
+    name: FileName = quantity(..., unit="1", help="name of the hole in loads and messages")
     stage: Literal["before", "after"] = quantity(
         "before",
         unit="1",
-        help="whether the body is built with the hole or it is excavated after the static stage, which then goes on",
+        help='"before": the body is built with the hole; "after": excavated after the static stage, which then goes on',
     )
 
     @abstractmethod

@@ -16,7 +16,9 @@ class Polygon(Hole):
     """A section drawn point by point, such as a horseshoe tunnel or the valley above a slope."""
 
     type: Literal["polygon"]
-    points: Points = quantity(..., unit="m", means="place", help="its corners in order, the last joined to the first")
+    points: Points = quantity(
+        ..., unit="m", means="place", help="corners [[x, y], …] in order, three or more, the last joined to the first"
+    )
 
     @field_validator("points")
     @classmethod

@@ -19,7 +19,7 @@ class Rectangle(Hole):
     """A drift, a shaft or a trench, upright."""
 
     type: Literal["rectangle"]
-    corners: Box = quantity(..., unit="m", means="place", help="two opposite corners, x0, y0, x1, y1")
+    corners: Box = quantity(..., unit="m", means="place", help="[x0, y0, x1, y1], lower left and upper right corner")
 
     @field_validator("corners")
     @classmethod

@@ -10,7 +10,7 @@ from dembound.methods.rod import Rod
 
 
 class FiniteDifference(Method):
-    """Every node is bonded to its two neighbours; a spring breaks at the critical stretch."""
+    """Springs EA/Δx between neighbours, central differences (L eq. 17); they break at the critical stretch."""
 
     type: Literal["finite_difference"]
 

@@ -13,7 +13,7 @@ WIDEST = 1000
 
 
 class Method(Table, ABC):
-    """Creates the bonds between the nodes of a bar, and changes them when they are stretched."""
+    """How the nodes of a bar are bonded, and how bonds change when they are stretched."""
 
     type: str
 

@@ -12,7 +12,7 @@ from dembound.table import quantity
 
 
 class Patch(Triggered):
-    """Zones of peridynamics that appear where a stretch reaches `trigger` of the critical one, and grow as needed.
+    """Finite differences, with zones of peridynamics where a stretch reaches `trigger` of the critical one.
 
     At the border of a zone local springs carry the share of the stress that its bonds do not carry (complement
     springs). Forces act in pairs, so momentum is conserved, and neither rest nor uniform strain is disturbed at the
@@ -21,7 +21,12 @@ class Patch(Triggered):
 
     type: Literal["patch"]
     reach: int = quantity(
-        4, unit="1", means="count", help="horizons that a zone extends beyond what made it", ge=1, le=WIDEST
+        4,
+        unit="1",
+        means="count",
+        help="horizons that a zone extends beyond what made it, on either side",
+        ge=1,
+        le=WIDEST,
     )
 
     @property

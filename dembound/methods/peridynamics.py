@@ -11,14 +11,16 @@ from dembound.table import quantity
 
 
 class Peridynamics(Method):
-    """Every node is bonded to all others within the horizon δ = mΔx; a bond breaks at the critical stretch.
+    """Every node is bonded to all within the horizon δ = mΔx (L eq. 8); a bond breaks at the critical stretch.
 
     Near an end the family is cut, and the bar is softer there. Corrected ends restore the stiffness: local springs
     carry the share of the stress that bonds do not carry.
     """
 
     type: Literal["peridynamics"]
-    horizon: int = quantity(..., unit="1", means="count", help="horizon m in spacings: δ = mΔx", ge=1, le=WIDEST)
+    horizon: int = quantity(
+        ..., unit="1", means="count", help="horizon m in spacings, at most half of those in the bar", ge=1, le=WIDEST
+    )
     corrected_ends: bool = quantity(False, unit="1", help="whether local springs repair the bar's soft ends")
 
     @property

@@ -11,14 +11,14 @@ from dembound.table import quantity
 
 
 class Switch(Triggered):
-    """Finite differences, or peridynamics with m = 1, until the largest stretch reaches `trigger` of the critical one.
+    """One method until a stretch reaches `trigger` of the critical one, peridynamics everywhere from then on.
 
-    From then on peridynamics with horizon m: L's FDM–PD3 and PD1–PD3.
+    Before it is finite differences or peridynamics with m = 1: L's FDM–PD3 and PD1–PD3.
     """
 
     type: Literal["switch"]
     before: Literal["finite_difference", "peridynamics"] = quantity(
-        "finite_difference", unit="1", help="what serves before: finite differences, or peridynamics with m = 1"
+        "finite_difference", unit="1", help='method before; "peridynamics" is that with m = 1'
     )
     corrected_ends: bool = quantity(False, unit="1", help="whether local springs repair the bar's soft ends")
 

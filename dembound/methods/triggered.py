@@ -8,10 +8,10 @@ class Triggered(Method):
     """Local springs until a stretch reaches `trigger` of the critical one, peridynamics of some kind from then on."""
 
     horizon: int = quantity(
-        ..., unit="1", means="count", help="horizon m of the peridynamics, in spacings", ge=1, le=WIDEST
+        ..., unit="1", means="count", help="horizon m in spacings, at most half of those in the bar", ge=1, le=WIDEST
     )
     trigger: float = quantity(
-        0.9, unit="1", means="share", help="share of the critical stretch that brings it in", gt=0.0, le=1.0
+        0.9, unit="1", means="share", help="share of the critical stretch at which peridynamics begins", gt=0.0, le=1.0
     )
 
     @property

@@ -39,7 +39,7 @@ SOLID, CONTACTS, MOST_CONTACTS = 0.85, 2.23, 3.0
 
 
 class Packing(Table, ABC):
-    """A scene filled with whole bricks of disks, its extent given in metres or in bricks.
+    """The disks, in whole bricks that fill a rectangle; its extent is given by `size` or by `bricks`.
 
     Attributes
     ----------
@@ -54,7 +54,9 @@ class Packing(Table, ABC):
     regular_sides: ClassVar[tuple[str, ...]] = ()
 
     pattern: str
-    size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the scene, whole bricks")
+    size: Extent | None = quantity(
+        None, unit="m", means="length", help="width and height of the scene, whole bricks, to six digits"
+    )
     bricks: Count | None = quantity(
         None, unit="1", means="count", help="number of bricks along x and y, instead of size"
     )
@@ -62,7 +64,7 @@ class Packing(Table, ABC):
         (0.0, 0.0),
         unit="m",
         means="place",
-        help="lower left corner of the disks; in [ground] of their box",
+        help="lower left corner of the disks; all places of a case are in these coordinates",
     )
     radius: float = quantity(unit="m", means=SIZE, help="disk radius (mean radius of a random packing)", gt=0.0)
 
@@ -175,10 +177,12 @@ class DensePacking(Packing):
         None,
         unit="Pa",
         means="stress",
-        help="isotropic pressure it is packed under; absent: 0.8 % of the contact modulus",
+        help="pressure the brick is packed under, which sets its density; absent: 0.8 % of the contact modulus",
         gt=0.0,
     )
-    bond_gap: float = quantity(0.0, unit="m", means="length", help="gaps up to this are contacts too", ge=0.0)
+    bond_gap: float = quantity(
+        0.0, unit="m", means="length", help="gaps between disks up to this are contacts, too", ge=0.0
+    )
 
     @property
     def brick_size(self) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from dembound.packings.dense import pack_dense
 
 
 class RandomBrick(DensePacking):
-    """Disks with radii uniform in [R_min, radius_ratio·R_min], randomly packed (Z section 2.3.1)."""
+    """A random packing in a periodic brick, radii uniform from R_min to `radius_ratio`·R_min (Z section 2.3.1)."""
 
     pattern: Literal["B"] = "B"
 

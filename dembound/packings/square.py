@@ -9,7 +9,7 @@ from dembound.packings.brick import Brick
 
 
 class Square(Packing):
-    """Equal disks, one to a square cell, touching their four neighbours without force (Z section 2.3.1)."""
+    """Equal disks on a square lattice, touching without force; a brick is one disk (Z section 2.3.1)."""
 
     is_lattice: ClassVar[bool] = True
     regular_sides: ClassVar[tuple[str, ...]] = ("left", "right", "bottom", "top")

@@ -24,15 +24,24 @@ JUMP = 4.0
 
 
 class FileWave(Wave):
-    """Velocities from a file, joined by straight lines and zero outside.
+    """Velocities from a file, joined by straight lines and zero outside; times are counted from `start`.
 
-    The file has times (s) and velocities (m/s) in the format of `samples_of`. Its times are counted from `start`. A
-    relative path is taken from the case file's folder, which validation passes as the context ``{"folder": Path}``;
-    without one, from the current folder. Texts of files by path that are passed as "files" replace these files.
+    Columns are separated by blanks, in a .csv file by commas, or by semicolons, with which numbers may have decimal
+    commas. A header line and text after # are skipped; units in the header other than s and m/s are warned of.
+
+    Notes
+    -----
+    Validation passes the case file's folder as the context ``{"folder": Path}``; without one relative paths are taken
+    from the current folder. Texts of files by path that are passed as "files" replace these files.
     """
 
     type: Literal["file"]
-    path: str = quantity(..., unit="1", help="text file of two columns, time (s) and velocity (m/s)", min_length=1)
+    path: str = quantity(
+        ...,
+        unit="1",
+        help="text file of two columns, time (s) and velocity (m/s), relative to the folder of the case",
+        min_length=1,
+    )
     scale: NonZero = quantity(1.0, unit="1", means="factor", help="factor of the file's velocities")
 
     # tuples rather than arrays: two equal waves then compare equal

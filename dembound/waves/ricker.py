@@ -21,7 +21,7 @@ FADE = root(lambda x: x**2 * math.exp(1.0 - x**2) - FADED, 1.0, 10.0)
 
 
 class Ricker(Shape):
-    """v = M(1 − 2a)e^(−a), a = [πf(t − t₀)]²: a crest of height M between two troughs of 0.446 M."""
+    """v = M(1 − 2a)e^(−a), a = [πf(t − t₀)]²: a crest M at t₀ = `start` + 1.5/f between troughs of 0.446 M."""
 
     type: Literal["ricker"]
     frequency: float = quantity(..., unit="Hz", help="frequency of the spectrum's crest", gt=0.0)

@@ -22,8 +22,11 @@ All side lobes are below: the first is 0.217⁴ = 0.22 % of the crest.
 class CubicSpline(Shape):
     """v = M·16[G(τ) − 4G(τ−¼) + 6G(τ−½) − 4G(τ−¾) + G(τ−1)], τ = t/T, G(x) = x³ for x > 0, else 0 (Z eq. 19).
 
-    One one-sided pulse on 0 ≤ t ≤ T with continuous velocity, acceleration and its rate. The pulse is even about
-    its crest, so both halves are taken from the first two terms: there the five do not cancel.
+    One-sided on 0 ≤ t ≤ T with continuous velocity, acceleration and its rate.
+
+    Notes
+    -----
+    The pulse is even about its crest, so both halves are taken from the first two terms: there the five do not cancel.
     """
 
     type: Literal["cubic_spline"]

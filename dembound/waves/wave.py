@@ -26,9 +26,7 @@ NonZero = Annotated[float, AfterValidator(_not_zero)]
 
 
 class Wave(Table, ABC):
-    """A velocity history that is zero before `start` and defined at every time.
-
-    As the factor of a load its values are pure numbers.
+    """A velocity history, zero before `start`; as the factor of a load its values are pure numbers.
 
     Attributes
     ----------
@@ -114,7 +112,9 @@ class Wave(Table, ABC):
 class Shape(Wave):
     """A wave given by a formula: `amplitude` times a shape whose argument is the time since `start`."""
 
-    amplitude: NonZero = quantity(..., unit="m/s", means="velocity", help="factor of the shape, of either sign")
+    amplitude: NonZero = quantity(
+        ..., unit="m/s", means="velocity", help="factor M of the shape, of either sign; not 0"
+    )
 
     @model_validator(mode="after")
     def _resolved(self) -> Self:

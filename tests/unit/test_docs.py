@@ -1,91 +1,46 @@
-"""The references name every key of a case file there is, and all that a run spends time on."""
+"""The reference is that of the code: generated pages, keys, commands, datasets, and all that a run spends time on."""
 
 import importlib
 import re
+import runpy
 from pathlib import Path
-from typing import get_args
 
 import h5py
 import pytest
 import tomli_w
 
 from dembound import errors, kinds, laws
-from dembound.casefile.bar.bar import Bar
-from dembound.casefile.bar.load import BarLoad
-from dembound.casefile.bar.monitor import BarMonitor
-from dembound.casefile.bar.run import BarRun
-from dembound.casefile.chart import Chart, ChartChoice
-from dembound.casefile.disks.incident import IncidentWave
-from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.material import Material
-from dembound.casefile.disks.monitor import Monitor
-from dembound.casefile.disks.motion import Motion
-from dembound.casefile.disks.static import Static
+from dembound.casefile.json_schema import json_schema
 from dembound.casefile.output import Output
-from dembound.casefile.run import Run
-from dembound.casefile.sweep import Sweep
-from dembound.casefile.types import (
-    BarEndTable,
-    BoundaryTable,
-    HoleTable,
-    MethodTable,
-    PackingTable,
-    StaticSide,
-    WaveTable,
-)
 from dembound.cli import app
 from dembound.cli.app import EXIT_CODES
 from dembound.exact import cells_per_wavelength, courant_limit
 from dembound.results import new_record
 from dembound.running import SECTIONS, plan
+from dembound.schemas import SCHEMAS
 
 ROOT = Path(__file__).parents[2]
-REFERENCE = ROOT / "docs" / "reference" / "case_file.md"
+PAGES = runpy.run_path(str(ROOT / "docs" / "generate.py"))["PAGES"]
 
 
-def members(union):
-    """The tables of an annotated union."""
-    return get_args(get_args(union)[0])
+@pytest.mark.parametrize("name", PAGES)
+def test_generated_pages_are_those_of_the_code(name) -> None:
+    """`python docs/generate.py` writes them anew."""
+    assert (ROOT / "docs" / name).read_text(encoding="utf-8") == PAGES[name]()
 
 
-BAR_CHAPTER = "\n## The case of a bar\n"
-DISK_UNIONS = [PackingTable, BoundaryTable, StaticSide, WaveTable, HoleTable]
-BAR_UNIONS = [MethodTable, BarEndTable]
-UNIONS = [(union, False) for union in DISK_UNIONS] + [(union, True) for union in BAR_UNIONS]
-TABLES = [
-    *(
-        (table, False)
-        for table in (Material, Motion, Static, IncidentWave, Load, Monitor, Run, Output, Chart, ChartChoice, Sweep)
-    ),
-    *((table, True) for table in (Bar, BarLoad, BarMonitor, BarRun)),
-    *((table, of_bar) for union, of_bar in UNIONS for table in members(union)),
-]
-"""Each with whether it is told in the chapter on bars."""
-
-
-def reference(of_bar):
-    """The part of the reference that tells of bars, or of all else."""
-    disks, bars = REFERENCE.read_text().split(BAR_CHAPTER)
-    return bars if of_bar else disks
-
-
-def test_every_key_stands_in_the_reference() -> None:
-    for table, of_bar in TABLES:
-        text = reference(of_bar)
-        keys = [table.key_of(name) for name in table.model_fields]
-        assert not [key for key in keys if f"`{key}`" not in text and f"`{key} =" not in text], table
-
-
-def test_every_type_stands_in_the_reference() -> None:
-    for union, of_bar in UNIONS:
-        for table in members(union):
-            field = table.model_fields.get("type") or table.model_fields["pattern"]
-            (name,) = get_args(field.annotation)
-            assert f'"{name}"' in reference(of_bar)
-
-
-def test_every_law_stands_in_the_reference() -> None:
-    assert not [law.name for law in laws.TYPES if f'"{law.name}"' not in reference(of_bar=False)]
+def test_every_table_key_and_type_stands_in_the_reference() -> None:
+    """Those of the schema for editors, which is made without the list of tables in docs/generate.py."""
+    page = (ROOT / "docs" / "reference" / "case_file.md").read_text(encoding="utf-8")
+    tables = {key for schema in SCHEMAS for key in schema.keys if key != "title"}
+    assert not [key for key in tables if not re.search(rf"^## `\[+{key}\]+`", page, flags=re.MULTILINE)]
+    named = {f'`"{law.name}"`' for law in laws.TYPES}
+    for name, table in json_schema(SCHEMAS)["$defs"].items():
+        keys = table.get("properties", {}) if name not in {schema.case.__name__ for schema in SCHEMAS} else {}
+        named |= {f"`{key}`" for key, value in keys.items() if "const" not in value}
+        values = [each for value in keys.values() for each in (value.get("const"), *value.get("enum", ()))]
+        named |= {f'`"{value}"`' for value in values if value}
+    assert not [name for name in named if name not in page]
 
 
 def test_every_command_stands_in_the_readme_or_a_page() -> None:

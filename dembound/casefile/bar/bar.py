@@ -30,9 +30,9 @@ ROUNDING = 1e-9
 
 
 class Bar(Table):
-    """Length, section and material of a bar, and the spacing of its nodes.
+    """A straight bar that moves along its axis, with nodes at x = 0, Δx, … L, and its material.
 
-    Nodes are at x = 0, Δx, … L; the two at the ends have half a volume. The section is given by its area or by the
+    The two nodes at the ends have half a volume. The section is given by its area or by the
     diameter of a round bar, the stiffness by wave speed c = √(E/ρ) or Young's modulus E, the strength by the stress or
     the stretch at which a bond breaks, s₀ = σ_t/E. Without a strength nothing breaks.
 
@@ -41,23 +41,39 @@ class Bar(Table):
     """
 
     length: float = quantity(
-        None, unit="m", means="length", help="length L of the bar; of one with ranges that of all", gt=0.0
+        None,
+        unit="m",
+        means="length",
+        help="length L of the bar; may be left out in a bar with ranges, whose length is that of all",
+        gt=0.0,
     )
     spacing: float = quantity(
-        ..., unit="m", means="length", help="distance Δx from node to node; a whole number of them is L", gt=0.0
+        ...,
+        unit="m",
+        means="length",
+        help="distance Δx from node to node; L is a whole number of them, two or more",
+        gt=0.0,
     )
-    section: float | None = quantity(None, unit="m²", help="area of the cross-section; 1 m² if not given", gt=0.0)
-    diameter: float | None = quantity(None, unit="m", means="thickness", help="diameter of a round bar", gt=0.0)
+    section: float | None = quantity(None, unit="m²", help="area of the cross-section; absent: 1 m²", gt=0.0)
+    diameter: float | None = quantity(
+        None, unit="m", means="thickness", help="diameter of a round bar, instead of section", gt=0.0
+    )
     density: float = quantity(..., unit="kg/m³", help="density ρ", gt=0.0)
     wave_speed: float | None = quantity(
         None, unit="m/s", means="wave speed", help="speed c of waves along the bar", gt=0.0
     )
-    youngs_modulus: float | None = quantity(None, unit="Pa", means="modulus", help="Young's modulus E", gt=0.0)
+    youngs_modulus: float | None = quantity(
+        None,
+        unit="Pa",
+        means="modulus",
+        help="Young's modulus E = ρc², instead of wave_speed; one of them is needed",
+        gt=0.0,
+    )
     strength: float | None = quantity(
         None, unit="Pa", means="strength", help="tensile strength σ_t; absent: unbreakable", gt=0.0
     )
     critical_stretch: float | None = quantity(
-        None, unit="1", means="strain", help="stretch s₀ at which a bond breaks", gt=0.0
+        None, unit="1", means="strain", help="stretch s₀ = σ_t/E at which a bond breaks, instead of strength", gt=0.0
     )
     fracture_energy: float | None = quantity(
         None, unit="J/m²", help="energy G_f that a crack takes as it opens; absent: bonds break at once", gt=0.0
@@ -66,16 +82,16 @@ class Bar(Table):
         None,
         unit="Pa",
         means="strength",
-        help="rise of the strength for a tenfold strain rate, within strength_rates",
+        help="rise of the strength for a tenfold strain rate, within strength_rates; needs fracture_energy",
         gt=0.0,
     )
     strength_rates: tuple[float, float] | None = quantity(
-        None, unit="1/s", help="strain rates between which the strength rises; it is constant below and above"
+        None, unit="1/s", help="strain rates [slowest, fastest] between which the strength rises; below it is strength"
     )
     attenuation: float = quantity(
         0.0, unit="1/m", help="α: high frequencies fade by exp(−αx) over a distance x (L eq. 19)", ge=0.0
     )
-    range: tuple[BarRange, ...] = quantity((), unit="1", help="ranges of the bar, from left to right")
+    range: tuple[BarRange, ...] = quantity((), unit="1", help="parts of a bar of several materials, from left to right")
 
     @model_validator(mode="after")
     def _consistent(self) -> "Bar":

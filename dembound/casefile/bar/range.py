@@ -8,31 +8,48 @@ from dembound.table import FileName, Table, quantity
 
 
 class BarRange(Table):
-    """A part of a bar with its own length and, where they differ from those of ``[bar]``, spacing and material.
+    """A part of a bar with its own length, spacing and material; what is left out is that of `[bar]`.
 
     At an interface the range is bonded to the one on its left, or both only touch: a contact pushes, and opens where it
     would have to pull.
     """
 
     name: FileName = quantity(..., unit="1", help="name of the range in messages and results")
-    length: float = quantity(..., unit="m", means="length", help="its length", gt=0.0)
+    length: float = quantity(..., unit="m", means="length", help="length of the range", gt=0.0)
     spacing: float | None = quantity(
-        None, unit="m", means="length", help="distance of its nodes; a whole number is its length", gt=0.0
+        None,
+        unit="m",
+        means="length",
+        help="distance of its nodes; its length is a whole number of them, two or more",
+        gt=0.0,
     )
     section: float | None = quantity(None, unit="m²", help="area of its cross-section", gt=0.0)
-    diameter: float | None = quantity(None, unit="m", means="thickness", help="diameter of a round range", gt=0.0)
-    density: float | None = quantity(None, unit="kg/m³", help="its density ρ", gt=0.0)
-    wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", help="its speed c of waves", gt=0.0)
-    youngs_modulus: float | None = quantity(None, unit="Pa", means="modulus", help="its Young's modulus E", gt=0.0)
-    strength: float | None = quantity(None, unit="Pa", means="strength", help="its tensile strength σ_t", gt=0.0)
+    diameter: float | None = quantity(
+        None, unit="m", means="thickness", help="diameter of a round range, instead of section", gt=0.0
+    )
+    density: float | None = quantity(None, unit="kg/m³", help="density ρ", gt=0.0)
+    wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", help="speed c of its waves", gt=0.0)
+    youngs_modulus: float | None = quantity(
+        None, unit="Pa", means="modulus", help="Young's modulus E, instead of wave_speed", gt=0.0
+    )
+    strength: float | None = quantity(None, unit="Pa", means="strength", help="tensile strength σ_t", gt=0.0)
     critical_stretch: float | None = quantity(
-        None, unit="1", means="strain", help="its stretch s₀ at which a bond breaks", gt=0.0
+        None, unit="1", means="strain", help="stretch s₀ at which a bond breaks, instead of strength", gt=0.0
     )
     fracture_energy: float | None = quantity(None, unit="J/m²", help="energy G_f that a crack in it takes", gt=0.0)
-    strength_per_decade: float | None = quantity(None, unit="Pa", means="strength", help="as that of the bar", gt=0.0)
-    strength_rates: tuple[float, float] | None = quantity(None, unit="1/s", help="as those of the bar")
-    attenuation: float | None = quantity(None, unit="1/m", help="its α, see that of the bar", ge=0.0)
-    velocity: float = quantity(0.0, unit="m/s", means="velocity", help="velocity at the start, positive to the right")
+    strength_per_decade: float | None = quantity(
+        None, unit="Pa", means="strength", help="rise of its strength for a tenfold strain rate", gt=0.0
+    )
+    strength_rates: tuple[float, float] | None = quantity(
+        None, unit="1/s", help="strain rates [slowest, fastest] between which it rises"
+    )
+    attenuation: float | None = quantity(None, unit="1/m", help="α of its attenuation", ge=0.0)
+    velocity: float = quantity(
+        0.0,
+        unit="m/s",
+        means="velocity",
+        help="velocity of the whole range at the start, positive to the right, as of a striker",
+    )
     interface: Literal["bonded", "contact"] = quantity(
         "bonded", unit="1", help="how it meets the range on its left; a contact bears no tension"
     )

@@ -15,15 +15,15 @@ ROUNDING = 1e-12
 
 
 class Ground(Table):
-    """The ground, of which the disks fill a box; what is outside the box is a continuum.
+    """The ground, of which the disks fill a box; outside it is a continuum up to its free surface at the top."""
 
-    Its free surface is at the top. Without a size the disks fill all of it.
-    """
-
-    size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the ground")
-    origin: tuple[float, float] = quantity(
-        (0.0, 0.0), unit="m", means="place", help="lower left corner of the ground; its surface is size above"
+    size: Extent | None = quantity(
+        None,
+        unit="m",
+        means="length",
+        help="width and height, whole bricks high; absent: the disks fill all of the ground",
     )
+    origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place", help="lower left corner of the ground")
 
     def box(self, packing: Packing) -> Box:
         """Left, bottom, right and top (m) of the ground; without a size those of the disks, which fill it."""

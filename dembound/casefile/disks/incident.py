@@ -8,13 +8,13 @@ from dembound.table import Table, quantity
 
 
 class IncidentWave(Table):
-    """A plane wave that comes through the ground at an angle, where this goes on as a continuum on all sides below.
+    """A plane wave that enters the disks at an angle, with what the free surface returns; for sides of type "outside".
 
     It has the velocity of its wave at a point, there without what the free surface sends back: along the direction in
     which it runs (P), or to the right of it as one looks along (SV), which is +x where it runs straight up.
     """
 
-    type: Literal["sv", "p"] = quantity(..., unit="1", help="kind of wave")
+    type: Literal["sv", "p"] = quantity(..., unit="1", help="kind of wave: SV or P")
     angle: float = quantity(
         ...,
         unit="degrees",
@@ -28,7 +28,7 @@ class IncidentWave(Table):
         None,
         unit="m",
         means="place",
-        help="where it has this velocity; absent: the lower corner of the ground on the side it comes from",
+        help="where the incident wave has this velocity; absent: the lower corner of the ground it reaches first",
     )
 
 

@@ -13,7 +13,9 @@ ACTIONS = ("force", "acceleration", "pressure")
 
 
 class Load(Table):
-    """A force or an acceleration on one particle, on those of a rectangle, or on all, or a pressure in a hole.
+    """Give one of `force`, `acceleration` (with neither place: on every particle, as gravity) and `pressure`.
+
+    A force acts on one particle or on those of a rectangle, an acceleration on these or on all, a pressure in a hole.
 
     A force is split among the particles of its region in proportion to their area; on the free surface of a continuum
     it is a uniform traction. A pressure pushes the wall of a hole away from it. A wave's values, taken as pure numbers,
@@ -21,23 +23,32 @@ class Load(Table):
     """
 
     name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
-    force: Vector | None = quantity(None, unit="N/m", help="force per metre of thickness on all its particles together")
-    acceleration: Vector | None = quantity(None, unit="m/s²", help="body force per mass of each particle")
+    force: Vector | None = quantity(
+        None,
+        unit="N/m",
+        help="force [fx, fy] per metre of thickness on all its particles together; needs position or region",
+    )
+    acceleration: Vector | None = quantity(None, unit="m/s²", help="force [ax, ay] per mass of each particle")
     position: Vector | None = quantity(None, unit="m", means="place", help="where; the nearest particle is loaded")
     region: Box | None = quantity(
         None,
         unit="m",
         means="place",
-        help="rectangle x0, y0, x1, y1; all particles centred in it are loaded, or the continuum's surface in it",
+        help="rectangle [x0, y0, x1, y1]; particles centred in it are loaded, or the continuum's surface in it",
     )
     pressure: float | None = quantity(
-        None, unit="Pa", means="pressure of a load", help="pressure on the wall of a hole; negative values pull"
+        None,
+        unit="Pa",
+        means="pressure of a load",
+        help="pressure on the wall of a hole, away from it; negative values pull; needs hole",
     )
     hole: str | None = quantity(None, unit="1", help="name of the hole on whose wall a pressure acts")
     on: Literal["outline", "bonds"] = quantity(
-        "outline", unit="1", help="what a pressure acts on: the hole's true outline, or the bonds that it cuts"
+        "outline", unit="1", help="what a pressure acts on: the true outline of the hole, or the bonds that it cuts"
     )
-    wave: str | None = quantity(None, unit="1", help="name of the wave that is the time factor; absent: steady")
+    wave: str | None = quantity(
+        None, unit="1", help="name of the wave that is the time factor; absent: steady, from the static stage on"
+    )
 
     @property
     def key(self) -> str:

@@ -20,11 +20,12 @@ def with_history() -> str:
 
 
 class Material(Table):
-    """The material: bulk density, and contact and bond properties under their PFC names.
+    """Density, and contacts and bonds by PFC's names; stiffness follows from `p_wave_speed`, or `emod` and `pb_emod`.
 
-    Stiffness is given either by the wave speed (Z eqs 9-11) or by the two moduli. The law "elastic" has no history;
-    "linearpbond" is PFC's linear contact, without tension and with Coulomb friction, plus a parallel bond that breaks
-    for good.
+    A wave speed is made stiffness by Z eqs 9-11. The law "elastic" has no history: contacts neither open nor slip, and
+    bonds do not break. "linearpbond" is PFC's: linear contacts without tension and with Coulomb friction, and parallel
+    bonds that break for good. Only laws with a history have `locked_in` (which needs a static stage), `geometry` and
+    `elastic_start`; `pb_ten`, `pb_coh` and `pb_fa` are for them and for `output.load_factor`.
     """
 
     density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
@@ -34,20 +35,22 @@ class Material(Table):
     match: Literal["lattice", "assembly"] = quantity(
         "lattice",
         unit="1",
-        help="medium with that speed: the square lattice of Z eq. 11, or the packing itself along x",
+        help='what has p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x',
     )
     contact_share: float = quantity(
         0.5,
         unit="1",
         means="share",
-        help="the contacts' share α_c of the stiffness (Z eq. 9); bonds have the rest",
+        help="share α_c of the contacts in the stiffness (Z eq. 9), bonds have the rest; 0 in pattern A only",
         ge=0.0,
         le=1.0,
     )
     s_wave_speed: float | None = quantity(
         None, unit="m/s", means="wave speed", help="S-wave speed for the boundaries; absent: the packing's own", gt=0.0
     )
-    emod: float | None = quantity(None, unit="Pa", means="modulus", help="modulus E_c of the contacts", ge=0.0)
+    emod: float | None = quantity(
+        None, unit="Pa", means="modulus", help="modulus E_c of the contacts; 0 in pattern A only", ge=0.0
+    )
     pb_emod: float | None = quantity(None, unit="Pa", means="modulus", help="modulus Ē_c of the parallel bonds", ge=0.0)
     kratio: float = quantity(
         1.0, unit="1", means="normal over shear stiffness", help="normal over shear stiffness of the contacts", gt=0.0
@@ -56,7 +59,11 @@ class Material(Table):
         1.0, unit="1", means="normal over shear stiffness", help="normal over shear stiffness of the bonds", gt=0.0
     )
     fric: float = quantity(
-        0.0, unit="1", means="friction coefficient", help="friction coefficient of the contacts", ge=0.0
+        0.0,
+        unit="1",
+        means="friction coefficient",
+        help="friction coefficient of the contacts; at 0 they carry no shear",
+        ge=0.0,
     )
     pb_rmul: float = quantity(
         1.0, unit="1", means="bond radius", help="bond radius over the smaller disk's radius", gt=0.0
@@ -64,27 +71,35 @@ class Material(Table):
     damp: float = quantity(
         0.0, unit="1", means="local damping", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0
     )
-    law: LawName = quantity("elastic", unit="1", help="how contacts and bonds push")
+    law: LawName = quantity(
+        "elastic",
+        unit="1",
+        help='"elastic": linear; "linearpbond": PFC\'s, contacts open and slip, bonds break for good',
+    )
     pb_ten: float | None = quantity(
         None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
     )
     pb_coh: float | None = quantity(
-        None, unit="Pa", means="strength", help="cohesion of the bonds; absent: unbreakable in shear", gt=0.0
+        None,
+        unit="Pa",
+        means="strength",
+        help="cohesion of the bonds, their shear strength without pressure; absent: unbreakable in shear",
+        gt=0.0,
     )
     pb_fa: float = quantity(
-        0.0, unit="degrees", means="friction angle", help="friction angle of the bonds", ge=0.0, lt=90.0
+        0.0, unit="degrees", means="friction angle", help="friction angle of the bonds; needs pb_coh", ge=0.0, lt=90.0
     )
     locked_in: float | None = quantity(
         None,
         unit="Pa",
         means="stress",
-        help="pressure that contacts carry before the static stage; absent: they just touch",
+        help="pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: they just touch",
         gt=0.0,
     )
     geometry: Literal["updated", "reference"] = quantity(
         "updated",
         unit="1",
-        help="whether normals and arms follow the motion or intact bonds keep those of the start",
+        help='"updated": normals and arms follow the motion; "reference": intact bonds keep those of the start',
     )
     elastic_start: bool = quantity(
         True,

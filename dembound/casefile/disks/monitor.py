@@ -17,9 +17,14 @@ def _is_no_twin(name: str) -> str:
 
 
 class Monitor(Table):
-    """A place; the motion of the nearest particle, or of a continuum there, is recorded at every history step."""
+    """A place at which the motion of the nearest particle, or of the continuum there, is recorded."""
 
     name: Annotated[FileName, AfterValidator(_is_no_twin)] = quantity(
         ..., unit="1", help="name of the history in the results"
     )
-    position: tuple[float, float] = quantity(..., unit="m", means="place", help="where, in the coordinates of the case")
+    position: tuple[float, float] = quantity(
+        ...,
+        unit="m",
+        means="place",
+        help="where; between equally near particles the lowest is taken, of these the leftmost",
+    )

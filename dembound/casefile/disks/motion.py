@@ -10,9 +10,9 @@ Freedom = Literal["x", "y", "rotation"]
 
 
 class Motion(Table):
-    """The motions that are held for all particles."""
+    """Components of the motion that are held for all particles."""
 
-    held: tuple[Freedom, ...] = quantity((), unit="1", help="motions that are held for every particle")
+    held: tuple[Freedom, ...] = quantity((), unit="1", help="components held at zero for every particle")
 
     @field_validator("held")
     @classmethod

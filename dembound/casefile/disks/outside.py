@@ -10,9 +10,9 @@ CONTINUUM = ".continuum"
 
 
 class OutsideTable(Table):
-    """The continuum beyond sides of type "outside": spectral elements, the outer ones of which absorb.
+    """The continuum beyond sides of type "outside", of spectral elements; keys left out follow from `accuracy`.
 
-    Settings that are absent are chosen from the waves and loads of the case and the accuracy.
+    They are chosen from the waves and loads of the case. The outer elements absorb.
     """
 
     order: int = quantity(
@@ -22,18 +22,18 @@ class OutsideTable(Table):
         1e-3,
         unit="1",
         means="share",
-        help="error of velocities that the settings left out are chosen for",
+        help="error of velocities for which the keys left out are chosen",
         gt=0.0,
         lt=1.0,
     )
     element: float | None = quantity(
-        None, unit="m", means="length", help="largest side of an element; absent: by the accuracy", gt=0.0
+        None, unit="m", means="length", help="largest side of an element; absent: from waves and accuracy", gt=0.0
     )
     margin: int | None = quantity(
         None,
         unit="1",
         means="count",
-        help="elements between the particles and those that absorb; absent: by the loads",
+        help="elements between the particles and those that absorb; absent: 1, more under lasting loads",
         ge=1,
         le=MOST_ELEMENTS,
     )
@@ -41,7 +41,7 @@ class OutsideTable(Table):
         None,
         unit="1",
         means="count",
-        help="elements that absorb, one behind the other; absent: by the accuracy",
+        help="elements that absorb, one behind the other; absent: from accuracy",
         ge=2,
         le=MOST_ELEMENTS,
     )
@@ -49,14 +49,20 @@ class OutsideTable(Table):
         None,
         unit="1",
         means="share",
-        help="amplitude that a P wave keeps on its way through the layers and back; absent: accuracy/10",
+        help="R0, amplitude that a P wave keeps on its way through the layers and back; absent: accuracy/10",
         gt=0.0,
         lt=1.0,
     )
     shift: float = quantity(
-        0.3, unit="1", means="setting", help="α of the layers, over c_p/2L, with L the larger side within them", gt=0.0
+        0.3,
+        unit="1",
+        means="setting",
+        help="α of the layers over c_p/2L, L being the larger side of what lies within them",
+        gt=0.0,
     )
     delay: float = quantity(
         0.1, unit="1", means="setting", help="τ of the layers, in time steps; 0 grows in long runs", ge=0.0
     )
-    damping: float = quantity(0.1, unit="1", means="setting", help="dashpots of the ties, over ρ c_p D", ge=0.0)
+    damping: float = quantity(
+        0.1, unit="1", means="setting", help="dashpots of the ties between disks and continuum, over ρ c_p D", ge=0.0
+    )

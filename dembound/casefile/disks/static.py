@@ -13,13 +13,15 @@ class Static(Table):
     """The damped stage before the run, which brings the body to rest under steady loads and a given stress.
 
     Its supports replace the boundaries of the sides during the stage; their reactions then act as constant forces.
+    It needs a `stress`, a steady load or `material.locked_in`; the body must be held along every axis on which a steady
+    load acts. Under a stress no side may be periodic or a free field.
     """
 
     stress: tuple[float, float, float] | None = quantity(
         None,
         unit="Pa",
         means="stress to reach",
-        help="stress sxx, syy, sxy to reach, tension positive; absent: what the loads make",
+        help="stress [sxx, syy, sxy] to reach, tension positive; absent: what the loads make",
     )
     ratio: float = quantity(
         1e-5,
@@ -40,4 +42,6 @@ class Static(Table):
         alias="from",
         min_length=1,
     )
-    boundary: Mapping[str, StaticSide] = quantity({}, unit="1", help="side -> its support; an absent side is free")
+    boundary: Mapping[str, StaticSide] = quantity(
+        {}, unit="1", help="a table for each side during the stage; an absent side is free"
+    )
