@@ -29,19 +29,14 @@ def advise(
     """The errors of a case, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
     bounds : errors, RMS over RMS, such as 0.01, of velocity and displacement (of bars also stress) at all monitors
-    whose
-    motion is not negligible. of : "disks": errors relative to the disks as the material; "rock": relative to the rock
-    that
-    they discretise; None: "disks" where packings are random or bonds may break. kept : dotted keys whose values do not
-    change, such as ``packing.radius`` or ``boundary``. seeds : number of random packings run to find the scatter
-    between
-    packings. longest : CPU seconds that the steps of a choice may take; by default 60 for disks, for bars 64 times the
-    CPU
-    seconds of the case.
+    whose motion is not negligible. of : "disks": errors relative to the disks as the material; "rock": relative to the
+    rock that they discretise; None: "disks" where packings are random or bonds may break. kept : dotted keys whose
+    values do not change, such as ``packing.radius`` or ``boundary``. seeds : number of random packings run to find the
+    scatter between packings. longest : CPU seconds that the steps of a choice may take; by default 60 for disks, for
+    bars 64 times the CPU seconds of the case.
 
     Raises CaseError for cases without monitors, without motion at them, or whose errors are not known, for a bound that
-    is
-    not a positive number and for unknown keys; the errors of building a scene and of running companions.
+    is not a positive number and for unknown keys; the errors of building a scene and of running companions.
     """
     for bound in bounds:
         if not 0.0 < bound < 1.0:

@@ -73,10 +73,8 @@ class Budget:
         """The error by all causes; nan if none is known.
 
         Error histories are added, as errors of grid and time step have opposite signs. Squares are added where only the
-        size
-        of an error is known or where it is a random sample. The upper value adds the root of the sum of squares of
-        bounds and
-        of the excess, factor − 1 times the error, of each group of causes found in the same way.
+        size of an error is known or where it is a random sample. The upper value adds the root of the sum of squares of
+        bounds and of the excess, factor − 1 times the error, of each group of causes found in the same way.
         """
         counted = [cause for cause in self.causes.found if cause.counts(of or self.of)]
         known = [cause for cause in counted if math.isfinite(cause.share(monitor, quantity, self.motions[monitor]))]

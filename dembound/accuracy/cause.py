@@ -45,11 +45,9 @@ class Cause:
     """One cause of errors.
 
     words : how its errors were found, or why they are not known. parts : contributions, see `Parts`; largest possible
-    ones
-    for a bound. of_disks : whether the cause is an error only relative to the rock, not where the disks are the
-    material.
-    factor : 95 % of true errors are at most this factor larger. is_sample : whether errors are one sample of a random
-    error, of which only the RMS counts.
+    ones for a bound. of_disks : whether the cause is an error only relative to the rock, not where the disks are the
+    material. factor : 95 % of true errors are at most this factor larger. is_sample : whether errors are one sample of
+    a random error, of which only the RMS counts.
     """
 
     name: str

@@ -49,8 +49,7 @@ class Choice(Generic[AnyCase]):
     """A change of a case.
 
     name : in words. changes : new values by dotted key, None for keys left out, as `with_changes` takes them. case :
-    the
-    changed case.
+    the changed case.
     """
 
     name: str

@@ -37,10 +37,8 @@ def error_of_steps(time: np.ndarray, velocity: np.ndarray, step: float) -> tuple
     """Errors that central differences with a step (s) add to a velocity (k, c) m/s and its displacement (k, c) m.
 
     time : even times (k,) s. The steps move the body as it would move at the frequency ω̂ = (2/Δt) sin(ωΔt/2); the
-    recorded
-    velocity is the mean of two half steps, cos(ωΔt/2) iω̂u. Waves keep the amplitude of iω̂u, so that the velocity is
-    too
-    small by (ωΔt)²/8, and the displacement too large by (ωΔt)²/24.
+    recorded velocity is the mean of two half steps, cos(ωΔt/2) iω̂u. Waves keep the amplitude of iω̂u, so that the
+    velocity is too small by (ωΔt)²/8, and the displacement too large by (ωΔt)²/24.
     """
     if len(time) < 2:
         return np.zeros_like(velocity), np.zeros_like(velocity)

@@ -46,8 +46,7 @@ def ended_earlier(best: Proposal, given: Case, bound: float, motion: Motions, ke
     """A proposal with the earliest end with which it still keeps its bound; unchanged if no earlier end does.
 
     given : the case that the proposal is a choice for. motion : expected records of its monitors. kept : keys that do
-    not
-    change.
+    not change.
     """
     for end in earlier_ends(best.case, motion, bound, kept) if best.holds(bound) else []:
         words = f"{best.choice.name}, until the monitors are silent after about {end.share * given.run.duration:.3g} s"

@@ -21,8 +21,7 @@ def extended(case: Case, most: int = MOST) -> Extended:
     """The scene of a case enlarged so that nothing returns from artificial sides to its monitors within run.duration.
 
     Without monitors nothing returns to any place of the scene. The time step remains that of the case. Bars are
-    extended
-    beyond ends that are neither loaded nor driven.
+    extended beyond ends that are neither loaded nor driven.
 
     most : largest number of particles or nodes.
 

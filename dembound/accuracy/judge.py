@@ -52,8 +52,7 @@ class Judge(ABC, Generic[C, S]):
         """The scatter of the monitors' motion between random packings, from runs with several seeds.
 
         motions : by monitor, at the times at which it is found. Raises CaseError for a case without a seed, and the
-        errors of
-        runs.
+        errors of runs.
         """
         raise no_seed(case)
 
@@ -68,8 +67,7 @@ class Judge(ABC, Generic[C, S]):
         kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: the default.
 
         Raises CaseError for cases whose errors are not known, that do not move at their monitors, and where no choice
-        keeps
-        the values of `kept`; the errors of building a scene and of runs.
+        keeps the values of `kept`; the errors of building a scene and of runs.
         """
 
     @abstractmethod

@@ -44,13 +44,11 @@ class Reference:
     """A reference for errors.
 
     name : "exact", "extended", "finer" or "finest"; sentence : it in words. motions : its histories, given a choice and
-    the
-    run of the choice. until : s, time up to which histories are compared. findings : its findings by name. own :
-    numbers of
-    the choices that are the reference itself. cautions : lines on errors that the comparison does not include. rest :
-    monitor -> quantity -> error of the reference itself by formula, RMS over RMS, relative to the truth `of`. late :
-    delay
-    (s) of its motion, see `Run.late`. added, unknown : names of the causes included in `rest`, and of those left out.
+    the run of the choice. until : s, time up to which histories are compared. findings : its findings by name. own :
+    numbers of the choices that are the reference itself. cautions : lines on errors that the comparison does not
+    include. rest : monitor -> quantity -> error of the reference itself by formula, RMS over RMS, relative to the truth
+    `of`. late : delay (s) of its motion, see `Run.late`. added, unknown : names of the causes included in `rest`, and
+    of those left out.
     """
 
     name: str
@@ -113,8 +111,7 @@ class MonitorError:
     """The error at one monitor.
 
     rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : distance of the compared particles, m, 0 if
-    it
-    is rounding only. rest : RMS error of the reference itself, by formula.
+    it is rounding only. rest : RMS error of the reference itself, by formula.
     """
 
     monitor: str

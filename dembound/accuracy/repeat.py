@@ -106,8 +106,7 @@ class Repeat:
     """The cracks of a run compared with those of the same case with a smaller time step.
 
     changes : monitor -> quantity -> RMS of the difference of both motions, as vectors, over the RMS of the run's
-    motion,
-    over the whole run. cost : work of the second run over that of the first.
+    motion, over the whole run. cost : work of the second run over that of the first.
     """
 
     own: Cracked

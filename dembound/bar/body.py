@@ -62,11 +62,10 @@ class BarBody(Scene):
         }
 
     def attributes_of_monitor(self, name: str) -> dict[str, Any]:
-        """At a monitor's node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m; strength.
+        """At a monitor's node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m.
 
-        Strength in Pa at the slowest and at the fastest strain rate, infinite without one. At an interface the range on
-        the
-        left counts; with ranges also their name.
+        With a strength also this, Pa, at the slowest and at the fastest strain rate, infinite without one. At an
+        interface the range on the left counts; with ranges also their name.
         """
         bar, node = self.case.bar, self.monitors[name]
         number = next(k for k, part in enumerate(self.rod.ranges) if node <= part.last)

@@ -54,8 +54,7 @@ class Returned:
     """The reflection of an end.
 
     shares : by wave the largest reflected motion over the largest motion of the wave, including `ROUNDING`. within :
-    time
-    (s) after the wave for which it was followed, infinite if that is the whole run.
+    time (s) after the wave for which it was followed, infinite if that is the whole run.
     """
 
     shares: dict[str, float]

@@ -35,8 +35,7 @@ def moments(case: BarCase, side: str) -> np.ndarray:
     """Times (s), ascending, at which to compute the wave that enters at an end, from its beginning to its end.
 
     Begin and end are searched within the duration of the run or of the waves, whichever is longer. The times of the
-    waves'
-    crests are included.
+    waves' crests are included.
     """
     waves = [case.wave[load.wave] for load in case.load if load.side == side]
     waves += [case.wave[name] for name in case.side(side).waves.values()]

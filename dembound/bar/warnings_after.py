@@ -51,8 +51,7 @@ def _swings(case: BarCase, file: h5py.File) -> Iterator[str]:
     """A warning about velocities in snapshots that swing from step to step, as after impacts at the step limit.
 
     Snapshots have velocities of half steps. Monitors have the mean of two, and the stress of a node is the mean over
-    both
-    its springs, in which the swing cancels.
+    both its springs, in which the swing cancels.
     """
     if "energy" not in file or not any(each.interface == "contact" for each in case.bar.range):
         return

@@ -29,16 +29,17 @@ from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.scene import DiskScene
 
 APART = 8.0
-"""Diameters, at least, of each third of the strip in which s is found: at the side, where displacements are read, and
-where it is pulled. Effects of a side decay with the depth y as exp(−2πy/brick), and over a disk without bricks."""
+"""Diameters, at least, of each third of the strip in which s is found: at the side, where displacements are read,
+and where it is pulled. Effects of a side decay with the depth y as exp(−2πy/brick), and over a disk without
+bricks."""
 
 FAINT = 1e-12
 """Springs against single motions over those of the contacts: disks that hang by one contact may roll."""
 
 WITHIN = 0.01
-"""Diameters within which the delays computed here hold for waves 100 disks long: measured on columns of a lattice and
-of two seeds each of patterns B and C, P and S waves, prescribed velocities, dashpots, springs, half cells, free
-fields and continua (benchmarks/entries.py), relative to the delays through a continuum."""
+"""Diameters within which the delays computed here hold for waves 100 disks long: measured on columns of a lattice
+and of two seeds each of patterns B and C, P and S waves, prescribed velocities, dashpots, springs, half cells,
+free fields and continua (benchmarks/entries.py), relative to the delays through a continuum."""
 
 
 class Entry(NamedTuple):
@@ -183,10 +184,8 @@ class _Strip:
         """s: depth (m) at which the line through the displacements inside meets that of the disks at the side.
 
         held : components of the disks at the side that are prescribed. The far third is pulled along its whole mass;
-        the disks
-        at the side are held, or, if `held` is empty, pulled the other way in proportion to the widths of their
-        dashpots, with
-        the mean displacement taken.
+        the disks at the side are held, or, if `held` is empty, pulled the other way in proportion to the widths of
+        their dashpots, with the mean displacement taken.
         """
         component = axis_of_motion(self.side, motion)
         scene, edge = self.scene, self.scene.edges[self.side]

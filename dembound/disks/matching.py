@@ -102,8 +102,7 @@ def sent_back(scene: DiskScene, side: str, motion: Motion, frequency: float) -> 
     """|R|, reflected over incident amplitude of plane waves along the normal of a side, at a frequency (Hz).
 
     From the impedances of dashpots, springs, and of the half of whole cells that lies beyond the last half of the
-    packing,
-    over the packing's impedance. At frequency nan of dashpots only. nan where the motion is held.
+    packing, over the packing's impedance. At frequency nan of dashpots only. nan where the motion is held.
     """
     edge, held = scene.edges[side], Held.of(scene, side)
     axis = axis_of_motion(side, motion)

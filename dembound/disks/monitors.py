@@ -156,8 +156,7 @@ class _Around:
         """Place (2,) m, and number in the brick, of the disk in the continuum nearest to a position (m).
 
         None if `own` (2,) m, the nearest disk of the body, is nearer. No disks exist in layers and beyond free sides,
-        nor, for
-        places in the ground or on its rim, beyond where disks fill all of it.
+        nor, for places in the ground or on its rim, beyond where disks fill all of it.
         """
         case, brick, of = self.case, self.brick, self.assembly
         begin = of.positions[self.first] - brick.positions[of.brick_particle[self.first]]

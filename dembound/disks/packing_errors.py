@@ -59,9 +59,8 @@ def unevenness(scene: DiskScene, signals: Sequence[Signal], lowest: float = math
     """k²LD, RMS over the energy of velocities, to which scattering by uneven bricks is proportional; 0 on lattices.
 
     k : wave number of the slowest waves, none shorter than a brick; L, D : length of a random brick and mean diameter
-    of
-    its disks. The largest over signals. lowest : frequency (Hz) from which on the energy is that of displacements, see
-    `choice.energies`.
+    of its disks. The largest over signals. lowest : frequency (Hz) from which on the energy is that of displacements,
+    see `choice.energies`.
     """
     if scene.case.packing.is_lattice:
         return 0.0
@@ -82,8 +81,7 @@ def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = 
     Half of a lattice's bond has the impedance ρc/cos(kD/2), so that a continuum beyond it returns (kD)²/16; the ties'
     dashpots, `damping` times ρc_pD, add (kD)²·(damping/8) c/c_p. Waves on the lattice lag by the phase kL(kD)²/24. For
     the slowest waves, of the speed c; the largest over signals. lowest : frequency (Hz) from which on errors are those
-    of
-    displacements, see `choice.energies`.
+    of displacements, see `choice.energies`.
     """
     outside = scene.outside
     assert outside is not None

@@ -167,8 +167,7 @@ def pairs_bytes(z: SceneSizes) -> float:
     """Bytes of the list of pairs with a history.
 
     For q places 38 bytes of numbers, types and states, and forces (4, q); per pair its place, image and two ends (18
-    p);
-    per slot the ends, arms and origin (28 s); cells (8 n); in rows also the places of disks (24 n).
+    p); per slot the ends, arms and origin (28 s); cells (8 n); in rows also the places of disks (24 n).
     """
     pairs, places = _pairs(z)
     rows = 24 * z.disks if z.in_rows else 0.0

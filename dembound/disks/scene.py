@@ -85,10 +85,8 @@ class DiskScene(DiskBody):
 
         A contact across a corner, and the disks that are left out there as they touch none of the body, act by one side
         or by none, so that a side carries not quite the stress times its length. It is recorded with exactly that: the
-        disk
-        with the largest force gets the rest. Over all sides this cancels; where it does not, as a hole takes a part of
-        a
-        side, sides are recorded with their actual forces.
+        disk with the largest force gets the rest. Over all sides this cancels; where it does not, as a hole takes a
+        part of a side, sides are recorded with their actual forces.
         """
         static = self.case.static
         if static is None or static.stress is None:

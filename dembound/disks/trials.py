@@ -81,8 +81,7 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
     """The case with fewer copies of its brick, if it has more than `PARTICLES`, and the change in words.
 
     Sides stay the same. Holes are left out: removing particles and contacts takes rows and stiffness from K, which
-    cannot
-    increase its largest eigenvalue.
+    cannot increase its largest eigenvalue.
     """
     across, up = case.packing.copies
     disks = len(ground_of(case).brick.radii)

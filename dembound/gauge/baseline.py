@@ -1,9 +1,9 @@
-"""The baseline of a signal: what a gauge shows where no wave passes it, an offset, a drift, and mains hum.
+"""The baseline of a signal, recorded where no wave passes the gauge: an offset, a drift, and mains hum.
 
 It is fitted by least squares to the *quiet* samples: those before the trigger and between passages of the pulse. As
 these are known only once the baseline is, the first fit is one of least absolute deviations to all samples, which
-passages hardly change as long as they take less than half of the time; after it quiet samples and fit take turns. A
-record of a longer wave has an offset alone, that of its beginning.
+passages hardly change as long as they take less than half of the time; after it quiet samples and fit take turns. Of a
+record with a longer wave only an offset is fitted, to its beginning.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ SHORTEST = 0.05
 """Periods of the mains in a record below which hum is a drift in it."""
 
 LEAST = 0.003
-"""Largest baseline over the largest value below which it is left in: it changes α by some parts in a thousand."""
+"""Largest baseline, over the largest value, that is not removed: it changes α by some parts in a thousand."""
 
 SIGNIFICANT = 5.0
 """Least size of a baseline in its standard errors."""
@@ -41,10 +41,10 @@ SPREAD = 0.5
 """Part of the record that quiet samples must extend over for a drift or hum to be fitted."""
 
 ROUNDS = 4
-"""Turns of fit and quiet samples; the second changes little already."""
+"""Iterations of fit and selection of quiet samples; the second changes little already."""
 
 BEGINNING = 20
-"""Part of the record, one in so many, whose median is the offset where it has no other quiet samples."""
+"""Inverse of the part of the record whose median is the offset where it has no other quiet samples."""
 
 TRIED = 4000
 """Samples of the first fit, which are enough for a few terms."""
@@ -61,9 +61,9 @@ class Terms(NamedTuple):
 class Baseline:
     """The baseline of a signal (k,).
 
-    quiet : (k,) where no wave passes. before : number of quiet samples before the first wave. values : (k,) the fit,
-    whether it is worth removing or not. worthwhile : whether it is. names : of its terms. functions : (k, m) and
-    covariance : (m, m) of its uncertainty.
+    quiet : (k,) where no wave passes. before : number of quiet samples before the first wave. values : (k,) the fit.
+    worthwhile : whether it is large enough to be removed. names : of its terms. functions : (k, m) and covariance : (m,
+    m) of its uncertainty.
     """
 
     quiet: np.ndarray
@@ -80,8 +80,8 @@ def find_baseline(
 ) -> Baseline | None:
     """The baseline of a signal; None where no quiet samples show one.
 
-    Of offset, drift and hum those are fitted that deviations from it show, five standard errors large. A record whose
-    quiet samples are only at its beginning shows an offset alone.
+    Of offset, drift and hum only significant terms are fitted, of five standard errors or more. A record whose
+    quiet samples are only at its beginning gives an offset only.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def find_baseline(
 def _settled(
     fit: np.ndarray, offset: Terms, possible: list[Terms], values: np.ndarray, *, only_before: bool = False
 ) -> Baseline | None:
-    """The baseline of a signal (k,) from a first fit (k,); only_before: from its beginning alone."""
+    """The baseline of a signal (k,) from a first fit (k,); only_before: from its beginning only."""
     for _ in range(ROUNDS):
         quiet = quiet_samples(values - fit)
         before = int(np.argmin(quiet)) if not quiet.all() else len(quiet)
@@ -120,7 +120,7 @@ def _settled(
 
 
 def quiet_samples(values: np.ndarray) -> np.ndarray:
-    """Where (k,) a signal without baseline is as quiet as its noise, a quarter of a passage's width from any."""
+    """Mask (k,) of samples at which a signal without baseline is within noise, a quarter width from any passage."""
     sizes = np.abs(values)
     width = max(2, width_of(sizes))
     reach = max(1, round(CREST * width))

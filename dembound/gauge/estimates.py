@@ -36,7 +36,7 @@ class Estimate(NamedTuple):
 def tension_peaks(time: np.ndarray, stress: np.ndarray, count: int | None = None) -> Peaks:
     """Successive tension peaks at a gauge between free ends, 2L/c apart, found by `positive_peaks`.
 
-    Tension that is nowhere above `SMALLEST` of the compression is an oscillation behind a pulse that has not returned,
+    Tension below `SMALLEST` of the compression everywhere is an oscillation behind a pulse that has not returned,
     and not a peak.
 
     Parameters
@@ -87,7 +87,7 @@ def attenuation(peak_times: np.ndarray, peak_heights: np.ndarray, speed: float) 
 def incident_pulse(
     time: np.ndarray, stress: np.ndarray, gauge: float, length: float, speed: float, end: float | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Times (p,) and stresses (p,) of the incident pulse alone: the history (k,) up to a time, its noise smoothed.
+    """Times (p,) and stresses (p,) of the incident pulse without reflections: the smoothed history (k,) up to a time.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def near_free_end(
 
     Parameters
     ----------
-    time, stress : (p,) the incident pulse s alone, as the gauge measures it, zero before and after; s and any unit.
+    time, stress : (p,) the incident pulse s at the gauge, zero before and after; s and any unit.
     gauge, length : place x_g of the gauge and length L of the bar, m.
     speed : c, m/s.
     positions, at_times : (q,) m and (k,) s.

@@ -1,4 +1,4 @@
-"""What is found from a gauge on a bar."""
+"""Findings from a gauge on a bar."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -16,8 +16,8 @@ class Strength:
 
     position : from the loaded end, m; nominal : largest tension there without attenuation, Pa, reached at `time`, s;
     way : path length from the gauge via the free end to there, m; attenuated : nominal strength attenuated over this
-    path, Pa, None without a coefficient; pulse : times (p,) s and stresses (p,) Pa of the incident pulse alone;
-    nominal_error, attenuated_error : standard errors, Pa, nan if not known.
+    path, Pa, None without a coefficient; pulse : times (p,) s and stresses (p,) Pa of the incident pulse without
+    reflections; nominal_error, attenuated_error : standard errors, Pa, nan if not known.
     """
 
     position: float

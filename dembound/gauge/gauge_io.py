@@ -33,7 +33,7 @@ FREE = "free"
 """The type of a free end."""
 
 DIFFERENT = 0.01
-"""Relative difference of a value that is given and that of the results from which it is told."""
+"""Relative difference above which a given value differs from that of the results."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Gauge:
     def in_pascals(self, speed: float) -> "Gauge":
         """The gauge with stresses in Pa: strains times E, by default ρc² with c = speed, m/s.
 
-        Raises CaseError where they cannot be known, and for a modulus that is not that of the density and the speed.
+        Raises CaseError where they cannot be computed, and for a modulus that contradicts density and speed.
         """
         if self.unit == "Pa":
             return self
@@ -96,8 +96,9 @@ def read_gauge(
     ----------
     path : the file.
     monitor : its name in the record; may be left out if there is only one between the ends. position, length, density,
-    modulus : as for `Gauge`; the first three by default those of the record. reading : how a text file is read.
-    treatment : what is removed from its signal, by default its baseline; from a record only what filters take out.
+    modulus : as for `Gauge`; the first three by default from the record. reading : how a text file is read.
+    treatment : baseline and filters to remove from its signal, by default the baseline; from a record only filters
+    apply.
     may_be_clipped : accept a text file's signal with a plateau.
 
     Raises CaseError for a file that cannot be read, an unknown monitor, a bar that is not loaded at one end, a gauge
@@ -145,7 +146,7 @@ def read_gauge(
 
 
 def differs(given: float | None, recorded: float | None) -> bool:
-    """Whether a value that is given replaces another one of the results."""
+    """Whether a given value differs from the one in the results."""
     return given is not None and recorded is not None and abs(given - recorded) > DIFFERENT * abs(recorded)
 
 
@@ -158,7 +159,7 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
     free_end : a monitor in it if it is a record, which must be at the end opposite the loaded one, and this end must be
     free; else the path of a text file of two columns.
 
-    Raises CaseError for anything else.
+    Raises CaseError if `free_end` is neither.
     """
     if not is_record(path):
         if not Path(free_end).is_file():

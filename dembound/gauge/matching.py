@@ -1,4 +1,4 @@
-"""Times and heights of passages of one pulse, from all of its shape: a matched filter.
+"""Times and heights of passages of one pulse, from its whole shape: a matched filter.
 
 Noise shifts the crest of a peak much more than the whole of it. Each passage is therefore fitted by a·g(t − τ), with g
 the first tension peak of the smoothed history; noise σ then leaves an error σ/√(Σ ġ²)/a of a time and σ/√(Σ g²) of a
@@ -17,12 +17,12 @@ RANGE = 0.5
 
 
 def matched(time: np.ndarray, values: np.ndarray, peaks: Peaks) -> Peaks:
-    """The peaks of a history with times and heights by which all of the first one's shape fits them best.
+    """The peaks of a history with times and heights at which the shape of the first one fits them best.
 
     Parameters
     ----------
-    time, values : (k,) s, evenly spaced, and any unit. peaks : of this history, by `peaks.positive_peaks`. One whose
-    whole shape is not within the history remains as it is.
+    time, values : (k,) s, evenly spaced, and any unit. peaks : of this history, by `peaks.positive_peaks`. A peak whose
+    whole shape is not within the history does not change.
     """
     if len(peaks.time) < 2:
         return peaks

@@ -1,4 +1,4 @@
-"""What noise and an uncertain baseline may have added to a signal, and the standard errors that follow from it.
+"""Standard errors by noise and an uncertain baseline of a signal.
 
 The *bootstrap*: noise as it was before the first wave, drawn in blocks so that its colour remains, and baselines drawn
 from the fit's covariance are added to the signal again and again, and everything is estimated anew. The scatter of the
@@ -30,9 +30,9 @@ BLOCKS = 4
 class Noise:
     """Noise of a signal (k,).
 
-    residuals : (r,) of quiet samples in a row; block : length of the pieces drawn from them; functions : (k, m) and
-    root : (m, m), a root of the covariance of the baseline's shares; smoothed : (k,) the signal, for what its
-    digitiser rounds to steps of the size `digit`, 0 if noise is larger.
+    residuals : (r,) of consecutive quiet samples; block : length of the pieces drawn from them; functions : (k, m) and
+    root : (m, m), a root of the covariance of the baseline's shares; smoothed : (k,) the signal, to find the rounding
+    of its digitiser to steps of the size `digit`, 0 if noise is larger.
     """
 
     residuals: np.ndarray
@@ -76,8 +76,8 @@ def undithered(values: np.ndarray) -> tuple[np.ndarray, float]:
 def noise_of(values: np.ndarray, baseline: Baseline) -> Noise:
     """The noise of a signal (k,) from which its baseline, if worthwhile, is removed.
 
-    It is that before the first wave if there are a hundred samples, else that of all quiet samples. A baseline that was
-    left in is one more uncertain function.
+    From samples before the first wave if there are a hundred, else from all quiet samples. A baseline that was
+    not removed is one more uncertain function.
     """
     quiet = np.flatnonzero(baseline.quiet)
     residuals = values[: baseline.before] if baseline.before >= 100 else values[quiet]

@@ -1,9 +1,9 @@
-"""Whether one pulse that runs to and fro explains all passages of a gauge on a bar.
+"""Checks that one pulse that runs to and fro explains all passages of a gauge on a bar.
 
 Wave speed and attenuation follow from the tension peaks, and once more from parts of the record: the first two of these
-peaks, those behind the first, the compressions between them, and the way from the first compression to its reflection.
+peaks, those behind the first, the compressions between them, and the path from the first compression to its reflection.
 For one pulse all are equal but for noise. A second impact, lost samples, an amplifier at its limit, a baseline that
-jumps, or ends that take energy or time, change one part more than another.
+jumps, or ends that absorb energy or delay waves, change one part more than another.
 """
 
 from typing import NamedTuple
@@ -18,14 +18,15 @@ ENDED = 0.05
 """Share of the largest value below which a pulse has ended between two passages."""
 
 RISEN, FREE_OF_WAVES = 0.2, 0.1
-"""Share of its crest at which a front has come, and part of the way back in which the signal is quiet before it."""
+"""Share of its crest at which a front counts as arrived, and part of the way back in which the signal must be quiet
+before it."""
 
 STRONG = 10.0
 """Least height of a passage in standard deviations of noise: a lower one is found where noise makes it too high."""
 
 
 class PartialFit(NamedTuple):
-    """What a part of the passages gives: its name, wave speed in m/s and attenuation in 1/m, nan where it has none."""
+    """Result from a part of the passages: its name, wave speed in m/s and attenuation in 1/m, nan where it has none."""
 
     name: str
     speed: float
@@ -78,8 +79,8 @@ def first_passages(time: np.ndarray, stress: np.ndarray) -> Peaks | None:
 def first_return(time: np.ndarray, stress: np.ndarray, position: float, length: float) -> Estimate | None:
     """Wave speed from the first passages, 2(L − x_g)/Δt; None where the first wave is not followed by its reflection.
 
-    time, stress : (k,) s and any unit; position, length : m. The error is that of a quarter of a sample at either
-    passage, and of half a sample at the crests of a pulse that has not ended when it comes back.
+    time, stress : (k,) s and any unit; position, length : m. The error corresponds to a quarter of a sample at either
+    passage, and to half a sample at the crests of a pulse that has not ended when it comes back.
     """
     first, share = first_passages(time, stress), 0.25
     if first is None:

@@ -14,7 +14,7 @@ LEVELS = 1.5
 """Least height of a peak in steps of the digitiser: one is what rounding makes of any change."""
 
 FEW_LEVELS = 8
-"""Samples per distinct value from which a history is that of a digitiser."""
+"""Samples per distinct value above which a history comes from a digitiser."""
 
 CREST = 0.125
 """Range of the smoothing on either side, in widths of the largest peak at half its height.
@@ -67,7 +67,8 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
 def denoised(values: np.ndarray, deviations: float = 1.0) -> np.ndarray:
     """A history (k,) smoothed by parabolas over a range chosen by its noise; without noise it is not changed.
 
-    deviations : of the noise that the loss of a crest equals. Where a largest value is taken, noise adds more than one.
+    deviations : loss of a crest by smoothing, in standard deviations of noise. A largest value, which noise raises by
+    more than one of these, allows a larger loss.
     """
     sizes = np.abs(values)
     return smooth(values, _worthwhile_reach(deviations * white_noise(values) / sizes.max(), width_of(sizes)))

@@ -1,4 +1,4 @@
-"""Mistakes that a measured signal shows: noise alone, clipped, sampled too coarsely, or in other units than assumed."""
+"""Mistakes that a measured signal reveals: only noise, clipped, sampled too coarsely, or in unexpected units."""
 
 from collections.abc import Iterator
 
@@ -18,13 +18,14 @@ SLOWEST, FASTEST = 100.0, 10_000.0
 """Wave speeds of solids, m/s: rubber is slower, no bar is faster but one of diamond or beryllium."""
 
 COARSE, FEW = 5, 10
-"""Samples of the largest wave, at half its height, below which it is refused, and below which a warning is due."""
+"""Samples of the largest wave, at half its height, below which it is refused, and below which a warning is given."""
 
 SHARE_CLIPPED, LEAST_CLIPPED = 0.1, 5
 """Equal samples at a largest value from which they are taken for clipped, over the wave's width, and their number."""
 
 ABRUPT = 8.0
-"""Fall beside a crest, in steps of the digitiser, that clips: a crest that bends by itself falls by four."""
+"""Fall beside a crest, in steps of the digitiser, that indicates clipping; a crest that bends by itself falls by
+four."""
 
 OWN = 0.95
 """Largest height of a wave that comes back, over a plateau before it, that is not cut where that was."""
@@ -40,7 +41,7 @@ PART_SPEED, PART_DECAY, PART_FALL = 0.003, 0.05, 0.005
 which a warning is due."""
 
 CAUSES = "look for another impact, lost samples, a jump of the baseline, an amplifier at its limit, AC coupling"
-"""What to look for where passages are not those of one pulse."""
+"""Possible causes where passages are not those of one pulse."""
 
 NOISY = 0.015
 """Noise over the height of a wave from which strengths get a warning: it has raised them by 2 to 3 % there."""
@@ -49,10 +50,10 @@ TIED = 2.0
 """Ratio of E and ρc² up to which both may be of one bar: measured ones differ by some per cent."""
 
 APART = 0.05
-"""Relative difference of E and ρc² from which a warning is due: it is in all stresses."""
+"""Relative difference of E and ρc² that causes a warning, as it affects all stresses."""
 
 LARGEST_STRAIN = 0.05
-"""Strain that no bar of a test has: those of steel yield at 1 %."""
+"""Strain that no bar of a test has: steel bars yield at 1 %."""
 
 UNCERTAIN_SPEED, UNCERTAIN_DECAY = 0.01, 0.2
 """Relative standard errors of wave speed and attenuation from which a warning is due."""
@@ -73,7 +74,7 @@ def implausible_size(option: str, value: float | None, means: str, unit: str) ->
 def implausible_modulus(modulus: float | None, density: float | None, speed: float) -> Iterator[str]:
     """Message about a modulus E, Pa, that no bar with this wave speed, m/s, and density, kg/m³, has: E = ρc².
 
-    Without a density it is compared with the likely ones.
+    Without a density E is compared with likely densities.
     """
     if modulus is None or not (0.0 < modulus < np.inf and 0.0 < speed < np.inf):
         return
@@ -118,7 +119,7 @@ def implausible_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> I
 
 
 def _too_narrow(values: np.ndarray, width: int) -> str:
-    """Why the largest values (k,), so many samples wide, are no wave: spikes beside one, or nothing wider is there."""
+    """Why the largest values (k,), `width` samples wide, are no wave: spikes, or nothing wider in the signal."""
     from scipy.ndimage import median_filter
 
     rest = median_filter(values, 2 * COARSE - 1, mode="nearest")  # without all that is less than COARSE samples wide
@@ -146,7 +147,7 @@ def clipped(values: np.ndarray) -> int:
 
 
 def _comes_back_flat(values: np.ndarray, count: int) -> bool:
-    """Whether the largest wave of a signal (k,) behind that with so many equal samples has half as many, too."""
+    """Whether the next largest wave of a signal (k,) has half as many equal samples as the largest, `count`."""
     top = float(values.max())
     if abs(-float(values.min()) / top - 1.0) < CLOSE:
         return False  # both senses are cut where the range ends
@@ -269,7 +270,7 @@ def raised_by_noise(noise: float, crest: float) -> Iterator[str]:
 
 
 def as_doubtful(found: Findings) -> Iterator[str]:
-    """Message about what rests on an estimated wave speed that is doubtful, or on the same peaks."""
+    """Message about results that rest on a doubtful estimated wave speed, or on the same peaks."""
     strength = found.strength
     resting = {
         "the attenuation": found.attenuation is not None and bool(found.attenuation.points),

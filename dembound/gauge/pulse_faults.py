@@ -1,6 +1,7 @@
-"""Faults of a recorder or an amplifier that a single pulse shows: where it is alone, no return of it tells them.
+"""Faults of a recorder or an amplifier that a single pulse shows, where no return of it can reveal them.
 
-Values are positive in the pulse, so a gauge's stress is given with the other sign, the velocity of a free end as it is.
+Values are positive in the pulse, so a gauge's stress is given with the opposite sign, the velocity of a free end as it
+is.
 """
 
 from collections.abc import Iterator
@@ -23,15 +24,15 @@ NARROW = 10.0
 """The slower slope of a pulse, T for 0.8 of its crest, over the range of the running median."""
 
 LOWERED, SPIKE = 0.06, 0.02
-"""How much that median lowers a sharp crest at most, over it, and what a spike must have beyond: half the range times
-the slope is (T/20)(0.8/T) = 0.04 for straight slopes, and with T from 0.9 to 0.5 of the crest, 2τ ln 1.8, 0.059 for a
-fall exp(−t/τ) behind an abrupt front."""
+"""Largest lowering of a sharp crest by that median, over its height, and least excess of a spike: half the range
+times the slope is (T/20)(0.8/T) = 0.04 for straight slopes, and with T from 0.9 to 0.5 of the crest, 2τ ln 1.8,
+0.059 for a fall exp(−t/τ) behind an abrupt front."""
 
 SPIKE_NOISE = 6.0
-"""The same in standard deviations of noise, which a sample in 10⁹ has."""
+"""Least excess of a spike in standard deviations of noise, which a sample in 10⁹ has."""
 
 UNDERSHOOT, MOST_UNDERSHOOT = 0.03, 0.5
-"""Opposite signal behind a pulse, over its crest, from which and up to which it is taken for AC coupling: less is an
+"""Opposite signal behind a pulse, over its crest, from which and up to which it indicates AC coupling: less is an
 uncertain baseline, more is another wave."""
 
 UNEXPLAINED = 0.2

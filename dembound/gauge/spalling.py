@@ -52,7 +52,7 @@ AGREEMENT = 0.05
 
 
 class Given(NamedTuple):
-    """What is given with a gauge, see `evaluate`; first : its `count`."""
+    """Data given with a gauge, see `evaluate`; first : its `count`."""
 
     spall: float | None
     pulse_end: float | None
@@ -80,7 +80,7 @@ def evaluate(
     spall : position at which the bar has spalled, from the loaded end, m.
     free_end : times (q,) in s and velocities (q,) in m/s of the free end, positive outwards.
     estimate : take wave speed and attenuation from the tension peaks even if a record has them.
-    count : the same, from this number of first peaks.
+    count : use this number of first peaks, also if a record has speed and attenuation.
     pulse_end : time at which the incident pulse is over at the gauge, s; by default when its front comes back.
     speed, coefficient : wave speed in m/s and attenuation in 1/m of another test; by default those of a record,
         else estimates.
@@ -144,7 +144,7 @@ def _replicates(gauge: Gauge, noise: Noise, given: Given) -> Iterator[Findings]:
 
 
 def _doubts(gauge: Gauge, found: Findings) -> Iterator[str]:
-    """What is doubtful about estimates from a measured signal; raises CaseError for a speed that cannot be."""
+    """Doubts about estimates from a measured signal; raises CaseError for an impossible speed."""
     about_speed = list(_doubts_of_speed(gauge, found))
     yield from about_speed
     if (width := width_of(np.abs(gauge.stress))) < FEW:
@@ -160,7 +160,7 @@ def _doubts(gauge: Gauge, found: Findings) -> Iterator[str]:
 
 
 def _doubts_of_speed(gauge: Gauge, found: Findings) -> Iterator[str]:
-    """What is doubtful about an estimated wave speed; raises CaseError for one that cannot be."""
+    """Doubts about an estimated wave speed; raises CaseError for an impossible one."""
     if not found.speed.points:
         return
     if problems := list(unlikely_speed(found.speed.value)):

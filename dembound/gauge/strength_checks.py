@@ -1,4 +1,4 @@
-"""Whether strengths from a gauge can be those of the bar: its spall, the end of its pulse, its speed, their size."""
+"""Checks that strengths from a gauge can be those of the bar: spall, end of the pulse, speed, and size."""
 
 from collections.abc import Iterator
 
@@ -29,13 +29,13 @@ AWAY = 0.1
 """Distance of the spall from the first crack of results, over that from the free end: the strength is as wrong."""
 
 FRONTS = 0.05
-"""Largest relative difference of a given speed and that of the fronts, which have risen to a fifth of their crests: of
-a return that a spall has cut at half its height to a tenth, a tenth of a rise earlier. Pulses that have ended when they
-return have rises of less than half that time."""
+"""Largest relative difference of a given speed from that of the fronts, taken at a fifth of their crests: for a
+return that a spall has cut at half its height to a tenth, a tenth of a rise earlier. Pulses that have ended when
+they return have rises of less than half that time."""
 
 
 def doubts_of_strengths(gauge: Gauge, found: Findings, free_end: tuple[np.ndarray, np.ndarray] | None) -> Iterator[str]:
-    """What is doubtful about strengths, of results too; free_end : times (q,) s and velocities (q,) m/s."""
+    """Doubts about strengths, also of results; free_end : times (q,) s and velocities (q,) m/s."""
     speed, strength = found.speed.value, found.strength
     known = None if gauge.metadata is None else gauge.metadata.attenuation
     if found.attenuation is not None and not found.attenuation.points and found.attenuation.value != known:
@@ -54,7 +54,7 @@ def doubts_of_strengths(gauge: Gauge, found: Findings, free_end: tuple[np.ndarra
 
 
 def doubts_of_signals(gauge: Gauge, found: Findings, free_end: tuple[np.ndarray, np.ndarray] | None) -> Iterator[str]:
-    """What a measured signal itself makes doubtful about a speed that is given, and about strengths."""
+    """Doubts from a measured signal itself about a given speed, and about strengths."""
     strength, speed = found.strength, found.speed.value
     coupled: list[str] = []
     if strength is not None:

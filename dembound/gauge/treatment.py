@@ -1,4 +1,4 @@
-"""What is done to a measured signal before anything is estimated from it: baseline and filters."""
+"""Treatment of a measured signal before anything is estimated from it: baseline and filters."""
 
 from dataclasses import dataclass, field, replace
 
@@ -13,7 +13,7 @@ from dembound.words import percent
 
 @dataclass(frozen=True)
 class Treatment:
-    """What is removed from a signal: the baseline with or without drift and hum, and what the filters take out."""
+    """Parts to remove from a signal: the baseline with or without drift and hum, and frequencies by filters."""
 
     baseline: bool = True
     drift: bool = True
@@ -22,10 +22,10 @@ class Treatment:
 
 
 def treated(signal: Signal, treatment: Treatment | None = None) -> tuple[Signal, Noise | None]:
-    """The signal without its baseline, filtered, with notes of what was done; and its noise, None if it is not known.
+    """The signal without its baseline, filtered, with notes on the treatment; and its noise, None if it is not known.
 
-    A baseline below 0.3 % of the signal or below five of its standard errors is left in. Raises CaseError for filters
-    that the record does not allow.
+    A baseline below 0.3 % of the signal or below five of its standard errors is not removed. Raises CaseError for
+    filters that the record does not allow.
     """
     treatment = treatment or Treatment()
     values, notes = signal.values, list(signal.notes)
@@ -41,7 +41,7 @@ def treated(signal: Signal, treatment: Treatment | None = None) -> tuple[Signal,
 
 
 def _in_words(found: Baseline | None, signal: Signal) -> str:
-    """What was done about the baseline."""
+    """The treatment of the baseline in words."""
     if found is None:
         return "baseline: not removed, as no part of the record is quiet"
     largest = float(np.abs(signal.values - found.values).max())

@@ -17,10 +17,10 @@ EXACT = 5e-4
 
 
 def with_errors(found: Findings, others: Sequence[Findings]) -> Findings:
-    """The findings with the scatter of those from other signals as standard errors.
+    """The findings, with the scatter of findings from other signals as standard errors.
 
-    Errors of speed and attenuation remain those of the lines through the peaks if these are larger, and they are at
-    least the difference of a part of the passages that contradicts all returns.
+    Errors of speed and attenuation are at least those of the lines through the peaks, and at least the difference of a
+    part of the passages that contradicts all returns.
     """
     speed, of_speed = _estimated("wave speed", found, others, lambda each: each.speed, lambda part: part.speed)
     decay, of_decay = _estimated("attenuation", found, others, lambda each: each.attenuation, lambda part: part.decay)
@@ -44,7 +44,7 @@ def _estimated(
 ) -> tuple[Estimate | None, Misfit | None]:
     """An estimate with its error, and the part that contradicts it most, if one does.
 
-    of : its name. whole : takes it from findings; partial : the same from a part of the passages.
+    of : its name. whole : takes it from findings; partial : takes it from a part of the passages.
     """
     estimate = whole(found)
     if estimate is None or not estimate.points:

@@ -33,15 +33,12 @@ class Entry:
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
     and driven loads; loads, the part of `outside` by loads; damping, friction, crack, dissipated by each, friction of a
-    bar
-    by impacts of its ranges; closing, taken by contacts that open and close within a step, less the energy added by
-    sliding
-    contacts and breaking bonds whose force changes its sign in one (see kernels.contacts.push); law_switch, added by a
-    change of method or law; stepping, at most 0, contribution of velocities that change within a step to the stored
-    energy;
-    supplied, the kinetic energy at the start plus the largest values so far of outside, at any step, and of load, at
-    any
-    entry; error, stored and dissipated energy minus the energy that came in and the kinetic energy at the start.
+    bar by impacts of its ranges; closing, taken by contacts that open and close within a step, less the energy added by
+    sliding contacts and breaking bonds whose force changes its sign in one (see kernels.contacts.push); law_switch,
+    added by a change of method or law; stepping, at most 0, contribution of velocities that change within a step to the
+    stored energy; supplied, the kinetic energy at the start plus the largest values so far of outside, at any step, and
+    of load, at any entry; error, stored and dissipated energy minus the energy that came in and the kinetic energy at
+    the start.
     """
 
     time: float

@@ -197,8 +197,7 @@ class NodeSides:
         """Elements at nodes (k,) of the whole scene with constants (k,) as batches of lines of the support table.
 
         Nodes that have no supported counterpart in a smaller scene have no force on them. column : (k,) of the signals
-        of
-        drives.
+        of drives.
         """
         follow = np.zeros(len(node)) if follow is None else follow
         column = np.full(len(node), -1) if column is None else column
@@ -259,10 +258,9 @@ def _bearers(
     """For each side nodes (q,) and the shares (2, q) of the steady forces on them, along x and y, that belong to it.
 
     The force on a node of several sides is the sum of the forces that each side would exert with the mean traction of
-    its
-    other nodes, which are on no other side, and of a rest, which belongs to the side along whose normal it is. Under a
-    uniform stress there is no rest. known : by side, nodes (k,), forces (2, k) N on them, in proportion to which sides
-    share nodes, and recorded forces (2, k) N; empty where they are not known.
+    its other nodes, which are on no other side, and of a rest, which belongs to the side along whose normal it is.
+    Under a uniform stress there is no rest. known : by side, nodes (k,), forces (2, k) N on them, in proportion to
+    which sides share nodes, and recorded forces (2, k) N; empty where they are not known.
     """
     node = np.unique(np.concatenate([np.zeros(0, np.int64), *(edge.nodes for edge in edges)]))
     on = np.array([np.isin(node, edge.nodes) for edge in edges]).reshape(len(edges), len(node))

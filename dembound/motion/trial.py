@@ -44,10 +44,8 @@ class Trial:
         """Random velocities (3, n), m/s and rad/s, of all nodes or of those of one part; the same in every call.
 
         Scaled with the root of the mass, all directions are equally likely: every mode of vibration has the same
-        expected
-        energy. There is neither momentum nor angular momentum: a free body would drift and rotate, and the rounding
-        error of
-        its displacements would grow. A body of which a component is held cannot rotate as a whole.
+        expected energy. There is neither momentum nor angular momentum: a free body would drift and rotate, and the
+        rounding error of its displacements would grow. A body of which a component is held cannot rotate as a whole.
         """
         scene = self.scene
         mass = np.stack([scene.mass, scene.mass, scene.inertia])
@@ -73,8 +71,7 @@ class Trial:
         """Names of the parts in which noise is put: all parts, each of which moves independently of those after it.
 
         A body and its continuum are tied: the energy of each is at most that of the noise in it. Under a
-        history-dependent law
-        only the last recorded part, the body, as the energies of a ledger are those of all parts.
+        history-dependent law only the last recorded part, the body, as the energies of a ledger are those of all parts.
         """
         system = self.system(self.step)
         parts = system.parts if self.is_linear else system.recorded_parts[-1:]

@@ -24,7 +24,8 @@ power of the side.
 
 HOLES = {3: 6e-2, 4: 2e-2, 5: 1e-2, 6: 4e-3}
 """By order: error beside elements as wide as a box round a hole under a pressure; 0.75 of that round circles, up to
-1.8 times round squares. The error with two elements a side is smaller by 2 to the power of the order and one more."""
+1.8 times round squares. The error with two elements a side is smaller by 2 to the power of the order and one
+more."""
 
 WIDER = 2.5
 """Power of the side with which it grows where elements are wider than that: 10 and 22 % with two and three times."""

@@ -1,7 +1,8 @@
 """Checkpoints: the state of a run in a file, from which another process continues it to the same bits.
 
 A checkpoint is a NumPy archive (``.npz``, with a CRC-32 of every array): the arrays of `State.arrays`, and ``facts``,
-a JSON text with the version, the case with all its keys and files, the stage, the step, and what has been recorded.
+a JSON text with the version, the case with all its keys and files, the stage, the step, and the recorded numbers of
+rows.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ class Checkpoint:
     arrays: Arrays
 
     def write(self, path: Path, *, durable: bool = True) -> None:
-        """Write it beside the file and swap it in; durable : wait until the disk has it."""
+        """Write to a temporary file and rename it; durable : wait until the disk has it."""
         text = np.frombuffer(json.dumps(dict(self.facts)).encode(), dtype=np.uint8)
         with replacing(path) as part, part.open("wb") as file:
             np.savez(file, allow_pickle=False, **{FACTS: text, **self.arrays})  # type: ignore[arg-type]
@@ -108,10 +109,10 @@ class Checkpoints(Tracker):
         self._written = time.monotonic()
 
     def handle(self, run: Run) -> None:
-        """Does nothing, as it is never due."""
+        """Do nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
-        """Write a checkpoint if the last one is old; raises Stopped, after a checkpoint, if it is to end."""
+        """Write a checkpoint if the last one is old; raises Stopped, after a checkpoint, if the process is to end."""
         if (number := caught()) is not None:
             self.write(run)
             raise Stopped(number)

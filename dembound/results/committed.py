@@ -2,9 +2,9 @@
 
 HDF5 changes its tables in place, so a file whose writer is killed between two writes may not be readable, and a write
 that fails leaves the library unable to close the file. Here writes beyond the end that the file had at the last commit
-go to the file at once, where no table refers to them yet. Writes below that end are kept in memory as pages. A commit
+go to the file at once, where no table refers to them yet. Writes below that end are kept in RAM as pages. A commit
 writes the pages to a log, renames it to ``<file>.log``, changes the file, and removes the log; so either the file is
-complete, or file and log are. A write that fails is kept in memory, too, so that HDF5 can go on to its end, and is
+complete, or file and log are. A write that fails is kept in RAM, too, so that HDF5 can go on to its end, and is
 reported by `CommittedFile.check`; the file then remains as it was at the last commit.
 """
 
@@ -43,7 +43,7 @@ class CommittedFile(io.RawIOBase):
     ----------
     path : of the file.
     mode : "w" creates it with the first commit; until then it is called ``<file>.new``. "a" completes an interrupted
-    commit and goes on after it, "r" only reads.
+    commit and continues, "r" only reads.
 
     Attributes
     ----------
@@ -170,7 +170,7 @@ class CommittedFile(io.RawIOBase):
         return self._file.readinto(view)
 
     def _keep(self, start: int, view: memoryview) -> None:
-        """Keep bytes in memory, page by page."""
+        """Keep bytes in RAM, page by page."""
         for number, inside, outside in _pages_of(start, len(view)):
             if number not in self._pages:
                 self._pages[number] = bytearray(PAGE)
@@ -216,7 +216,7 @@ def _write_all(file: io.FileIO, view: memoryview) -> None:
 
 
 def log_of(path: Path) -> Path:
-    """Where the log of a file is during a commit."""
+    """Path of the log of a file during a commit."""
     return path.with_name(f"{path.name}.log")
 
 

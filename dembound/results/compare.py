@@ -12,10 +12,10 @@ from dembound.results.reader import COMPONENTS, record_names
 from dembound.results.resample import at_times
 
 SAME_PLACE = 1e-9
-"""Distance of two places over that from the origin up to which they are the same, but for rounding."""
+"""Distance of two places over their distance from the origin up to which they are equal but for rounding."""
 
 SMALL = 0.01
-"""Share of the motion in the reference below which a component has no error of its own: it is a small residual."""
+"""Share of the motion in the reference below which a component has no error of its own, as it is a small residual."""
 
 
 FAINT = 1e-6
@@ -26,11 +26,11 @@ FAINT = 1e-6
 class Difference:
     """One monitor of a run compared with the reference.
 
-    rms : √(Σ|a − b|²/Σ|b|²) of the vectors along x and y; peak : largest |a − b| over largest |b|; along : the same as
-    rms for every component that is not `SMALL` in the reference. component : that with the largest motion there; last,
-    reference_last : its values at the end; unit : theirs. shift : s, by which the run was made earlier, as waves enter
-    it so much later than the reference; 0 without. apart : m, distance of the places whose motions are compared, 0 if
-    it is of rounding only; place, reference_place : these, as text.
+    rms : √(Σ|a − b|²/Σ|b|²) of the vectors along x and y; peak : largest |a − b| over largest |b|; along : rms for
+    every component that is not `SMALL` in the reference. component : the one with the largest motion there; last,
+    reference_last : its values at the end; unit : of these. shift : s, by which the run was made earlier, as waves
+    enter it so much later than the reference; 0 without. apart : m, distance of the places whose motions are compared,
+    0 if it is rounding only; place, reference_place : these places, as text.
     """
 
     run: str
@@ -51,10 +51,10 @@ class Difference:
 def compare(reference: Path, runs: list[Path], quantity: Quantity, as_recorded: bool = False) -> list[Difference]:
     """Differences of runs from a reference run at the monitors they share, over the time they share.
 
-    Waves enter disks a little later or earlier than through the plane of a side, by disks and side. Where both
-    records know by how much, the difference is taken off, unless they are compared as_recorded. The runs' histories are
-    interpolated at the reference's times. Twins in a free-field column share one line for each run: that of the one
-    with the largest error. Raises CaseError when nothing can be compared.
+    Waves enter disks a little later or earlier than through the plane of a side, by disks and side. Where both records
+    have this delay, the difference is subtracted, unless they are compared as_recorded. The runs' histories are
+    interpolated at the reference's times. Twins in a free-field column share one line for each run, with the largest
+    error. Raises CaseError when nothing can be compared.
     """
     names = record_names([reference, *runs])[1:]
     expected, late = read_histories(reference, quantity), delay_of(reference)
@@ -72,7 +72,7 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity, as_recorded: 
 
 
 def _shift(*delays: float | None, reference: Mapping[str, MonitorRecord]) -> float:
-    """How much later (s) waves enter a run than the reference; 0 if this is not known or hardly a difference."""
+    """Time (s) by which waves enter a run later than the reference; 0 if unknown or negligible."""
     known = [delay for delay in delays if delay is not None]
     longest = max((float(each.time[-1]) for each in reference.values() if len(each.time)), default=0.0)
     shift = known[0] - known[1] if len(known) == 2 else 0.0
@@ -80,7 +80,7 @@ def _shift(*delays: float | None, reference: Mapping[str, MonitorRecord]) -> flo
 
 
 def _with_one_twin(lines: list[Difference]) -> list[Difference]:
-    """The lines of a run, with one in place of those of all twins."""
+    """The lines of a run, with a single one for all twins."""
     twins = [line for line in lines if line.monitor.endswith(FREE_FIELD)]
     if not twins:
         return lines
@@ -131,23 +131,23 @@ def on_common_clock(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Values of two histories at the sample times (m,) of the second, up to the end of the shorter one.
 
-    time : (k,) s, values : (k,) or (k, c) of the first history, which is interpolated. expected_time :
-    (l,) s, expected : (l,) or (l, c) of the second.
+    time : (k,) s, values : (k,) or (k, c) of the first history, which is interpolated. expected_time : (l,) s, expected
+    : (l,) or (l, c) of the second.
     """
     shared = expected_time <= min(time[-1], expected_time[-1])
     return at_times(time, values, expected_time[shared]), expected[shared]
 
 
 def relative_errors(values: np.ndarray, expected: np.ndarray) -> tuple[float, float]:
-    """RMS of the difference over that of the expected values, and largest difference over their peak.
+    """RMS of the difference over RMS of the expected values, and largest difference over their peak.
 
-    values, expected : (m,), or vectors (m, c), whose lengths count.
+    values, expected : (m,), or vectors (m, c), whose lengths are used.
     """
     error, size = (np.hypot.reduce(each.reshape(len(each), -1), axis=1) for each in (values - expected, expected))
     return float(np.sqrt(np.sum(error**2) / np.sum(size**2))), float(error.max() / size.max())
 
 
 def distance(place: Sequence[float] | np.ndarray, other: Sequence[float] | np.ndarray) -> float:
-    """Distance (m) of two places (2,) m; 0 if it is of rounding only."""
+    """Distance (m) of two places (2,) m; 0 if it is rounding only."""
     apart = float(np.hypot(*np.subtract(place, other)))
     return apart if apart > SAME_PLACE * float(np.hypot(*other)) else 0.0

@@ -22,12 +22,12 @@ CHECKSUM = "filter returned failure"
 
 
 def is_of_checksum(error: Exception) -> bool:
-    """Whether an error is that of numbers that do not have their checksum."""
+    """Whether an error reports numbers that do not match their checksum."""
     return CHECKSUM in str(error)
 
 
 def damage_in_words(error: Exception, size: int) -> str:
-    """What an error in reading a record says about it; size : of the file, bytes."""
+    """An error in reading a record in words; size : of the file, bytes."""
     reason = str(error) or type(error).__name__
     if found := re.search(r"truncated file: .*stored_eof = (\d+)", reason):
         return f"is truncated, it has {size:,} of {int(found[1]):,} bytes"

@@ -1,4 +1,4 @@
-"""Estimated errors of a run, as they lie beside its record: histories of the errors, and their sizes in words."""
+"""Estimated errors of a run, stored beside its record: histories of the errors, and their sizes in words."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ KEY = "error_estimate"
 """Entry of the summary."""
 
 NAMES = {"disks": "these disks", "rock": "the rock"}
-"""What errors may be those of."""
+"""Truths, relative to which errors are given, in words."""
 
 LEAST = 1e-3
 """Smallest error that is given as a number."""

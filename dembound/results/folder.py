@@ -1,4 +1,4 @@
-"""The folder of a run: written aside, locked against a second run of the name, and swapped in when it is complete."""
+"""The folder of a run: written under another name, locked against a second run, and renamed when it is complete."""
 
 import errno
 import re
@@ -33,7 +33,7 @@ NO_NAMES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.IGNORECA
 
 
 def problem_of(name: str) -> str:
-    """What is wrong with a name for a folder of results, empty if it can be one on all systems."""
+    """The problem of a name for a folder of results, empty if it is valid on all systems."""
     if name in ("", ".", "..") or re.search(r"[/\\]", name):
         return "must be the name of one folder"
     if CONTROL.search(name):
@@ -57,7 +57,7 @@ class Folder:
 
     Attributes
     ----------
-    final : the folder of the complete run; partial : that of a run that is not complete.
+    final : the folder of the complete run; partial : the folder while the run is not complete.
     """
 
     def __init__(self, results: Path, name: str) -> None:
@@ -99,7 +99,7 @@ class Folder:
     def writing(self, *, anew: bool) -> Iterator[Path]:
         """Yield the partial folder, locked, to write into; anew : without the files of an earlier run.
 
-        It is removed if nothing was written. Raises CaseError as `check`.
+        An empty folder is removed afterwards. Raises CaseError as `check`.
         """
         self.check()
         self.partial.mkdir(parents=True, exist_ok=True)
@@ -148,7 +148,7 @@ class Folder:
             self._take_replaced()
 
     def _take_replaced(self) -> None:
-        """Move what no run has written from the replaced folder to the final one; raises CaseError if it is there."""
+        """Move files that no run has written from the replaced folder to the final one; CaseError if it exists."""
         _remove_own(self._old)
         _move_all(self._old, self.final)
         if self._old.is_dir():

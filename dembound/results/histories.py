@@ -53,7 +53,7 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, MonitorRecord]:
     Accelerations are central differences of the recorded velocity, one-sided ones at both ends; with
     `output.history_interval` they are means over that interval on either side.
 
-    Raises CaseError when the file cannot be read, has no stress where it is asked for, or too few samples for an
+    Raises CaseError when the file cannot be read, has no stress where it is requested, or too few samples for an
     acceleration.
     """
     source = SOURCES.get(quantity, quantity)
@@ -67,7 +67,7 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, MonitorRecord]:
 
 
 def delay_of(path: Path) -> float | None:
-    """Time (s) by which all motion of a record is later than that of waves through the planes of sides; None: unknown.
+    """Time (s) by which all motion of a record is later than waves through the planes of sides; None: unknown.
 
     Raises CaseError when the file cannot be read.
     """

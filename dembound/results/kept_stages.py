@@ -22,7 +22,7 @@ FOLDER = "settled"
 
 
 def settled_state(folder: Path, name: str, keys: Mapping[str, Any]) -> Arrays:
-    """The arrays of a stage of a name that a run has kept in a folder; keys : of the case on which it depends.
+    """The arrays of a stage that a run has kept in a folder; name : of the stage, keys : that determine its result.
 
     Raises CaseError if it is not there or depends on other keys, RecordError if it is damaged.
     """
@@ -42,7 +42,7 @@ class KeptStages(Stages):
     ----------
     folder : of the stages, created with the first one; None: none are kept.
     keys : the keys of the case on which they depend.
-    checkpoints : makes the tracker that writes checkpoints of a stage of a name.
+    checkpoints : makes the tracker that writes checkpoints of a stage, given its name.
     source : folder of another run whose stages are used; None: this one's.
     unfinished : name of a stage that a checkpoint was written in, and a function that returns its arrays; or None.
     """
@@ -61,7 +61,7 @@ class KeptStages(Stages):
         self._unfinished = unfinished
 
     def finished(self, name: str) -> Arrays | None:
-        """The arrays of a stage, if it has been kept.
+        """The arrays of a stage; None if it has not been kept.
 
         Raises CaseError as `settled_state` if it is to be taken from another run.
         """

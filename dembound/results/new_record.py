@@ -105,8 +105,8 @@ def begin_record(
 ) -> None:
     """Write all groups of a new file.
 
-    run : to be recorded, of whose whole scene all nodes are written. step_limit : s. sides : those with histories.
-    ledger : its energy ledger, if it has one. stages : those before the run.
+    run : to be recorded, with all nodes of its whole scene. step_limit : s. sides : with histories.
+    ledger : its energy ledger, if it has one. stages : before the run.
     """
     source = source_of(run.scene.whole.case, Path(file.filename).parent.parent)
     describe(file, header_of(run) | source | {"step_limit": step_limit, "complete": False})
@@ -124,7 +124,7 @@ def write_stages(file: h5py.File, stages: Sequence[Stage]) -> None:
 
 
 def require_laid_out(file: h5py.File, scene: Scene, counts: Mapping[str, int]) -> None:
-    """Raise RecordError if a record lacks anything that a run of the whole scene, with a ledger, needs to go on in it.
+    """Raise RecordError if a record lacks a dataset or row that a continued run of the whole scene needs.
 
     counts : rows and snapshots that it must have, see `Recorder.counts`.
     """
@@ -149,7 +149,7 @@ def require_laid_out(file: h5py.File, scene: Scene, counts: Mapping[str, int]) -
 
 
 def _grows(item: h5py.HLObject) -> bool:
-    """Whether it is a dataset to which rows are appended."""
+    """Whether an item is a dataset to which rows are appended."""
     return hasattr(item, "maxshape") and item.shape != () and item.maxshape[0] is None
 
 
@@ -178,7 +178,7 @@ def _lacking(file: h5py.File, what: str) -> RecordError:
 def _lay_out(file: h5py.File, scene: Scene, sides: Collection[str], entered: Sequence[str] | None) -> None:
     """Make the groups and datasets of a whole scene.
 
-    sides : those with histories; entered : those with energies, None for a record without a ledger.
+    sides : with histories; entered : sides with energies, None for a record without a ledger.
     """
     group = file.create_group("particles")
     for name, (values, unit) in scene.columns.items():
@@ -196,7 +196,7 @@ def _lay_out(file: h5py.File, scene: Scene, sides: Collection[str], entered: Seq
 
 
 def header_of(run: Run) -> dict[str, Any]:
-    """The attributes of the record of a run, apart from its step limit and whether it is complete."""
+    """The attributes of the record of a run, without its step limit and whether it is complete."""
     scene, case = run.scene.whole, run.scene.whole.case
     return {
         "name": case.name,

@@ -24,7 +24,7 @@ COMPONENTS = ("x", "y", "rotation")
 
 
 _sound: set[tuple[int, ...]] = set()
-"""Records that have been searched for damage by this process, members of their collections apart, see `_state_of`."""
+"""Records that this process has checked for damage, without members of their collections, see `_state_of`."""
 
 _own: set[tuple[int, ...]] = set()
 """Records that this process has written, in which nothing is searched."""
@@ -34,8 +34,9 @@ _own: set[tuple[int, ...]] = set()
 def open_record(path: Path) -> Iterator[h5py.File]:
     """Open a record (``run.h5``, ``calibration.h5``) for reading in a ``with`` statement; errors as of `reading`.
 
-    The first time it is searched for damage and for what no record has, which takes some 0.2 ms for each dataset. Those
-    of snapshots, and of runs and choices of charts, are searched when they are used, see `snapshots_of` and `Members`.
+    At the first opening it is checked for damage and foreign contents, which takes some 0.2 ms for each dataset.
+    Datasets of snapshots, and of runs and choices of charts, are checked when they are used, see `snapshots_of` and
+    `Members`.
     """
     with reading(path) as file:
         state = _state_of(path)
@@ -53,7 +54,7 @@ def trust(path: Path) -> None:
 
 
 def _state_of(path: Path) -> tuple[int, ...]:
-    """A file as it is now, under any name: device, number, time of change (ns) and size."""
+    """Identity of a file in its present state, under any name: device, number, time of change (ns) and size."""
     status = path.stat()
     return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
 
@@ -107,7 +108,7 @@ def text_of(value: str | bytes) -> str:
 
 
 def require_equal_rows(file: h5py.File) -> None:
-    """Raise RecordError if columns of a group of a complete record, snapshots apart, differ in their number of rows."""
+    """Raise RecordError if columns of a group, but for snapshots, of a complete record differ in number of rows."""
     if not file.attrs.get("complete", False):
         return
     for name in ("particles", "energy", "cracks", "laws", *(f"histories/{name}" for name in file.get("histories", {}))):
@@ -160,7 +161,7 @@ def has_monitors(path: Path) -> bool:
 
 
 def is_line(size: Sequence[float]) -> bool:
-    """Whether a scene of this size, (2,) m, has no height, as nodes in a row."""
+    """Whether a scene of this size, (2,) m, has no height, as a bar."""
     return not size[1] > 0.0
 
 
@@ -170,7 +171,7 @@ def place_in_words(place: Sequence[float], size: Sequence[float]) -> str:
 
 
 def require_run(file: h5py.File) -> None:
-    """Raise CaseError for an open record of histories alone, which were computed without stepping particles."""
+    """Raise CaseError for an open record of only histories, which were computed without stepping particles."""
     if "particles" not in file and "histories" in file:
         raise CaseError([f"{file.filename}: has histories alone, as those of `dembound exact` and `dembound respond`"])
 
@@ -178,7 +179,7 @@ def require_run(file: h5py.File) -> None:
 class Snapshots(Sequence["h5py.Group"]):
     """All snapshots of an open record in the order of time, that of their numbers: HDF5 lists 10000 before 1001.
 
-    Each is searched for damage when it is first used, and has as many rows in each column as the record has particles.
+    Each is checked for damage when it is first used, and has as many rows in each column as the record has particles.
     names : of all, in this order, where they are known; listing them takes 2 µs each.
     """
 
@@ -261,7 +262,7 @@ def datasets_in(group: h5py.Group) -> dict[str, h5py.Dataset]:
 
 
 def cracks_until(file: h5py.File, time: float) -> dict[str, np.ndarray]:
-    """The bonds of an open record that have broken at a time in s, those of the static stage included.
+    """The bonds of an open record that have broken at a time in s, including those of the static stage.
 
     Columns time (k,) s, position (k, 2) m, particles (k, 2), shear (k,) bool, in the order the bonds broke.
     """

@@ -35,10 +35,9 @@ if TYPE_CHECKING:
     import h5py
 
 KEPT_BYTES, KEPT_SECONDS = 2**20, 10.0
-"""Samples and cracks are kept in memory until the samples have this size, or for this long.
+"""Samples and cracks are kept in RAM until the samples have this size, or for this long.
 
-Thousands of small writes take longer than all steps of a small scene.
-"""
+Thousands of small writes take longer than all steps of a small scene."""
 
 
 class Recorder:
@@ -50,12 +49,12 @@ class Recorder:
     Parameters
     ----------
     path : file to create.
-    run : the run to record, of whose whole scene all nodes are written; its probes are those of the scene.
+    run : the run to record, with all nodes of its whole scene; its probes are those of the scene.
     step_limit : stability limit in s, written to the record.
     interval : time between two history samples in s; 0: every step is recorded. ledger : the run's energy ledger; None:
-    without a ledger. stages : those before the run.
-    counts : what `counts` has returned in a run that this one continues; the file is then not created, but goes on from
-    there. None: a new file.
+    without a ledger. stages : before the run.
+    counts : the result of `counts` in a run that this one continues; the file is then not created, but appended to.
+    None: a new file.
     """
 
     def __init__(
@@ -122,7 +121,7 @@ class Recorder:
 
     @property
     def counts(self) -> dict[str, int]:
-        """How much a run continues of what grows: rows of histories, cracks, energy and laws, snapshots.
+        """Numbers of rows of histories, cracks, energy and laws, and of snapshots, from which a run can be continued.
 
         The ledger's entry of the last step, which may be the last of this run only, is not included.
         """
@@ -233,7 +232,7 @@ class Recorder:
         self.file.attrs["steps"] = self.run.state.step
 
     def _append_kept(self) -> None:
-        """Write samples and cracks that are kept in memory."""
+        """Write samples and cracks that are kept in RAM."""
         if self._times:
             times, samples = np.concatenate(self._times), np.concatenate(self._samples)
             self._times, self._samples = [], []

@@ -15,7 +15,7 @@ class Histories(Tracker):
         self.recorder = recorder
 
     def handle(self, run: Run) -> None:
-        """Does nothing, as it is never due."""
+        """Do nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Append the record."""
@@ -28,7 +28,7 @@ class Snapshots(Tracker):
     Parameters
     ----------
     recorder : writes the file.
-    number : of snapshots in `steps`, evenly spaced, the last one at the end; a run of more steps goes on like this.
+    number : of snapshots in `steps`, evenly spaced, the last one at the end; a longer run continues at this spacing.
     steps : of the run as it was begun.
     """
 

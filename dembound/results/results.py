@@ -98,7 +98,7 @@ class Results:
 
     Parameters
     ----------
-    folder : the folder, or its ``run.h5``; that of a run that failed, ``<name>.partial``, too.
+    folder : the folder, or its ``run.h5``; also ``<name>.partial`` of a run that failed.
 
     Attributes
     ----------

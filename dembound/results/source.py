@@ -1,4 +1,4 @@
-"""The case file that a record comes from: where it is from the folder of results, and whether it has changed since."""
+"""The case file that a record comes from: its place relative to the folder of results, and whether it has changed."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def source_of(case: Case, results: Path) -> dict[str, str]:
 
 
 def recorded_source(attributes: Mapping[str, Any], results: Path) -> tuple[Path, bool] | None:
-    """The case file of a record, and whether it has changed since; None if it is no longer there."""
+    """The case file of a record, and whether it has changed since; None if it no longer exists."""
     if PLACE not in attributes or not (path := results / str(attributes[PLACE])).is_file():
         return None
     path = Path(os.path.normpath(path))

@@ -1,4 +1,4 @@
-"""What a file must be like before anything is read from it as a record: built like one, and of bounded size.
+"""Checks of a file before it is read as a record: structure, types and bounded size.
 
 A file may come from anywhere. HDF5 lets it refer to other files, contain itself, or declare petabytes that are nowhere;
 a record does none of this, and has its columns in known shapes.
@@ -23,13 +23,12 @@ if TYPE_CHECKING:
     import h5py
 
 DEEPEST = 10
-"""Largest number of groups within each other; those of a record are at most five."""
+"""Largest depth of nested groups; a record has at most five."""
 
 MOST_OBJECTS = 50_000
-"""Largest number of groups, datasets and attributes, apart from those in members of `COLLECTIONS`.
+"""Largest number of groups, datasets and attributes outside of members of `COLLECTIONS`.
 
-A record has some 300, and for each monitor at most 30; a case has at most `casefile.cross_checks.MOST_MONITORS`.
-"""
+A record has some 300, and for each monitor at most 30; a case has at most `casefile.cross_checks.MOST_MONITORS`."""
 
 MOST_ATTRIBUTES = 500
 """Largest number of attributes of one group or dataset; the header of a run has 20."""
@@ -50,7 +49,8 @@ LARGEST_CHUNK = 2**26
 """Bytes of a chunk, each of which is read as a whole."""
 
 EXPANDED, SMALL = 50, 2**26
-"""All datasets of a file may declare `SMALL` bytes plus so many for each byte of the file, as some are compressed."""
+"""All datasets of a file may declare `SMALL` bytes plus `EXPANDED` for each byte of the file, as some are
+compressed."""
 
 RUN_LINK = re.compile(r"/runs/([0-9a-f]+)")
 """Path of the links from the choices of a chart to their runs, as versions before this one wrote them."""
@@ -101,7 +101,7 @@ def require_structure(file: h5py.File) -> None:
 class Members(Mapping[str, "h5py.Group"]):
     """The groups in one of the `COLLECTIONS` of an open record, by name; each is searched when it is first used.
 
-    Without any where the record has no such collection.
+    Empty where the record has no such collection.
     """
 
     def __init__(self, file: h5py.File, collection: str) -> None:
@@ -129,7 +129,7 @@ class Members(Mapping[str, "h5py.Group"]):
 
 
 def run_of(group: h5py.Group) -> str:
-    """The digest under which the run of a choice of a chart is recorded; of earlier versions it is in a link."""
+    """The digest under which the run of a choice of a chart is recorded; in earlier versions it is in a link."""
     if "digest" in group.attrs:
         return str(group.attrs["digest"])
     link = group.get("run", getlink=True)

@@ -71,7 +71,7 @@ def end_in_words(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _fields_left_out(planned: Plan) -> list[str]:
-    """In words, the size of the snapshot that a large scene would have, in a run that keeps none."""
+    """In words, the size of a large scene's snapshot, in a run that keeps none."""
     size = FIELD_BYTES * planned.scene.count
     if planned.scene.case.output.snapshots > 0 or size < WORTH_SAYING:
         return []
@@ -79,7 +79,7 @@ def _fields_left_out(planned: Plan) -> list[str]:
 
 
 def _count_cracks(record: Path) -> dict[str, int]:
-    """Bonds that broke, in tension and in shear, those of the static stage included."""
+    """Bonds that broke, in tension and in shear, including those of the static stage."""
     with open_record(record) as file:
         shear = file["cracks/shear"][:]
     return {"tension": int(np.count_nonzero(~shear)), "shear": int(np.count_nonzero(shear))}

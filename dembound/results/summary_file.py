@@ -57,8 +57,8 @@ def _objects(found: Any) -> list[Summary]:
 def read_summary(folder: Path) -> dict[str, Any]:
     """The summary of a complete run in its folder.
 
-    Raises CaseError where there is none, RecordError as `read_json`, for an entry that is asked for and missing, and
-    for the summary of another run than that of the record beside it.
+    Raises CaseError where there is none, RecordError as `read_json`, for a requested entry that is missing, and
+    for a summary that belongs to another run than the record beside it.
     """
     path = folder / FILE
     if not path.is_file():

@@ -267,7 +267,7 @@ def look_from_above(plotter: "pyvista.Plotter", extent: np.ndarray) -> None:
 
 
 def label_count(length: float, share: float) -> int:
-    """How many evenly spaced numbers to ask for on an axis from 0 to its length (m), whose share of the longest it is.
+    """Number of evenly spaced labels on an axis from 0 to its length (m), whose share of the longest axis is given.
 
     As many as there is room for, or two more or less where that makes them round. Even, as an axis has its title at its
     middle.

@@ -2,8 +2,8 @@
 
 The format is version 2.0 of the "VTKHDF format specification" (docs.vtk.org), which VTK 9.4 and later read. Datasets
 have the values of all steps one after the other; tables in ``Steps`` have the time of every step and the rows at which
-its points, cells and arrays begin. What is equal to the step before, such as cells, radii and ids, is not written
-again: its row is the same.
+its points, cells and arrays begin. Values equal to those of the step before, such as cells, radii and ids, are not
+written again: their row is the same.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ PART_SIZES = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
 
 
 class TemporalFile:
-    """Writes meshes of one cell block into an open file; all of them have the same arrays.
+    """Writes meshes of one cell block, all with the same arrays, into an open file.
 
     Parameters
     ----------
@@ -129,5 +129,5 @@ def temporal_file(path: Path) -> Iterator[TemporalFile]:
 
 
 def _digest(values: np.ndarray) -> bytes:
-    """A digest of an array, which differs between arrays of one type and width that are not the same."""
+    """A hash of an array, which differs between different arrays of one type and width."""
     return blake2b(np.ascontiguousarray(values).data).digest()

@@ -33,11 +33,10 @@ UNEXPLAINED = 0.01
 """Share of the energy put in that may be taken by the length of the step, or be unaccounted for, without a warning."""
 
 QUIET = 0.01
-"""Share of the largest velocity known; a monitor with a smaller peak has not been reached by the motion.
+"""Share of the largest known velocity; a monitor with a smaller peak has not been reached by the motion.
 
-That is the largest peak of all monitors, or, if larger, the root mean square velocity of the whole body at any time of
-the ledger, which some of it exceeds.
-"""
+The largest known velocity is the largest peak of all monitors, or, if larger, the root mean square velocity of the
+whole body at any time of the ledger, which part of the body exceeds."""
 
 
 def still_moving(
@@ -82,7 +81,7 @@ def _mean_velocity(scene: Scene, file: h5py.File) -> float:
 
 
 def _why_moving(scene: Scene) -> str:
-    """What keeps waves in a body that is braked, in words: opposite sides that send them back, or too short a run."""
+    """Why waves stay in a braked body, in words: opposite sides that reflect them, or too short a run."""
     motion, kept = getattr(scene.case, "motion", None), []
     for axis, pair in (("x", ("left", "right")), ("y", ("bottom", "top"))):
         if motion is not None and axis in motion.held:

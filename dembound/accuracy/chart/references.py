@@ -51,11 +51,9 @@ def reference_of(
     """The reference of a chart for choices whose runs have these outcomes.
 
     requested : its name; None: the exact solution if the case has one, no hole, and `of` is not "disks". Else, if
-    choices
-    differ in their sides, the extended scene, if it is affordable. Else for bars the finer run, for disks the choice
-    with
-    the most nodes times steps. of : truth to which errors are relative; None: by `Judge.truth`, or "rock" for exact
-    solutions.
+    choices differ in their sides, the extended scene, if it is affordable. Else for bars the finer run, for disks the
+    choice with the most nodes times steps. of : truth to which errors are relative; None: by `Judge.truth`, or "rock"
+    for exact solutions.
 
     Raises CaseError if the requested reference is not possible, RunError if its run fails.
     """

@@ -65,8 +65,7 @@ class Rods:
         """Velocities (f, k) m/s and stresses (f, k) Pa, tension positive, at the places.
 
         forces : by side (f,) N to the right on ends. waves : by side (f,) m/s, the velocity of the wave that enters at
-        an end,
-        or the prescribed velocity of an end.
+        an end, or the prescribed velocity of an end.
         """
         own = [np.zeros((len(self.s), 1, 1), dtype=complex) for _ in self.cuts]
         force = np.zeros((len(self.s), len(self.cuts), 1), dtype=complex)

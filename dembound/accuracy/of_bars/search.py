@@ -137,8 +137,7 @@ class Motion:
         """Error by motion between the steps of the choice, where they are longer than those of the case, RMS over RMS.
 
         The difference between the exact motion and the cubic spline through its values at the steps: a pulse of a few
-        samples
-        may be exact at each of them, and missed between.
+        samples may be exact at each of them, and missed between.
         """
         if self.choice.step <= (1.0 + EQUAL) * self.exact.step:
             return 0.0

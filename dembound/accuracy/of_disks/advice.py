@@ -31,10 +31,8 @@ def advice_for_disks(
     """The errors of a case, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
     of : truth to which errors are relative; with "disks" the disks do not change. kept : keys that do not change.
-    longest :
-    CPU seconds that the steps of a choice may take; None: the default. A case that keeps the only bound in less time
-    than a
-    search takes is the choice itself.
+    longest : CPU seconds that the steps of a choice may take; None: the default. A case that keeps the only bound in
+    less time than a search takes is the choice itself.
 
     Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building and
     running the companions.

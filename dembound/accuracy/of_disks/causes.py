@@ -33,13 +33,13 @@ HELD = "how much earlier waves come back from disks that are held at their centr
 
 HELD_FACTOR = 1.6
 """Factor of errors of problem sides that hold disks: true errors were 0.54 to 1.47 times as large at 14 monitors of
-five scenes with a force, fixed sides and rollers (for a fixed side with 0.64 D in place of D/2 for P and 0.77 D for
-S waves)."""
+five scenes with a force, fixed sides and rollers (for a fixed side with 0.64 D in place of D/2 for P and 0.77 D
+for S waves)."""
 
 CONTACTS_FACTOR = 1.8
-"""Factor of time-step errors where contacts open or slide, in gravel under weight on a shaken base: true errors of 30
-velocities were 0.78 to 2.0 times as large as found by the given disks, one above 1.8, and 0.13 to 2.05 times as
-large as found by larger disks, two above 1.8 (lattices and random packings, friction of 0.2 and 0.6)."""
+"""Factor of time-step errors where contacts open or slide, in gravel under weight on a shaken base: true errors of
+30 velocities were 0.78 to 2.0 times as large as found by the given disks, one above 1.8, and 0.13 to 2.05 times
+as large as found by larger disks, two above 1.8 (lattices and random packings, friction of 0.2 and 0.6)."""
 
 
 def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:

@@ -49,8 +49,7 @@ class Coarser:
     """A case with larger particles.
 
     weight : ratio of the error of its sides in the case to the error added by whole cells at the sides. The latter is
-    the
-    reflection by excess mass, out of phase, which k times larger cells have k times; 0 where it need not be known.
+    the reflection by excess mass, out of phase, which k times larger cells have k times; 0 where it need not be known.
     """
 
     case: DiskCase

@@ -171,10 +171,8 @@ class Companions:
         """Error (k, 2) by monitors and loads that are not at the requested places, by monitor and quantity.
 
         Monitors and loads act at the nearest disks. Of several loads, of whose motion only the sum is known, the one
-        with the
-        largest error counts. A load at another place also has other distances from surfaces, from which its waves
-        return
-        earlier or later.
+        with the largest error counts. A load at another place also has other distances from surfaces, from which its
+        waves return earlier or later.
         """
         there = self._places(scene)
         asked = {monitor.name: monitor.position - scene.monitored[monitor.name] for monitor in self.case.monitor}
@@ -209,12 +207,9 @@ class Companions:
         Companions are lattices, which hold disks of the diameter D' at D'/2. One more row of them puts these as far
         outside of the plane, so that the difference v(D'/2) - v(-D'/2) is the change over D' about the plane. Where
         motion along the side is free, mass begins at the plane and must stay there: a mirror plane holds the same
-        components
-        at the plane, and the difference is the change over D'/2. To the first order the error is s over that distance
-        times
-        the difference, with the mean s of P and S waves, of which motion is the sum: on a lattice D/2 and 0.77 D at a
-        fixed
-        side.
+        components at the plane, and the difference is the change over D'/2. To the first order the error is s over that
+        distance times the difference, with the mean s of P and S waves, of which motion is the sum: on a lattice D/2
+        and 0.77 D at a fixed side.
         """
         places, table = self._places(scene), self.case.side(side)
         far, cell = self._motion(self.far, places), self._lattice.ground.brick.mean_diameter
@@ -232,10 +227,8 @@ class Companions:
 
         A contact opens, slides or closes up to a step late, and others follow, so errors are random and grow with the
         first power of the step: the difference to a run with half the step has √(1 + 1/4) times their RMS. The given
-        case is
-        run with both steps if that is affordable, else its companion, whose error scales with the step over its limit,
-        which
-        is proportional to the diameter. Empty where the law remains elastic.
+        case is run with both steps if that is affordable, else its companion, whose error scales with the step over its
+        limit, which is proportional to the diameter. Empty where the law remains elastic.
         """
         is_own = OFTEN * self.scene.count * self.case.run.duration / self.time_step <= self.most
         case, step = (self.case, self.time_step) if is_own else (self._own, self.step)

@@ -84,12 +84,9 @@ class Formulas:
         """Whether contacts beside a continuum may be open, at rest or under a wave.
 
         Without stress disks just touch. A static stage leaves the contacts of a lattice closed; in a random packing it
-        opens
-        some: in pattern B 10 % under a locked-in stress that has relaxed upwards, where waves 40 m long in a box of 15
-        m have
-        an error of 13 %, but 1 % with contacts closed for good, or with a tenth of their stiffness; 1.9 % under weight,
-        and
-        67 % without stress.
+        opens some: in pattern B 10 % under a locked-in stress that has relaxed upwards, where waves 40 m long in a box
+        of 15 m have an error of 13 %, but 1 % with contacts closed for good, or with a tenth of their stiffness; 1.9 %
+        under weight, and 67 % without stress.
         """
         case = self.scene.case
         at_rest = case.static is not None and case.packing.is_lattice
@@ -138,12 +135,9 @@ class Formulas:
         """Error of a driven side that withholds part of its wave, and reflects waves that return to it.
 
         A side that reflects R lets 1 − R of its wave in. Its reflection is the recorded motion again, delayed by the
-        way to the
-        far side, with the sign of that side's reflection, if that side is a free surface or otherwise reflects
-        everything;
-        else nothing that counts comes back. The out-of-phase part of what is withheld is a shift of the entry time,
-        which is
-        no error (entry.py).
+        way to the far side, with the sign of that side's reflection, if that side is a free surface or otherwise
+        reflects everything; else nothing that counts comes back. The out-of-phase part of what is withheld is a shift
+        of the entry time, which is no error (entry.py).
         """
         axis = normal_axis(side)
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}

@@ -59,8 +59,7 @@ class ElasticTwin:
     """A case under the elastic law.
 
     planned : its plan. factor : multiple of its waves up to which the law holds with disks of `diameter` (m); infinite
-    if
-    under any. stress : at rest, Pa, that rotates with the disks.
+    if under any. stress : at rest, Pa, that rotates with the disks.
     """
 
     case: DiskCase

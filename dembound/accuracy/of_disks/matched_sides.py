@@ -50,8 +50,7 @@ def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Ref
     """Reflection of P and S waves along the normal by a side with dashpots, without its springs.
 
     Waves that cannot run are left out; where the packing has no such wave at the frequencies of the case, the
-    reflection
-    of its homogenised stiffness is given.
+    reflection of its homogenised stiffness is given.
     """
     case = scene.case
     table = case.side(side).dashpots_alone()

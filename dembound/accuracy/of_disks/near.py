@@ -32,29 +32,29 @@ by 4 to 40 % of the motion there, whatever the force: that is the cause `packing
 
 RANDOM = 0.75
 """Error of the motion by a pressure in a hole of any shape in a random packing, times the disks along its smaller
-half: compared with exact solutions 0.41 to 2.1, the median 0.74, for five seeds each of patterns B and C with 4, 6
-and 10 disks along a radius, at 1 to 2.5 radii (benchmarks/walls.py). Walls there are never between disks."""
+half: compared with exact solutions 0.41 to 2.1, the median 0.74, for five seeds each of patterns B and C with 4,
+6 and 10 disks along a radius, at 1 to 2.5 radii (benchmarks/walls.py). Walls there are never between disks."""
 
 OF_WAVES = 1.7
 """Error beside a hole under waves that pass it, over kL times the error under a pressure in it; kL is the RMS wave
-number of the slowest waves in velocity or displacement times the smaller half of the hole, as scattered motion, and
-its error, are that part of the motion. Circles of 5 and 8 disks along the radius in lattices under SV waves, at 1.5
-radii: 1.3 to 2.4 of velocities with kL of 0.09 to 1.25, 1.6 to 2.6 of displacements with kL of 0.04 to 0.26; 1.2
-times that at the wall (1.4 times with kL of 1.25), 0.7 at 2.5 radii (benchmarks/walls.py)."""
+number of the slowest waves in velocity or displacement times the smaller half of the hole, as scattered motion,
+and its error, are that part of the motion. Circles of 5 and 8 disks along the radius in lattices under SV waves,
+at 1.5 radii: 1.3 to 2.4 of velocities with kL of 0.09 to 1.25, 1.6 to 2.6 of displacements with kL of 0.04 to
+0.26; 1.2 times that at the wall (1.4 times with kL of 1.25), 0.7 at 2.5 radii (benchmarks/walls.py)."""
 
 BETWEEN = 0.65
 """Factor for rectangles in lattices, whose walls are between disks, relative to other holes, and the largest kL:
-compared with disks three times smaller, at 1.5 radii, velocities have 0.9 to 1.3 of kL where that is below 0.4, at
-most 0.7 up to 1.9, displacements 1.2 to 1.7 of kL from 0.04 to 0.33."""
+compared with disks three times smaller, at 1.5 radii, velocities have 0.9 to 1.3 of kL where that is below 0.4,
+at most 0.7 up to 1.9, displacements 1.2 to 1.7 of kL from 0.04 to 0.33."""
 
 LONGEST = 1.5
 """Largest kL that counts, as of waves that jump: shorter waves were not measured."""
 
 WALL_FACTOR = 2.0
-"""95 % of true errors beside holes are at most this factor times `wall_errors`: of means over 12 directions 1.4 times
-in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), under waves
-2.0 times beside circles (137, at most 2.7) and 1.8 beside squares in lattices (89, at most 2.3), and 1.3 times in
-random packings (203, at most 2.0; benchmarks/walls.py). Single directions scatter more."""
+"""95 % of true errors beside holes are at most this factor times `wall_errors`: of means over 12 directions 1.4
+times in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), under
+waves 2.0 times beside circles (137, at most 2.7) and 1.8 beside squares in lattices (89, at most 2.3), and 1.3
+times in random packings (203, at most 2.0; benchmarks/walls.py). Single directions scatter more."""
 
 
 def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:

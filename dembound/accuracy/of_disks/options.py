@@ -59,8 +59,7 @@ class DiskOption:
     """A choice before it is built.
 
     case : with sides in place, in the `arrangement` of this name; `wider` : whether they are to be moved outwards.
-    factor,
-    shorter : its diameter and its time step over those given. cost : counted CPU seconds of the steps.
+    factor, shorter : its diameter and its time step over those given. cost : counted CPU seconds of the steps.
     """
 
     case: DiskCase
@@ -83,8 +82,7 @@ class Built:
     """A choice that can run.
 
     case : with its sides moved outwards if wider. planned : with sides in place. cost : CPU time of the steps by this
-    plan,
-    s.
+    plan, s.
     """
 
     option: DiskOption

@@ -43,10 +43,9 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
 def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
     """Interpolation weights (k,) at a place (2,) m of the motion of a patch of disks (k, 2) m.
 
-    Exact for quadratic motion: Lagrange's polynomials through three places along x, times those along y, or
-    one of them where a patch is one disk wide or high. Beyond `FARTHEST` cells they are constant, as in a continuum
-    beyond
-    the disks.
+    Exact for quadratic motion: Lagrange's polynomials through three places along x, times those along y, or one of them
+    where a patch is one disk wide or high. Beyond `FARTHEST` cells they are constant, as in a continuum beyond the
+    disks.
     """
     middle = patch[len(patch) // 2]
     weights = []

@@ -98,21 +98,14 @@ class Search:
     """The search for a choice.
 
     planned : the case; own_cost : CPU time (s) of its steps. twin : the case under the elastic law, if that replaces
-    its
-    own. longest : CPU time (s) of steps that a choice may have; None: by `COSTLIEST` and `AFFORDABLE`. tried : number
-    of
-    choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut : whether
-    choices were left out for that. waiting : queue by cost: diameters, their choices, and built choices that cost more
-    than
-    others may. of_sides : by arrangement and distance the largest error of its sides. of_disks : by factors of diameter
-    and
-    step, with a continuum and without, the smallest error of disks. of_given_disks : the error of the given disks.
-    known :
-    choices whose error was found for another bound, by the digest of their case. made : built choices, and None for
-    those
-    that cannot run, by the text of their case and how much farther away their sides are. counted : factors of the
-    diameter
-    for which the time steps of continua have been found.
+    its own. longest : CPU time (s) of steps that a choice may have; None: by `COSTLIEST` and `AFFORDABLE`. tried :
+    number of choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut :
+    whether choices were left out for that. waiting : queue by cost: diameters, their choices, and built choices that
+    cost more than others may. of_sides : by arrangement and distance the largest error of its sides. of_disks : by
+    factors of diameter and step, with a continuum and without, the smallest error of disks. of_given_disks : the error
+    of the given disks. known : choices whose error was found for another bound, by the digest of their case. made :
+    built choices, and None for those that cannot run, by the text of their case and how much farther away their sides
+    are. counted : factors of the diameter for which the time steps of continua have been found.
     """
 
     companions: Companions
@@ -338,8 +331,7 @@ class Search:
         """A choice with its error; empty if a companion of it cannot run.
 
         left : list to which the choice is added, without running companions, if the error of its disks is too large;
-        None:
-        companions are always run.
+        None: companions are always run.
         """
         if (known := self.known.get(key := digest(built.case))) is not None:
             return known

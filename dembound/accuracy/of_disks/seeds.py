@@ -25,8 +25,7 @@ def cause_of_packing(case: DiskCase, motions: Motions, seeds: int) -> Causes:
     """The scatter of the monitors' motion between random packings, from runs with several seeds.
 
     The difference of one motion from the mean of n, times √(n/(n − 1)), has the size of the error of a packing. motions
-    :
-    by monitor, at the times at which it is found. Raises CaseError for a packing without a seed, and the errors of
+    : by monitor, at the times at which it is found. Raises CaseError for a packing without a seed, and the errors of
     runs.
     """
     runs = [Runner().run(each) for each in _reseeded(case, seeds)]

@@ -36,8 +36,7 @@ class ElementSizes(NamedTuple):
     From a body that is periodic and narrow, no wider than `NARROW` elements or half of the shortest wave, waves run
     straight away only: one element is as wide as it, and ties have its mean motion. If the body is narrower than the
     smallest useful element, the continuum is as wide as this, and less thick in proportion. Such a continuum is small,
-    so
-    that its elements may be up to half as high.
+    so that its elements may be up to half as high.
 
     settings : of the continuum. box : (2,) m, size of the body in the continuum. element : largest width and height, m.
     narrow : along x and y.
@@ -80,8 +79,7 @@ class Level(NamedTuple):
     """The ground beyond a side that is lower than the disks.
 
     floor : height y of the hole's floor, m. height : floor with tolerance for rounding, m: disks beyond with centres
-    below
-    it exist. mass_end, surface : heights at which the mass of the packing and its continuum end, m.
+    below it exist. mass_end, surface : heights at which the mass of the packing and its continuum end, m.
     """
 
     floor: float
@@ -106,10 +104,9 @@ class Rim(NamedTuple):
     Beyond tied sides it begins where the mass of the packing ends (`Brick.mass_offset`). Free edges lie deeper than
     those of the body by the depth of the packing's skin there, and bear the mass beyond them.
 
-    box : left, bottom, right and top of the cut-out for the body, m. surface : height of the free surface above a
-    body in the ground, m; None: the body reaches up to the ground's end. skins : depth (m) of free edges below those of
-    the packing, by side. massless : depth of free edges below the end of the mass, by side. levels : lower ground
-    beyond
+    box : left, bottom, right and top of the cut-out for the body, m. surface : height of the free surface above a body
+    in the ground, m; None: the body reaches up to the ground's end. skins : depth (m) of free edges below those of the
+    packing, by side. massless : depth of free edges below the end of the mass, by side. levels : lower ground beyond
     left and right sides.
     """
 

@@ -42,9 +42,8 @@ class Surroundings:
     bonds to it, by the numbers of disks in the scene. first : number of its first node in the scene. box : left,
     bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : depth of free
     edges below those of the packing, m, by side. levels : lower ground beyond left and right sides. twin : (m,) for
-    each
-    disk its twin in the free-field column, relative to which it is tied; None: tied by its own motion. surface_mass :
-    kg/m², of the skin on its upper edge.
+    each disk its twin in the free-field column, relative to which it is tied; None: tied by its own motion.
+    surface_mass : kg/m², of the skin on its upper edge.
     """
 
     sides: tuple[str, ...]

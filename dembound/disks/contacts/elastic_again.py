@@ -44,10 +44,8 @@ def settled_slip(pairs: ContactList, displacement: np.ndarray) -> np.ndarray | s
     """The slip, in the places of the pairs' `arrays`, with which the elastic law holds again at displacements (3, n).
 
     Returns the reason in words where it does not hold: a contact that was closed at the start is open or slides, one
-    that
-    was open is closed, or a bond is broken. Where shear is counted along the path, its difference from the shear of
-    small
-    displacements becomes slip.
+    that was open is closed, or a bond is broken. Where shear is counted along the path, its difference from the shear
+    of small displacements becomes slip.
     """
     state, own = pairs.of("state"), pairs.of("contact_type") < 2 * len(pairs.ground.brick.pairs)
     if ((state == TENSION) | (state == SHEAR)).any():

@@ -13,8 +13,7 @@ def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> 
     begin : number of the assembly's first particle in the scene.
 
     The rows of the table are in the order in which the particles use them, so that a loop over particles reads the
-    table
-    in order as well, and it stays in the cache of the core.
+    table in order as well, and it stays in the cache of the core.
     """
     constants, row_of = elastic_constants(ground)
     i, j = assembly.pairs.T

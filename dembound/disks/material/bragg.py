@@ -37,8 +37,8 @@ LEFT_OUT = 1e-4
 """Share of the energy above the highest frequency considered; copies reflect some per cent of it."""
 
 MOST_DISKS = 5_000
-"""Most disks of a brick for which this is computed: each coupling takes a solve for three unknowns per disk, some 0.3
-s."""
+"""Most disks of a brick for which this is computed: each coupling takes a solve for three unknowns per disk, some
+0.3 s."""
 
 
 class Coupling(NamedTuple):

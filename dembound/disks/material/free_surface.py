@@ -23,8 +23,8 @@ from dembound.packings.tiling import tile
 from dembound.table import Box
 
 SLENDER = 2.0
-"""Least height of the strip over its width, so that its two surfaces do not interact: effects of a surface decay with
-the depth y at least as exp(−2πy/width)."""
+"""Least height of the strip over its width, so that its two surfaces do not interact: effects of a surface decay
+with the depth y at least as exp(−2πy/width)."""
 
 FAINT = 1e-9
 """Springs against single motions, see `Network.relaxed`: without bonds a disk at a surface may have one contact."""

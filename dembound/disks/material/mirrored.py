@@ -15,8 +15,7 @@ def with_images(ground: PackedMaterial, axis: int, diameters: np.ndarray) -> Sti
 
     axis : of the side's normal. The distance of a disk from its image is that of equal disks straight across the side
     between bricks side by side, so that a lattice continues with its own contacts, touching or across a gap. Where a
-    brick
-    has no such disks, disks touch their images.
+    brick has no such disks, disks touch their images.
     """
     sizes, which = np.unique(diameters, return_inverse=True)
     distances = np.array([_distance(ground.brick, axis, size) for size in sizes.tolist()])[which]

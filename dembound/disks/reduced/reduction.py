@@ -47,8 +47,7 @@ def identical_row(scene: DiskScene) -> OneRow | None:
     """One of the identical rows of a scene, along the axis with fewer rows if both have some; None if it has none.
 
     Only under the elastic law, without a load factor (the least of all contacts), a static stage, a free-field column
-    and a
-    continuum.
+    and a continuum.
     """
     case = scene.case
     apart = scene.has_history or case.output.load_factor or case.static is not None

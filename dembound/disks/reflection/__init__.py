@@ -41,13 +41,10 @@ class Measured:
     """Reflections of a side of a case.
 
     side, type : of the side. found : the reflections. matched : reflections with matched factors; None for sides
-    without
-    factors, or with matched ones. continuum : reflections, with the number of nodes, if the side and all absorbing
-    sides
-    were of type "outside"; None where they cannot be, and beside a narrow periodic body only for the angle 0. arrivals
-    :
-    waves that reach the side. gaps : Hz, the lowest frequency at which copies of the brick reflect waves of a type
-    themselves, c/2L for bricks of length L along the normal.
+    without factors, or with matched ones. continuum : reflections, with the number of nodes, if the side and all
+    absorbing sides were of type "outside"; None where they cannot be, and beside a narrow periodic body only for the
+    angle 0. arrivals : waves that reach the side. gaps : Hz, the lowest frequency at which copies of the brick reflect
+    waves of a type themselves, c/2L for bricks of length L along the normal.
     """
 
     side: str

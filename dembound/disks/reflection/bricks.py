@@ -42,10 +42,9 @@ class BrickInRow:
     Attributes
     ----------
     ground, side : the packing, and the side at the end of the row. copies : number of copies of a smaller brick along
-    the
-    side of which the brick consists, and from whose waves its waves are found. disks : (p,) the brick's disks at its
-    interface inwards. components, places : of the interface's degrees of freedom (count,) 0 x, 1 y, 2 rotation, and the
-    centres (count, 2) m of their disks. condensed : to this interface and the next brick's.
+    the side of which the brick consists, and from whose waves its waves are found. disks : (p,) the brick's disks at
+    its interface inwards. components, places : of the interface's degrees of freedom (count,) 0 x, 1 y, 2 rotation, and
+    the centres (count, 2) m of their disks. condensed : to this interface and the next brick's.
     """
 
     def __init__(self, ground: PackedMaterial, side: str, copies: int = 1) -> None:

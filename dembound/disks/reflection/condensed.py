@@ -93,9 +93,8 @@ class Condensed:
     body, interface : as given.
 
     A contact across a periodic side goes to the image of a disk, whose motion is the disk's times a phase. First the
-    body
-    is condensed to the interface, the disks that have images, and these; then, for every wave along the interface, to
-    the interface.
+    body is condensed to the interface, the disks that have images, and these; then, for every wave along the interface,
+    to the interface.
     """
 
     def __init__(self, body: Body, interface: np.ndarray) -> None:

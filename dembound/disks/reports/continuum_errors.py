@@ -45,8 +45,9 @@ FLATTEST = 0.15
 """Least cosine of the angle at which waves meet a side that counts."""
 
 SURFACE, SHALLOW = 1.6, 0.125
-"""Factor of errors by elements, ties and bricks on a free surface beside a load on it, where Rayleigh waves run, which
-are slower and have more of the high frequencies; and depth over the mean length of waves down to which it applies."""
+"""Factor of errors by elements, ties and bricks on a free surface beside a load on it, where Rayleigh waves run,
+which are slower and have more of the high frequencies; and depth over the mean length of waves down to which it
+applies."""
 
 KEPT = 0.45
 """Part of R0 that layers return in all, as waves reach them at all angles."""
@@ -60,25 +61,24 @@ SCATTERED = 0.5
 BRICKS = 0.06
 """Waves that random bricks would scatter to a place if they went on beyond the disks, over k²LD (`unevenness`). The
 largest true errors of velocities and displacements in 25 boxes were 0.3 to 2.4 times this with all other parts,
-most of which were small: forces in the ground and on it, blasts, a tunnel under waves; patterns B and C, 15 seeds,
-bricks of 8 to 16 D. Under an oblique wave velocities beside a pipe had 5 times as much."""
+most of which were small: forces in the ground and on it, blasts, a tunnel under waves; patterns B and C, 15
+seeds, bricks of 8 to 16 D. Under an oblique wave velocities beside a pipe had 5 times as much."""
 
 UNEVEN = 0.002
 """Error of displacements round a load in a random packing, whose stiffness varies from place to place."""
 
 CONTINUUM_FACTOR = 2.2
-"""95 % of the true errors are at most this factor times the computed ones (benchmarks/continuum_errors.py): 2.0 times
-for 455 rows with 0.01 % and more, 2.1 times for the 296 with 0.1 % and more. The largest are 3.4 times as large,
-beside a hole in pattern C, else 2.6. Errors of displacements below 0.01 % under waves are overestimated, up to a
-hundred times."""
+"""95 % of the true errors are at most this factor times the computed ones (benchmarks/continuum_errors.py): 2.0
+times for 455 rows with 0.01 % and more, 2.1 times for the 296 with 0.1 % and more. The largest are 3.4 times as
+large, beside a hole in pattern C, else 2.6. Errors of displacements below 0.01 % under waves are overestimated,
+up to a hundred times."""
 
 
 def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[str, tuple[float, float]] | None:
     """Errors of velocities and of displacements by a continuum, RMS over RMS, at places (2,) m by name.
 
     None without a continuum, and for waves that jump. Displacements have longer waves than velocities, of which
-    elements
-    and ties return less; waves longer than the run count as one length.
+    elements and ties return less; waves longer than the run count as one length.
     """
     outside, signals = scene.outside, signals_of(scene.case)
     if outside is None or not signals or any(choice.jumps(signal) for signal in signals):

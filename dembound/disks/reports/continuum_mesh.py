@@ -63,8 +63,7 @@ class Across(NamedTuple):
     """Nodes and cells of a periodic continuum across its period.
 
     node : (k,) nodes that are repeated. place : (k, 2) m, their places one period on. cell : (c, 4) corners of the
-    cells
-    between the last nodes and the repeated ones, which are numbered after all nodes.
+    cells between the last nodes and the repeated ones, which are numbered after all nodes.
     """
 
     node: np.ndarray

@@ -42,10 +42,8 @@ def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, An
     """The static stage: steps, force ratio, mean reaction of supports and tractions and mean residual (N), stress (Pa).
 
     Also whether it ended under the elastic law, the deviation of the stress in blocks from the requested one, and the
-    same
-    entries for the free-field column, if there is one, and before an excavation, if there was one. asked : target
-    stress,
-    Pa.
+    same entries for the free-field column, if there is one, and before an excavation, if there was one. asked : target
+    stress, Pa.
     """
     return {
         "steps": settled.steps,

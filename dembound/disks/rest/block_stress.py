@@ -117,10 +117,8 @@ class Uniformity:
     Attributes
     ----------
     block : (2,) m, width and height of a block. deviation : the largest of a component in a block not near a hole;
-    place :
-    (2,) m, the middle of this block. packing : the largest in the elastic packing without sides, an inherent property
-    of a
-    random one. near_holes : the largest near holes; nan without any.
+    place : (2,) m, the middle of this block. packing : the largest in the elastic packing without sides, an inherent
+    property of a random one. near_holes : the largest near holes; nan without any.
     """
 
     block: np.ndarray

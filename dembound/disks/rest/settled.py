@@ -32,8 +32,7 @@ class Settled:
     deviation of blocks from a target stress; None without one.
     cracks : the bonds that broke during the stage.
     before : results before an excavation, if there was one, with the numbering of particles before it. column : results
-    of
-    the free-field column settled by itself, if there is one.
+    of the free-field column settled by itself, if there is one.
     """
 
     start: Start

@@ -35,9 +35,8 @@ class DiskSystem(RecordedDisks):
     ----------
     forces : computes forces inside the scene at rest. balance : the forces that balance those in a settled body; None
     for a body as built or settling. near_ties : contacts outside the elastic range near ties to a continuum; None
-    without
-    one, or without a history. is_elastic_again : whether the elastic law is used again after a static stage that left
-    it; refused : why it is not, if requested.
+    without one, or without a history. is_elastic_again : whether the elastic law is used again after a static stage
+    that left it; refused : why it is not, if requested.
     """
 
     def __init__(

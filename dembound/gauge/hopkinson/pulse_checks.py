@@ -1,6 +1,6 @@
-"""Whether the pulses of a split Hopkinson test fit each other: in their impulses, and in their travel time.
+"""Checks that the pulses of a split Hopkinson test are consistent in their impulses and in their travel time.
 
-The impulse of both faces, ∫(F_1 − F_2) dt, is what a specimen takes up that moves: m v. A gauge whose baseline jumps,
+The impulse of both faces, ∫(F_1 − F_2) dt, is the momentum m v of the moving specimen. A gauge whose baseline jumps,
 whose gain is wrong or whose record lacks samples makes it larger, or negative. The reflected pulse begins 2d_i/c after
 the incident one at their gauge.
 """
@@ -29,25 +29,25 @@ NOISES = 8.0
 """Least of these levels in standard deviations of noise."""
 
 DIFFERING = 0.01
-"""Relative difference of wave speeds from which a warning is due, if it is beyond the error of that measured, too."""
+"""Relative difference of wave speeds that causes a warning, if it also exceeds the error of the measured one."""
 
 
 CAUSES = (
     "look for a baseline that jumps or drifts, gains or times of the gauges that differ, or a signal that is cut",
     ", or look for lost samples",
 )
-"""What to look for in measured signals where impulses, or times, do not fit."""
+"""Possible causes of inconsistent impulses or times in measured signals."""
 
 OF_A_RUN = "check the options for bars, gauges and windows: the signals are those of a run"
-"""What may be wrong where the signals are those of a run."""
+"""Possible causes of inconsistent impulses or times where the signals are those of a run."""
 
 
 def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate | None:
     """Wave speed by the onsets of the incident and the reflected pulse at their gauge, 2d_i/c apart.
 
-    As both have other shapes, the time between them is that at some low levels, extrapolated to none with the root of
-    the level, as a pulse that begins with a bend has it. The error is the difference of this from the lowest level, and
-    half a sample. None where the pulses overlap, or noise hides the onsets.
+    As both have other shapes, the time between them is taken at some low levels and extrapolated to level zero in the
+    root of the level, as for a pulse that begins with a bend. The error is the difference from the time at the lowest
+    level, and half a sample. None where the pulses overlap, or noise hides the onsets.
     """
     (first, last), (_, end), _ = found_windows(signals, setup, windows)
     time, values = signals.time, denoised(signals.incident)
@@ -72,7 +72,7 @@ def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate |
 
 
 def doubts_of_bars(setup: Setup, density: float) -> Iterator[str]:
-    """What is doubtful about the bars, of this density, kg/m³: a modulus that is not ρc², nothing left of a wave."""
+    """Doubts about bars of this density, kg/m³: a modulus other than ρc², an attenuation that leaves no wave."""
     yield from differing_modulus(setup.modulus, density, setup.bar.speed)
     way = setup.incident_gauge + setup.transmitted_gauge
     yield from fading("--attenuation", setup.bar.attenuation * way, way)
@@ -81,7 +81,7 @@ def doubts_of_bars(setup: Setup, density: float) -> Iterator[str]:
 def doubts_of_pulses(
     signals: Signals, faces: Faces, setup: Setup, windows: Windows, found: Specimen, *, measured: bool = True
 ) -> Iterator[str]:
-    """What is doubtful about pulses that do not fit each other; measured : False for the signals of a run."""
+    """Doubts about inconsistent pulses; measured : False for the signals of a run."""
     causes, lost = CAUSES if measured else (OF_A_RUN, "")
     off = max((unbalanced(faces, setup, found, end) for end in (found.largest + 1, len(faces.time))), key=abs)
     if abs(off) > BALANCED:
@@ -100,9 +100,10 @@ def doubts_of_pulses(
 
 
 def _onsets(time: np.ndarray, sizes: np.ndarray, levels: np.ndarray) -> np.ndarray | None:
-    """Times (n,) at which a pulse (k,) begins to exceed shares (n,) of its largest value for good; None if not.
+    """Times (n,) at which a pulse (k,) begins to exceed shares (n,) of its largest value for good; None if it does not.
 
-    It is risen at half of that, for the first time: a reflected pulse may have its largest value as the load ends.
+    The rise ends where half of the largest value is first reached: a reflected pulse may have its largest value as the
+    load ends.
     """
     largest = float(sizes.max(initial=0.0))
     risen = int(np.argmax(sizes >= 0.5 * largest))

@@ -1,4 +1,4 @@
-"""A split Hopkinson test in the record of a run: its own bars, gauges and specimen beside those that options give."""
+"""A split Hopkinson test in the record of a run: its bars, gauges and specimen compared with those in options."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -39,7 +39,7 @@ OF_BARS = {
 
 
 def contradictions(sources: Sequence[tuple[Path, str | None]], given: Mapping[str, float | None]) -> Iterator[str]:
-    """Options, by name, whose values are not those of the results that they are used for, a line each.
+    """A line for each option, by name, whose value differs from that of the results that it is used for.
 
     sources : files with the monitors of the incident bar, of the transmission bar, and of a second gauge if there is
     one. Text files are left out; positions and specimen are known where all monitors are of one record.
@@ -69,7 +69,7 @@ def _of_bar(monitor: h5py.Group) -> Iterator[tuple[str, float]]:
 
 
 def _of_test(file: h5py.File, names: Sequence[str]) -> Iterator[tuple[str, float]]:
-    """Options with the values of the recorded test, if one range lies between those of both gauges."""
+    """Options with the values of the recorded test, if one range lies between the ranges of both gauges."""
     monitors = [file[f"histories/{name}"] for name in names]
     if "case" not in file.attrs or not all("range" in each.attrs for each in monitors):
         return

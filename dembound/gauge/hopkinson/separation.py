@@ -42,9 +42,9 @@ class LongBar:
 
 
 def moved(time: np.ndarray, values: np.ndarray, distance: float, bar: LongBar) -> np.ndarray:
-    """A wave (k,) as it is after a distance, at the same times; before it, for a negative distance.
+    """A wave (k,) after travelling a distance, at the same times; before, for a negative distance.
 
-    time : (k,) s, evenly spaced. distance : m, along the wave's way. Nothing comes before the record.
+    time : (k,) s, evenly spaced. distance : m, in the wave's direction. Before the record the wave is zero.
     """
     frequency, damping, grown = _axis(time)
     spectrum = np.fft.rfft(values / grown, PADDING * len(time))

@@ -1,15 +1,15 @@
-"""How well the slope of stress over strain of a specimen is known.
+"""Error of the slope of stress over strain of a specimen.
 
 - Inertia. The mean of the forces on both faces is not that in the middle: with the velocity linear along the specimen,
   its stress differs from the mean over its length by ρL_s² (d²e/dt²)/12 (Gorham 1989), which a fast rise adds to the
   slope. ρ follows from the impulses themselves, ∫(F_1 − F_2) dt = ρ L_s A_s (v_1 + v_2)/2.
-- Time. Each pulse is known to half a sample either way, evenly: the standard error of the reflected and of the
+- Time. Each pulse is known to half a sample either way, uniformly: the standard error of the reflected and of the
   transmitted one against the incident one is that of the slopes with them half a sample earlier and later, over √3.
 - Line. The standard error by the deviations from the line, of which as many count as there are correlation times
   within it: of the specimen's reverberations, and of a law that bends.
-- Noise. The scatter of slopes from the same pulses with the same noise once more, as drawn some tens of times; as the
-  strain is an integral, noise makes it drift. A digitiser rounds once more, too, between levels anywhere.
-- Balance. The impulses of both faces differ by more than inertia makes: the strain this adds at the largest stress.
+- Noise. The scatter of slopes from the same pulses with noise added again, drawn some tens of times; as the
+  strain is an integral, noise makes it drift. A digitiser rounds again, too, between random levels.
+- Balance. The impulses of both faces differ by more than inertia explains: the strain this adds at the largest stress.
 """
 
 import math
@@ -40,7 +40,7 @@ WIDE = 2.0
 
 @dataclass(frozen=True)
 class SlopeError:
-    """What is uncertain about a slope, Pa: what inertia has added, and standard errors of the other parts."""
+    """Errors of a slope, Pa: the contribution of inertia, and standard errors of the other parts."""
 
     inertia: float
     time: float
@@ -55,7 +55,7 @@ class SlopeError:
 
 
 def slope_error(faces: Faces, setup: Setup, tolerance: float, found: Specimen) -> SlopeError | None:
-    """The uncertainty of `found.slope`; None where there is no slope. Other arguments as those of `specimen`."""
+    """The uncertainty of `found.slope`; None where there is no slope. Other arguments as of `specimen`."""
     if found.equilibrium is None or np.isnan(found.slope):
         return None
     there = slice(found.equilibrium[0], found.largest + 1)

@@ -27,13 +27,13 @@ LOADED = 0.1
 
 @dataclass(frozen=True)
 class Specimen:
-    """What has happened to a specimen.
+    """Stresses, strains and rates of a specimen.
 
     time : (n,) s from when the pulse has reached it; front, back : stresses F_1/A_s and F_2/A_s (n,) Pa; rate : (n,)
     1/s by three waves, one_wave_rate by the reflected one; strain, one_wave_strain : their integrals (n,); ratio :
     F_1/F_2 (n,), smoothed, nan below a tenth of the largest force; equilibrium : (first, behind last) sample of the
     longest time in equilibrium, None without any; slope : of stress over strain in equilibrium until the
-    `largest` stress there, that of a sample, Pa, nan where it cannot be fitted.
+    `largest` stress there, a single sample, Pa, nan where it cannot be fitted.
     """
 
     time: np.ndarray

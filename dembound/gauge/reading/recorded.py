@@ -21,9 +21,9 @@ class BarMetadata:
     """Data of the bar in the record of a run.
 
     speed : of waves, m/s; attenuation : 1/m; ends : types of the loaded end and of the other end; broken : time at
-    which the first bond broke, s, infinite for an unbroken bar; strength : that of the case at the slowest and at the
-    fastest strain rate, Pa, infinite for an unbreakable bar; first_crack : place of that bond, m from the loaded end.
-    Both are None if the record does not have them.
+    which the first bond broke, s, infinite for an unbroken bar; strength : of the case at the slowest and at the
+    fastest strain rate, Pa, infinite for an unbreakable bar; first_crack : place of the first broken bond, m from the
+    loaded end. The last two are None if the record does not have them.
     """
 
     speed: float
@@ -53,7 +53,7 @@ def require_for_results(
 ) -> None:
     """Raise CaseError for options that have no meaning for the record of a run: its stresses are in Pa, its times in s.
 
-    reading : how a text file would be read, without its column, which may be a monitor's name. column : that of a text
+    reading : how a text file would be read, without its column, which may be a monitor's name. column : of a text
     file. modulus : E, where it is not needed.
     """
     given = {

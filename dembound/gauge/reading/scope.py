@@ -17,7 +17,7 @@ SIGNS = str.maketrans({"−": "-", "∞": "inf"})
 """Characters of numbers that float() does not read."""
 
 UNIT_IN_NAME = re.compile(r"^(.*?)\s*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
-"""A name with its unit in brackets, or a unit in brackets alone."""
+"""A name with its unit in brackets, or only a unit in brackets."""
 
 UNIT = r"[(\[][^()\[\]]+[)\]]"
 WORD_WITH_UNIT = re.compile(rf"[^\s()\[\]]+(?: ?{UNIT})?")
@@ -204,7 +204,7 @@ def _is_like(fields: Sequence[str], places: Sequence[int], decimal: str) -> bool
 
 
 def _number(text: str, decimal: str) -> float | None:
-    """The number that a text is, with a decimal point or also a decimal comma; None if it is none."""
+    """The number in a text with a decimal point, or with a decimal comma if `decimal` says so; None if it is none."""
     try:
         return float(text.translate(SIGNS).replace(",", ".") if decimal == "," else text.translate(SIGNS))
     except ValueError:
@@ -212,7 +212,7 @@ def _number(text: str, decimal: str) -> float | None:
 
 
 def _name(text: str) -> str:
-    """The name of a column, without its unit; empty for a unit in brackets alone."""
+    """The name of a column, without its unit; empty for only a unit in brackets."""
     bracketed = UNIT_IN_NAME.match(text)
     return bracketed[1] if bracketed else text
 

@@ -31,7 +31,7 @@ LARGEST_GAP = 3.0
 
 @dataclass(frozen=True)
 class Reading:
-    """How a text file is read: its columns by name or number, and units where the header is silent or wrong."""
+    """How a text file is read: its columns by name or number, and units where the header lacks them or is wrong."""
 
     column: str | None = None
     time_column: str | None = None
@@ -55,11 +55,12 @@ class Signal:
 
 
 def read_signal(path: Path, reading: Reading | None = None, usual: str = "Pa") -> Signal:
-    """Read a column of a text file against its times.
+    """Read a column of a text file with its times.
 
     Parameters
     ----------
-    path : the file, see `scope.read_columns`. reading : how. usual : the unit of values in a file without any names.
+    path : the file, see `scope.read_columns`. reading : how to read it. usual : the unit of values in a file without
+    names.
 
     With a bridge, voltages become strains. A scale other than ±1 makes the values Pa. Times are those of the file if
     they are even. If they are rounded they are replaced by even ones, and else the signal is resampled at the median
@@ -98,7 +99,7 @@ def _replaced(columns: Columns, column: int, given: str | None, *, is_time: bool
 
 
 def _measures(name: str) -> tuple[str, float] | None:
-    """What a unit of values measures, and its size; None for other texts."""
+    """Quantity and size of a unit of values; None for other texts."""
     unit = value_unit(name)
     return None if unit is None else (unit.of, unit.size)
 
@@ -118,7 +119,7 @@ def _chosen(columns: Columns, reading: Reading) -> tuple[int, int]:
 
 
 def _two_commas(columns: Columns) -> str:
-    """Advice for a file of whole numbers alone, as commas make of numbers that have decimal commas; else empty."""
+    """Advice for a file of only whole numbers, as results from splitting decimal commas; else empty."""
     parts = columns.lines[0]
     if len(parts) < 4 or not all(part.lstrip("+-").isdigit() for part in parts):
         return ""

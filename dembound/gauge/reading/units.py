@@ -51,7 +51,7 @@ VALUES = {
     }.items()
     for unit, size in units.items()
 }
-"""What a unit of values measures, and its size in that."""
+"""Unit -> base unit of its quantity, and its size in that."""
 
 AS_THEY_ARE = Unit("", "", 1.0)
 """Values without a known unit."""
@@ -91,8 +91,8 @@ class Bridge:
     """Strain gauges in a Wheatstone bridge.
 
     gauge_factor : k, relative change of resistance per strain. wiring : *quarter*, one gauge along the bar; *half*, two
-    along the bar at opposite places of its circumference, in opposite arms, so that bending cancels; *full*, the same
-    and two gauges across the bar in the other arms. excitation : V. gain : of the amplifier. poisson : ν of the bar,
+    along the bar at opposite places of its circumference, in opposite arms, so that bending cancels; *full*, as *half*
+    with two gauges across the bar in the other arms. excitation : V. gain : of the amplifier. poisson : ν of the bar,
     for the gauges across it.
 
     Raises CaseError for values without meaning, and for a full bridge without ν.

@@ -56,8 +56,7 @@ def _keeps_plane(case: DiskCase, side: str, motion: Motion) -> Iterator[bool]:
     """For each of the two sides along which a plane wave runs, whether the wave stays plane.
 
     Along free sides it does so on a square lattice only. Free edges of random packings are softer, even with rows of
-    equal
-    disks along them: they slow the wave in a strip 20 disks high by up to 2 %.
+    equal disks along them: they slow the wave in a strip 20 disks high by up to 2 %.
     """
     across = 1 - normal_axis(side)
     held = motion == "p" and "xy"[across] in case.motion.held
