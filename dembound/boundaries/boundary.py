@@ -10,7 +10,7 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Wa
 from dembound.table import Box, Table
 
 Place = tuple[Edge, BoundaryMedium]
-"""Where a side is: its particles, and the medium that it represents."""
+"""A side's place: its particles, and the medium that it represents."""
 
 
 class Boundary(Table):
@@ -109,12 +109,12 @@ class Boundary(Table):
 
     @property
     def absorber(self) -> str:
-        """What is beyond the side and returns next to nothing, in words; empty where waves may come back."""
+        """The region beyond the side that returns next to nothing, in words; empty where waves may come back."""
         return "a continuum" if self.is_outside else "a matched layer" if self.layer else ""
 
     @property
     def absorbs(self) -> bool:
-        """Whether the side takes in at least a part of the waves that reach it."""
+        """Whether the side absorbs at least a part of the waves that reach it."""
         return bool(self.factors or self.absorber)
 
     @property
@@ -128,14 +128,14 @@ class Boundary(Table):
         return False
 
     def with_half_cells(self, half: bool) -> Self:
-        """The side with half cells or with whole ones; as it is if it may not have half cells."""
+        """The side with half cells or with whole ones; unchanged if it may not have half cells."""
         return self
 
     def equal_supports(self, own: Place, other: Place) -> "Boundary | None":
         """The side on one place with supports as strong per length as those of this table on another place.
 
-        Springs, dampers and forces of waves. None, by default, of a type that does not know: it is then taken as it is
-        where it is as strong, and else refused.
+        Springs, dampers and forces of waves count. None, the default, where the type cannot tell: the table is then
+        used unchanged if it is as strong, and refused otherwise.
         """
         return None
 

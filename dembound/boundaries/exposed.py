@@ -1,4 +1,4 @@
-"""Which particles make up a side: those visible from outside along its normal."""
+"""The particles of a side: those visible from outside along its normal."""
 
 import numpy as np
 

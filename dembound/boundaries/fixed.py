@@ -23,7 +23,7 @@ class Fixed(Boundary):
         return self.artificial
 
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:
-        """All three components."""
+        """The prescribed components: all three."""
         return (0, 1, 2)
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:

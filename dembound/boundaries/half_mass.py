@@ -54,7 +54,7 @@ def half_contacts(
     edges: Mapping[str, Edge],
     boundary: Mapping[str, Boundary],
 ) -> np.ndarray:
-    """Which contacts (b,) bool run along a side of half cells, between particles first and second (b,).
+    """Mask (b,) of contacts that run along a side of half cells, between particles first and second (b,).
 
     vectors (b, 2) m between their centres, of either sign.
     """

@@ -59,7 +59,7 @@ class MatchedLayer(Drivable):
         return Layer(self.nodes, self.power, reflection)
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """A side of disks, a layer shorter than two horizons, and one beside a range that moves."""
+        """Mistakes: a side of disks, a layer shorter than two horizons, or one beside a range that moves."""
         yield from super().problems(side, tables)
         if "bar" not in tables:
             yield f'boundary.{side}.type: is "{self.type}", which is for ends of bars; for disks take "outside"'

@@ -22,7 +22,7 @@ class Outside(Drivable):
     type: Literal["outside"]
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """What a continuum cannot be beside, and waves that cannot enter through it.
+        """Mistakes: sides that a continuum cannot be beside, and waves that cannot enter through it.
 
         Its own edges next to those of the body are free, periodic, mirror planes, or go on, so the sides of the body
         there must do the same.

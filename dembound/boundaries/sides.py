@@ -27,7 +27,7 @@ def is_far(side: str) -> bool:
 
 
 def plane_of(side: str, box: Box) -> float:
-    """Where (m, along its normal) a side of a box is."""
+    """Position (m, along its normal) of a side of a box."""
     return box[normal_axis(side) + 2 * is_far(side)]
 
 

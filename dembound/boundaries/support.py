@@ -39,7 +39,7 @@ class SupportBuilder:
     Attributes
     ----------
     held : components without motion, whose rows are left out.
-    side : the side whose rows are added next; empty for those of loads.
+    side : the side whose rows are added next; empty for rows of loads.
     """
 
     held: tuple[int, ...] = ()
@@ -105,7 +105,7 @@ class SupportBuilder:
         self.side = present
 
     def add_power(self, side: str, power: Signal) -> None:
-        """The power (W) of waves that enter through a side by forces alone, for its energies."""
+        """Add the power (W) of waves that enter through a side only by forces, for its energies."""
         self._power[side] = self._number_of_signal(power)
 
     def _number_of_signal(self, signal: Signal) -> int:
@@ -156,7 +156,7 @@ class SupportBuilder:
         """Merge rows on the same degree of freedom and sort them by node.
 
         Dampings, stiffnesses and drives add; a prescribed row replaces all others, of two prescribed rows the moving
-        one wins, of two moving ones the first, and of two at rest that of the side along whose normal it is.
+        one wins, of two moving ones the first, and of two at rest the row of the side along whose normal it is.
         """
         node, component, signal = (self._column(name, np.int64) for name in ("node", "component", "signal"))
         damping, follow, stiffness, drive = (
@@ -207,7 +207,10 @@ class SupportBuilder:
 def _outranked(
     row_of: np.ndarray, count: int, prescribed: np.ndarray, moving: np.ndarray, along_normal: np.ndarray
 ) -> np.ndarray:
-    """Which added rows are replaced by another row on the same degree of freedom; all (a,), bool except row_of."""
+    """Mask (a,) of added rows that are replaced by another row on the same degree of freedom.
+
+    row_of : (a,) int, the merged row of each; prescribed, moving, along_normal : (a,) bool.
+    """
     rank = prescribed * (1 + moving.astype(int))
     best = np.zeros(count, dtype=int)
     np.maximum.at(best, row_of, rank)

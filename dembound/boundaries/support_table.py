@@ -10,12 +10,13 @@ from dembound.boundaries.signals import OneOf, Signal
 
 @dataclass(frozen=True)
 class Shares:
-    """What each side adds to the rows of a support table: a rows as added by sides, see `SupportBuilder.add`.
+    """Contributions of the sides to a support table: a rows as added by sides, see `SupportBuilder.add`.
 
     Attributes
     ----------
-    side : (a,) the side's index in `sides`; call : (a,) number of the call that added it, with which all rows of a call
-    have the component in common.
+    side : (a,) the side's index in `sides`; call : (a,) number of the call that added it; all rows of a call have the
+    same
+    component.
     node, component, damping, follow, stiffness, prescribed, drive : (a,) as given; damping, follow, stiffness and drive
     are zero where a prescribed row has replaced them, and of several prescribed rows only one is listed.
     signal : (a,) index of the signal of the drive, −1 for none; incident : (a,) bool, whether it is the velocity of a

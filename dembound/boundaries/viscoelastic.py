@@ -85,7 +85,7 @@ class Springs(Boundary):
         return np.outer(factors, self.shear_modulus(medium) * edge.widths / self.distances(edge))
 
     def equal_supports(self, own: Place, other: Place) -> Self:
-        """With other factors α."""
+        """The side with factors α that give equally strong springs per length."""
         mine, theirs = (self.shear_modulus(medium) * edge.diameter_sum_ratio for edge, medium in (own, other))
         ratio = theirs / mine
         return self.model_copy(update={"alpha_n": self.alpha_n * ratio, "alpha_s": self.alpha_s * ratio})

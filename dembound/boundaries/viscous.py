@@ -60,7 +60,7 @@ class Dashpots(Boundary):
         return self.half_mass
 
     def with_half_cells(self, half: bool) -> Self:
-        """With this value of half_mass."""
+        """The side with this value of half_mass."""
         return self.model_copy(update={"half_mass": half}) if self.may_halve else self
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
@@ -102,7 +102,7 @@ class ViscousInput(Dashpots, Driven):
     type: Literal["viscous_input"]
 
     def at_rest(self) -> Boundary:
-        """These dashpots without a wave."""
+        """The side with the same dashpots and no wave."""
         return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:

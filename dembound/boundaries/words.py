@@ -53,14 +53,14 @@ def side_in_words(side: Mapping[str, Any]) -> str:
 
 
 def _beside_matched(side: Mapping[str, Any], key: str) -> str:
-    """Whether a factor is the matched one, and which is if not."""
+    """The text " (matched)" for a matched factor, else the matched value in brackets; empty if unknown."""
     if (matched := side.get(key.replace("beta", "matched"))) is None:
         return ""
     return " (matched)" if matched == side[key] else f" (matched: {matched:.4g})"
 
 
 def _others(side: Mapping[str, Any]) -> str:
-    """All other numbers; types of other packages may have some."""
+    """Text with all other numbers; types of other packages may have some."""
     others = {key: value for key, value in side.items() if key not in IN_WORDS}
     return "".join(f", {key} = {f'{value:g}' if isinstance(value, float) else value}" for key, value in others.items())
 

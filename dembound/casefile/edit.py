@@ -30,7 +30,7 @@ def edited(text: str, changes: Mapping[str, Any]) -> str:
 
 
 def rewritten(text: str, requested: Mapping[str, Any]) -> str:
-    """The text with as few lines changed as make it the text of the tables requested; errors as of `edited`."""
+    """The text with as few lines changed as needed to give the requested tables; errors as of `edited`."""
     for _ in range(ROUNDS):
         present = parsed(text)
         if _same(present, requested):
@@ -53,7 +53,7 @@ def _same(one: Any, other: Any) -> bool:
 
 
 def _edit(page: "_Page", place: Place, present: Any, requested: Any) -> None:
-    """Make what is at a place what is requested there."""
+    """Replace the value at a place by the requested one."""
     if _same(present, requested):
         return
     if isinstance(present, Mapping) and isinstance(requested, Mapping):
@@ -91,7 +91,7 @@ def _edit_list(page: "_Page", place: Place, present: Sequence[Any], requested: S
 
 
 def _are_tables(value: Any) -> bool:
-    """Whether it is a list of at least one table, and nothing else."""
+    """Whether a value is a list of one or more tables, and nothing else."""
     return isinstance(value, list) and bool(value) and all(isinstance(each, Mapping) for each in value)
 
 
@@ -222,7 +222,7 @@ class _Page:
 
 
 def _is_in(place: Place, other: Place) -> bool:
-    """Whether a place is another one or inside it."""
+    """Whether a place is equal to another one or inside it."""
     return place[: len(other)] == other
 
 

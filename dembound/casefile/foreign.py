@@ -22,7 +22,7 @@ _IN_SITU = f"[static] has stress = [sxx, syy, sxy], Pa, tension positive: it rep
 _VELOCITY = "give wave_p (along the normal) or wave_s (across it) the name of a [wave.NAME]"
 
 Advice = tuple[tuple[str, str], ...]
-"""What to write, for each key that a table may have; the first of them that it has decides, "" is for all others."""
+"""Advice by key that a table may have; the first key that the table allows decides, "" stands for all others."""
 
 _MODULUS: Advice = (
     ("youngs_modulus", "write youngs_modulus, Pa"),
@@ -305,7 +305,7 @@ TYPE_OF = {name: value for names, value in VALUES.items() for name in names}
 
 
 def translated(name: str, keys: Collection[str]) -> str | None:
-    """What to write for a foreign name, in words, in a table that may have these keys; None for an unknown name."""
+    """Advice for a foreign name, in words, in a table that may have these keys; None for an unknown name."""
     advice = BY_NAME.get(_plain(name), ())
     return next((text for key, text in advice if key == "" or key in keys), None)
 

@@ -68,9 +68,9 @@ def waves_used(case: Case) -> set[str]:
 
 
 def is_quasi_static(case: Case, name: str, travel: float) -> bool:
-    """Whether a wave is the constant velocity of grips alone in a run far longer than a wave's way through the scene.
+    """Whether a wave is only a constant velocity of grips, in a run far longer than a wave's way through the scene.
 
-    The waves that its start sends, also those too short for the discretisation, then have a stress ρcv below 1/`SLOW`
+    The waves sent by its start, also those too short for the discretisation, then have a stress ρcv below 1/`SLOW`
     of the stress ρc²u/L that the grips reach at the end of the run, u = vt.
 
     travel : time (s) a wave takes through the scene.
@@ -81,9 +81,9 @@ def is_quasi_static(case: Case, name: str, travel: float) -> bool:
 
 
 def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
-    """At most one warning for every wave far longer or shorter than the run, the step or the travel time.
+    """Warnings about waves that begin before the run, then at most one for every wave with an unlikely duration.
 
-    Before them those of waves that begin before the run.
+    Unlikely is far longer or shorter than the run, the step or the travel time.
 
     time_step : s. travel : time (s) a wave takes through the scene; nan where no wave can run.
     """
@@ -98,7 +98,7 @@ def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
 
 
 def _too_early(wave: Wave) -> Iterator[str]:
-    """A record of which a part comes before the run, in words; a steady velocity is the same later."""
+    """A warning about a record with a part before the run, in words; none for a velocity that is steady before."""
     begin = wave.begin()
     if not begin < 0.0:
         return
@@ -167,15 +167,15 @@ def grip_stress(
 def stress_in_words(stress: float) -> str:
     """A stress in Pa as text: in MPa, or in Pa where it is small.
 
-    It is small, such as 1 Pa, for a load whose wave contains the pressures.
+    A load whose wave contains the pressures has such a small one, such as 1 Pa.
     """
     return f"{stress / 1e6:.4g} MPa" if abs(stress) >= 1e4 else f"{stress:.4g} Pa"
 
 
 def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, key: str) -> Iterator[str]:
-    """Stresses many times the strength, or the largest of all where it is a tiny part of the strength.
+    """Warnings about stresses many times the strength, or the largest of all if it is a tiny part of the strength.
 
-    stresses : table -> description of the stress, and its value in Pa. strength : Pa. key : that of the strength.
+    stresses : table -> description of the stress, and its value in Pa. strength : Pa. key : of the strength.
     """
     against = f"{key}, {stress_in_words(strength)}: Pa and MPa?"
     for place, (what, stress) in stresses.items():
@@ -207,7 +207,10 @@ def fast_ground(place: str, wave: Wave) -> Iterator[str]:
 
 
 def large_stress(place: str, what: str, stress: float, modulus: float, reason: str) -> Iterator[str]:
-    """A stress (Pa) that is a large part of the stiffness (Pa); what : the stress in words; reason : as above."""
+    """A warning about a stress (Pa) that is a large part of the stiffness (Pa).
+
+    place : table. what : the stress in words; reason : words on the likely mistake.
+    """
     if stress > LARGE_STRAIN * modulus:
         yield (
             f"{place}: {what}, {stress_in_words(stress)}, is {percent(stress / modulus)} of the stiffness, "

@@ -1,4 +1,4 @@
-"""From pydantic's errors to one plain line per mistake: ``table.key: what is wrong, what is allowed``."""
+"""One plain line per mistake from pydantic's errors: ``table.key: what is wrong, what is allowed``."""
 
 import difflib
 import json

@@ -1,4 +1,4 @@
-"""From a TOML file to a `Case`, or to the list of everything wrong with it."""
+"""Reading of a TOML file as a `Case`, or as the list of its mistakes."""
 
 from collections.abc import Collection, Mapping, Sequence
 from functools import cache

@@ -10,7 +10,7 @@ Place = tuple[str | int, ...]
 """Keys that lead to a table or value; a number is a position in a list, from 0."""
 
 CLOSING = re.compile(r"""[\]}]|\"\"\"|'''""")
-"""What a line contains on which a value of several lines ends."""
+"""Characters that close a value of several lines."""
 
 PLAIN = re.compile(r"\s*([A-Za-z0-9_-]+)\s*=")
 """One key without quotes, as nearly all are."""

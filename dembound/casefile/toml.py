@@ -35,7 +35,7 @@ def allowed(data: dict[str, Any], source: str = "") -> dict[str, Any]:
 
 
 def value_of(text: str, key: str) -> Any:
-    """The value that a text is in TOML, or the text itself, without blanks around it, if it is none.
+    """A text as a TOML value, or if it is none the text itself, without blanks around it.
 
     key : its name in errors. Raises CaseError for values that `parsed` refuses.
     """

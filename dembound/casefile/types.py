@@ -26,7 +26,7 @@ WAVES = with_registered("dembound.waves", Wave, waves.TYPES)
 
 
 def _usable(found: Mapping[str, Law]) -> dict[str, Law]:
-    """Laws by name, without those with a history that name no linear law of the same stiffness."""
+    """Laws by name, without history-dependent ones that name no linear law of the same stiffness."""
 
     def is_usable(law: Law) -> bool:
         at_rest = found.get(law.linear)
@@ -61,9 +61,9 @@ def linear_law(name: str) -> str:
 
 
 def require_linear(name: str) -> None:
-    """Raise CaseError for a law without a history that is not linear: its motion is not that of a linear medium.
+    """Raise CaseError for a law without history that is not linear, as its motion is not that of a linear medium.
 
-    Laws with a history are linear until something opens, slides or breaks, which runs find out.
+    History-dependent laws are linear until something opens, slides or breaks, which runs detect.
     """
     if not (LAWS[name].is_linear or LAWS[name].has_history):
         raise CaseError([f'material.law: is "{name}", which is not linear; errors are known of linear laws alone'])

@@ -15,7 +15,7 @@ from dembound.meanings import GRAVITY, MEANINGS, Meaning
 from dembound.table import Table
 
 LIGHTEST = 1.6
-"""Least acceleration (m/s²) that is taken for gravity: that of the moon."""
+"""Least acceleration (m/s²) that is regarded as gravity: that of the moon."""
 
 DAMPED = "94 % are left after one wavelength at 0.1, 49 % at 0.3, 0.2 % at 0.7"
 """Peaks of three cycles at 50 m along a row of disks of 1 m, over those without damping; a cycle is 50 m long."""
@@ -25,13 +25,13 @@ GRAVITY_IN = ((1.0, "g"), (9810.0, "mm/s²"), (981.0, "cm/s²"), (0.00981, "km/s
 
 
 def unlikely(case: Case) -> list[str]:
-    """All of them, one line each."""
+    """Warnings about unlikely numbers of a case, one line each."""
     lines = [line for path, table in _all_tables(case) for line in unlikely_in(path, table, case)]
     return [*lines, *sampling_warnings(case), *wave_use_warnings(case)]
 
 
 def unlikely_in(path: str, table: Table, case: Case) -> Iterator[str]:
-    """Unlikely values of one table, without the tables in it; path : its place in the file, or "" for keys alone."""
+    """Warnings about one table, without the tables in it; path : its place in the file, or "" for only keys."""
     for name in type(table).model_fields:
         means, unit = meaning_of(table, name)
         numbers, key = _numbers(getattr(table, name)), ".".join(filter(None, (path, table.key_of(name))))
@@ -45,7 +45,7 @@ def unlikely_in(path: str, table: Table, case: Case) -> Iterator[str]:
 
 
 def _with_wave(numbers: tuple[float, ...], means: Meaning, unit: str, table: Table, case: Case) -> str | None:
-    """What is unlikely about the numbers of a load times the peak of its wave."""
+    """A warning about the numbers of a load times the peak of its wave."""
     is_load = any(table is load for load in case.load)  # other tables with a wave are not multiplied by it
     wave = case.wave.get(getattr(table, "wave", None) or "") if is_load else None
     if wave is None or means.is_free:
@@ -132,7 +132,7 @@ def _pulls(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
 
 
 def _not_downwards(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
-    """An acceleration of the whole body that stays and is not gravity: upwards, sideways or in another unit."""
+    """A warning about a steady acceleration of the whole body unlike gravity: upwards, sideways or in another unit."""
     if not getattr(table, "is_everywhere", False):
         return None
     across, up = numbers
@@ -155,4 +155,4 @@ RULES: dict[str, Callable[[tuple[float, ...], Table, Case], str | None]] = {
     "stress to reach": _pulls,
     "acceleration": _not_downwards,
 }
-"""Meaning -> what is unlikely about numbers beside others of the case, in words, or None."""
+"""Meaning -> rule that compares numbers with others of the case, and returns a warning or None."""

@@ -11,7 +11,7 @@ CUT = 0.02
 
 
 def wave_use_warnings(case: Case) -> Iterator[str]:
-    """All of them, one line each."""
+    """Warnings about the use of waves, one line each."""
     yield from _two_quantities(case)
     yield from _jumps(case)
     yield from _doubts(case)
@@ -57,7 +57,7 @@ def _read_as(load: Any) -> tuple[str, float]:
 
 
 def _jumps(case: Case) -> Iterator[str]:
-    """Histories with a first or last value that is not zero: outside it is, so that they jump there within the run."""
+    """Warnings about histories with a nonzero first or last value, at which they jump within the run."""
     for name, wave in case.wave.items():
         velocities, factors = users_of(case, name)
         if not velocities and not factors:

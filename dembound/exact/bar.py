@@ -62,10 +62,10 @@ def bar_velocity(
 def triangle_spall(
     length: float, speed: float, rise: float, fall: float, crest: float, strength: float
 ) -> tuple[float, float]:
-    """Where (m) and when (s) a bar with a free end x = length first breaks under a triangular pulse on x = 0.
+    """Place (m) and time (s) at which a bar with a free end x = length first breaks under a triangular pulse on x = 0.
 
     length m, longer than the pulse; speed m/s of waves; the pulse rises from t = 0 for `rise` s to `crest` Pa and falls
-    for `fall` s; strength Pa. Raises ValueError where the strength exceeds the crest: the bar stays whole.
+    for `fall` s; strength Pa. Raises ValueError where the strength exceeds the crest: the bar does not break.
     """
     if not 0.0 < strength <= crest:
         raise ValueError(f"strength ({strength:g} Pa) must be positive and at most the crest ({crest:g} Pa)")

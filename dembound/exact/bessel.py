@@ -33,5 +33,5 @@ def growing_ratios(z: np.ndarray, orders: int) -> np.ndarray:
 
 
 def from_ratios(first: np.ndarray, ratios: np.ndarray) -> np.ndarray:
-    """Functions (orders, m) of all orders from that of order 0, (m,), and the ratios (orders, m)."""
+    """Functions (orders, m) of all orders from the function of order 0, (m,), and the ratios (orders, m)."""
     return np.cumprod(np.concatenate([first[None], ratios[:-1]]), axis=0)

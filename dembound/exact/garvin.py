@@ -101,7 +101,7 @@ def _rays(x: float, z: float, h: float, solid: Solid) -> list[_Ray]:
 
 
 def _hyperbola(x: float, height: float, a: float, fraction: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> _Ray:
-    """A ray with the slowness a alone; fraction : η_aF (2, …) at p and η_a."""
+    """A ray with a single slowness a; fraction : η_aF (2, …) at p and η_a."""
     length = math.hypot(x, height)
 
     def kernel(tau: np.ndarray) -> np.ndarray:
@@ -159,7 +159,7 @@ def _rayleigh(p: np.ndarray, eta_a: np.ndarray, b: float) -> tuple[np.ndarray, n
 
 
 def _sum(rays: list[_Ray], times: np.ndarray, rate: Signal, panels: int) -> np.ndarray:
-    """Σ ∫ M′ Im[F dp] (2, k) with so many Gauss panels on each piece of time between arrivals.
+    """Σ ∫ M′ Im[F dp] (2, k) with `panels` Gauss panels on each piece of time between arrivals.
 
     Rays are added before they are integrated: late, those of P to P and of P to S grow as τ², and nearly cancel.
     """

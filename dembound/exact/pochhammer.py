@@ -52,7 +52,7 @@ def phase_speed(ratio: float, poisson: float) -> float:
 
 
 def short_wave_speed(poisson: float) -> float:
-    """Speed of Rayleigh waves over c_0, which that of short waves tends to."""
+    """Speed of Rayleigh waves over c_0, the limit for short waves."""
     p_wave, s_wave = (
         np.sqrt((1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson))),
         np.sqrt(0.5 / (1.0 + poisson)),

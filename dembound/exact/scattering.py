@@ -81,7 +81,7 @@ def scattered_motion(
     """Motion of places (m, 2), in m from the cavity's axis and not inside the cavity, at times (k,) s.
 
     The wave is at the axis at t = 0, so it meets the wall before, at t = −a/c; times may be negative. tolerance : of
-    displacements, velocities and stresses over their largest value among all places, or that of the wave alone.
+    displacements, velocities and stresses over their largest value among all places, or over that of the incident wave.
 
     Raises ValueError for a radius that is not positive and places in the cavity; RuntimeError if the tolerance is not
     reached, as with a wave that jumps.
@@ -109,7 +109,7 @@ def scattered_motion(
 
 
 def _sizes(wave: PlaneWave, times: np.ndarray, solid: Solid) -> list[float]:
-    """Displacement, velocity and stress of the wave alone, up to the last of some times."""
+    """Displacement, velocity and stress of the incident wave, up to the last of some times."""
     grid = np.linspace(0.0, float(np.abs(times).max(initial=0.0)), SAMPLES)
     velocity = np.abs(wave.velocity(grid))
     largest = float(velocity.max())

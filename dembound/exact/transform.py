@@ -97,7 +97,7 @@ class _Frequencies:
         return responses
 
     def _add(self, number: np.ndarray) -> None:
-        """Compute the response at those of these frequencies at which it is not yet known."""
+        """Compute the response at frequencies of these numbers where it is not yet known."""
         new = np.setdiff1d(number, self._number)
         if len(new) > 0 or not self._values:
             more = self._response((DAMPING + 2j * math.pi * new) / self._length)

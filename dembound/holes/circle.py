@@ -17,7 +17,7 @@ class Circle(Hole):
     radius: float = quantity(..., unit="m", means="length", help="radius", gt=0.0)
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Which positions (k, 2) m lie in it, (k,) bool; those on its rim do not."""
+        """Mask (k,) of positions (k, 2) m that lie in the circle; its rim does not count."""
         return np.hypot(*(positions - self.centre).T) < self.radius
 
     def shifted(self, by: tuple[float, float]) -> Self:

@@ -30,7 +30,7 @@ class Ellipse(Hole):
         return float(np.cos(np.radians(self.angle))), float(np.sin(np.radians(self.angle)))
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Which positions (k, 2) m lie in it, (k,) bool; those on its rim do not."""
+        """Mask (k,) of positions (k, 2) m that lie in the ellipse; its rim does not count."""
         c, s = self._direction
         along_axes = (positions - self.centre) @ np.array([[c, -s], [s, c]])
         return np.hypot(*(along_axes / self.semi_axes).T) < 1.0

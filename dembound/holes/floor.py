@@ -10,13 +10,13 @@ from dembound.roots import root
 from dembound.table import Box
 
 FINE = 8
-"""Places in a diameter at which it is seen whether they lie in a hole."""
+"""Places per diameter at which points are tested for being in a hole."""
 
 
 class Floor(NamedTuple):
-    """A floor beside the left or right side of a rectangle, above which nothing is left.
+    """A floor beside the left or right side of a rectangle, with no ground above.
 
-    height : y, m. width : how far it is level within half a diameter, from the side inwards, m.
+    height : y, m. width : length over which it is level within half a diameter, from the side inwards, m.
     """
 
     height: float
@@ -26,7 +26,8 @@ class Floor(NamedTuple):
 def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) -> Floor | None:
     """The floor beside the left or right side of a box (left, bottom, right, top; m); None if no hole lowers it there.
 
-    diameter : mean one of the disks, m. Holes that leave less than half of that at the top or at the side reach these.
+    diameter : mean diameter of the disks, m. Where holes leave less than half a diameter of ground at the top or at the
+    side, they count as reaching it.
     """
     if not holes:
         return None

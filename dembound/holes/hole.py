@@ -10,12 +10,12 @@ from dembound.holes.outline import Outline
 from dembound.table import Box, FileName, Table, quantity
 
 Apart = Callable[[int, float], float]
-"""How far (m) a wall across an axis, at a place (m), is from the nearest plane between disks."""
+"""Distance (m) of a wall across an axis, at a place (m), from the nearest plane between disks."""
 
 WALL = 0.4
-"""Error beside a round hole in a lattice under a pressure, times its disks along the radius: beside exact solutions the
-median of 0.41 with 3.5 to 20 of them and three places of the centre, at 1 to 2.5 radii (benchmarks/walls.py). The
-lattice acts as a hole that is larger by 0.2 D."""
+"""Error beside a round hole in a lattice under a pressure, times its disks along the radius: compared with exact
+solutions the median of 0.41 with 3.5 to 20 of them and three places of the centre, at 1 to 2.5 radii
+(benchmarks/walls.py). The lattice acts as a hole that is larger by 0.2 D."""
 
 
 class Hole(Table, ABC):
@@ -31,7 +31,7 @@ class Hole(Table, ABC):
 
     @abstractmethod
     def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Which positions (k, 2) m lie in it, (k,) bool."""
+        """Mask (k,) of positions (k, 2) m that lie in the hole."""
 
     @abstractmethod
     def shifted(self, by: tuple[float, float]) -> Self:
@@ -45,7 +45,7 @@ class Hole(Table, ABC):
     def wall_error(self, diameter: float, apart: Apart) -> float:
         """Error of the motion that a pressure makes beside it in a lattice of disks of a diameter (m), RMS over RMS.
 
-        By default that of a round hole, whose shape is known to a disk: `WALL` over the disks in its smaller half.
+        By default for a round hole, whose shape is known to a disk: `WALL` over the disks in its smaller half.
         """
         return WALL / (self.smaller_half / diameter)
 

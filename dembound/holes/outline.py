@@ -13,7 +13,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 ITERATIONS = 20
-"""For the nearest point of an ellipse; 8 are enough for rounding errors where axes are as 1 to 10, 16 for 1 to 1000."""
+"""Newton steps for the nearest point of an ellipse; 8 reach rounding errors where axes are as 1 to 10, 16 for 1 to
+1000."""
 
 ROUNDING = 1e-9
 """Distance over the size of an outline up to which a place is on a line."""
@@ -67,12 +68,12 @@ class Outline(ABC):
         return parts
 
     def beyond(self, parameter: np.ndarray, part: tuple[float, float]) -> np.ndarray:
-        """How far parameters (k,) are from a part that begins somewhere and has a length, in parameters; 0 within."""
+        """Distances of parameters (k,) from a part of the outline (begin and length), in parameters; 0 within."""
         along = (parameter - part[0]) % self.period
         return np.where(along <= part[1], 0.0, np.minimum(along - part[1], self.period - along))
 
     def _is_inside(self, parameter: np.ndarray, box: tuple[float, float, float, float]) -> np.ndarray:
-        """Whether points are within a box, and not on one of its sides, (k,)."""
+        """Mask (k,) of points that lie within a box, and not on one of its sides."""
         points = self.at(parameter)
         near = ROUNDING * np.ptp(self.at(np.linspace(0.0, self.period, 8, endpoint=False)), axis=0).max()
         inside: np.ndarray = ((points > np.array(box[:2]) + near) & (points < np.array(box[2:]) - near)).all(axis=1)
@@ -175,7 +176,7 @@ class PolygonOutline(Outline):
 
     @property
     def crosses_itself(self) -> bool:
-        """Whether two edges that do not follow each other meet, so that inside and outside are not what they seem."""
+        """Whether two edges that do not follow each other meet, so that inside and outside are not defined."""
         count = len(self.corners)
         first, second = np.triu_indices(count, 2)
         apart = ~((first == 0) & (second == count - 1))

@@ -28,7 +28,7 @@ class Polygon(Hole):
         return points
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Which positions (k, 2) m lie in it, (k,) bool: a ray from there along +x meets an odd number of edges."""
+        """Mask (k,) of positions (k, 2) m in the polygon: a ray from there along +x meets an odd number of edges."""
         x, y = positions.T
         inside = np.zeros(len(positions), dtype=bool)
         for (x0, y0), (x1, y1) in zip(self.points, self.points[1:] + self.points[:1], strict=True):

@@ -12,7 +12,7 @@ from dembound.table import Box, quantity, shifted_box
 
 STRAIGHT = 0.2
 """Error beside a rectangle between disks of a lattice under a pressure, times the disks along its smaller half: 0.22
-and 0.20 with 3 and 12 of them, of first order, beside disks 3 and 5 times smaller (benchmarks/walls.py)."""
+and 0.20 with 3 and 12 of them, of first order, compared with disks 3 and 5 times smaller (benchmarks/walls.py)."""
 
 
 class Rectangle(Hole):
@@ -30,7 +30,7 @@ class Rectangle(Hole):
         return corners
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Which positions (k, 2) m lie in it, (k,) bool; those on its rim do not."""
+        """Mask (k,) of positions (k, 2) m that lie in the rectangle; its rim does not count."""
         (x, y), (x0, y0, x1, y1) = positions.T, self.corners
         return (x0 < x) & (x < x1) & (y0 < y) & (y < y1)
 

@@ -1,4 +1,4 @@
-"""Kernels that are compiled when they are first called, apart from those that call them, and shared out among threads.
+"""Kernels that are compiled when they are first called, separately from their callers, and shared out among threads.
 
 Numba copies the code of a called function into that of its caller, where it is optimised and translated anew, at every
 level between, and also where the case never calls it. Code that calls a kernel with `@apart` or `@in_chunks` contains a
@@ -89,7 +89,7 @@ def call_at(context: Any, builder: Any, kernel: Any, sig: Any, args: Any) -> Any
 
 
 def _callable(kernel: Any, own: tuple[Any, ...], returned: Any, call: Callable[..., Any]) -> Callable[..., Any]:
-    """What compiled code can call for a kernel, whose arguments have the types of `own`, then those of the call."""
+    """A function that compiled code can call for a kernel with arguments of the types of `own`, then of the call."""
     count = kernel.py_func.__code__.co_argcount - len(own)
 
     @wraps(kernel)
@@ -111,9 +111,9 @@ def _callable(kernel: Any, own: tuple[Any, ...], returned: Any, call: Callable[.
 
 
 def apart(returned: Any = types.none) -> Callable[[Any], Callable[..., Any]]:
-    """A decorator of a compiled kernel for others to call without becoming part of them, with all arguments by place.
+    """A decorator of a compiled kernel that is compiled separately from its callers; all arguments by place.
 
-    It must be a name of its module. returned : type of what it returns. Called from Python it is the kernel itself.
+    It must be a name of its module. returned : type of its result. Called from Python it is the kernel itself.
     """
     return lambda kernel: kernel if config.DISABLE_JIT else _callable(kernel, (), returned, call_at)  # type: ignore[attr-defined]
 

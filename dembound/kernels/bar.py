@@ -42,7 +42,10 @@ def _move_plain(u, v, a, b, stiffness, step, u_next):
 
 @njit(**FAST)
 def _move_plain_dragged(u, v, a, b, stiffness, keep, step, u_next, mean):
-    """`_move_plain` under attenuation; mean (n,) gets the means of the velocities half a step before and after."""
+    """One step of nodes a to b − 1 between equal springs under attenuation, see `_move_plain`.
+
+    mean (n,) gets the means of the velocities half a step before and after.
+    """
     one = U(1)
     for i in range(U(a), U(b)):
         w = keep * v[i] + stiffness * ((u[i + one] - u[i]) - (u[i] - u[i - one]))
@@ -167,7 +170,7 @@ def plane_force(k, u, bonds):
 
 @njit(**FAST)
 def node_stress(i, u, bonds):
-    """Stress (Pa, tension positive) at node i: the mean of both adjacent planes, at an end of the one plane.
+    """Stress (Pa, tension positive) at node i: the mean over both adjacent planes, or at an end the single plane.
 
     Between planes of different sections it is the mean force over the mean section.
     """

@@ -6,8 +6,8 @@ of it, so that they just touch then. With the mobilities b = Δt/m of both and a
     P = d / (Δt (b_l + b_r)).
 
 Momentum is conserved. The motion is that of one node with both masses as long as P > 0, so the limit of the time step
-is that of the bonded bar. By the rule of the ledger, a force's work is that of the mean of the velocities before and
-after, an impulse takes the energy P g/2 with g the gap one step earlier: nothing while the contact remains closed, and
+is that of the bonded bar. In the ledger a force does work on the mean of the velocities before and after, so an impulse
+takes the energy P g/2 with g the gap one step earlier: nothing while the contact remains closed, and
 when it closes a part that vanishes with the mass of the nodes.
 """
 

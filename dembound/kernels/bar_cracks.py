@@ -19,7 +19,7 @@ from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST
 
 WHOLE, OPENING = -1, -2
-"""Marks of a bond that has not broken: whole, or with a force that falls. Others are marked with the step it broke."""
+"""Marks of an unbroken bond: intact, or with a force that falls. Broken ones are marked with the step of the break."""
 
 TIE = 1e-9
 """Difference up to which elongations over limits are equal."""

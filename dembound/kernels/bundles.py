@@ -1,7 +1,7 @@
 """Bundles, named tuples of arrays (tables/), by their addresses: the loop is the same for all types of them.
 
-`Written` has the numbers of a bundle in memory. Compiled code takes the address, of type `At`, in place of the
-bundle: what it reads of it, by attribute, is loaded where it is used. Passed as named tuples all arrays would be taken
+`Written` holds the numbers of a bundle in RAM. Compiled code takes the address, of type `At`, in place of the
+bundle: every attribute that it reads is loaded where it is used. Passed as named tuples all arrays would be taken
 apart and put together again in each function that passes them on: a third to a half of the time of compiling.
 """
 
@@ -29,7 +29,7 @@ _HEAD = 4
 
 
 class Role(NamedTuple):
-    """What the loop calls for a bundle: a generic function, through a kernel that takes the bundle's address first."""
+    """A function that the loop calls for a bundle: generic, through a kernel that takes the bundle's address first."""
 
     generic: Any
     kernel: Any
@@ -79,12 +79,12 @@ def kind_of(value: Any) -> Any:
 
 
 def kinds_of_parts(bundle: Any) -> tuple[Any, ...]:
-    """What determines the numba type of a bundle, and takes less time to find and compare."""
+    """A key that determines the numba type of a bundle, and is faster to compute and compare."""
     return tuple(map(_kind_of_part, _parts(bundle)))
 
 
 def _kind_of_part(part: Any) -> Any:
-    """What determines the numba type of a part of a bundle, see `_parts`."""
+    """A key that determines the numba type of a part of a bundle, see `_parts`."""
     if not isinstance(part, np.ndarray):
         return part if isinstance(part, type) else type(part)
     return part.dtype, part.ndim, part.flags.c_contiguous, part.flags.f_contiguous, part.flags.writeable
@@ -97,7 +97,7 @@ def _parts_of(kind: Any) -> list[Any] | None:
 
 
 def _count(kind: Any) -> int:
-    """How many numbers a value of this type takes in memory: of an array also `_HEAD`, address, shape and strides."""
+    """Number of 8-byte words of a value of this type; of an array `_HEAD` words, address, shape and strides."""
     if isinstance(kind, types.Array):
         return _HEAD + 1 + 2 * int(kind.ndim)
     parts = _parts_of(kind)
@@ -129,14 +129,14 @@ def _parts(bundle: Any) -> list[Any]:
 
 
 def _size(part: Any) -> int:
-    """How many numbers a part of a bundle takes in memory, see `_count`."""
+    """Number of words of a part of a bundle, see `_count`."""
     if isinstance(part, np.ndarray):
         return _HEAD + 1 + 2 * part.ndim
     return 0 if isinstance(part, type) else 1
 
 
 class Written:
-    """The numbers of a bundle in memory, to whose address `At` refers, and its arrays, which have to be kept.
+    """The words of a bundle in RAM, to whose address `At` refers, and its arrays, which have to be kept.
 
     Attributes
     ----------

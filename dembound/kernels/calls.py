@@ -1,7 +1,7 @@
-"""What the loop calls: the kernels of laws, of ties, and of forces that rotate, by their addresses.
+"""Kernels that the loop calls: of laws, of ties, and of forces that rotate, by their addresses.
 
-Each kernel is called with the addresses of its bundle, of the motion at the step, and of what is given for all steps
-(bundles.py), so that it and the loop are compiled by themselves.
+Each kernel is called with the addresses of its bundle, of the motion at the step, and of the data given for all steps
+(bundles.py), so that it and the loop are compiled separately.
 """
 
 from typing import Any, NamedTuple, Self
@@ -28,7 +28,7 @@ class Motion(NamedTuple):
 
 
 class Given(NamedTuple):
-    """What is the same in all steps of a call of the loop, and its work space; see tables/.
+    """Data that is the same in all steps of a call of the loop, and its work space; see tables/.
 
     pulled (k, 3) N forces of ties on the k supported nodes, followed (k, 3) m/s velocities of their twins, moved
     (3, 3, k) see step.move_supported, sums (b, 4) see sides.note_sides.
@@ -44,7 +44,7 @@ class Given(NamedTuple):
 
     @classmethod
     def by(cls, body: tables.Body, supports: tables.Supports, log: tables.Log) -> Self:
-        """With new work space."""
+        """The data of body, supports and log with new work space."""
         k, b = supports.nodes.size, log.sides.kind.size
         return cls(body, supports, log, np.zeros((k, 3)), np.zeros((k, 3)), np.zeros((3, 3, k)), np.zeros((b, 4)))
 
@@ -136,7 +136,7 @@ _INLINED: Any = {name: value for name, value in FAST.items() if name != "cache"}
 
 
 def _found(bundles: Any, column: int, *others: Any) -> list[Any]:
-    """What the kernels of bundles return, without compiling."""
+    """Results of the kernels of bundles, without compiling."""
     role = ROLES[column]
     return [role.kernel(each, *others) for each in bundles if role.generic.kernels[type(each)] is not None]
 
@@ -236,10 +236,11 @@ def _row(bundle: Any, table: int, place: int, kept: Kept) -> list[int]:
 def entered(
     laws: Bundles, ties: Bundles, turnings: Bundles, motions: tuple[Motion, ...], given: Given, kept: Kept
 ) -> tuple[Any, ...]:
-    """What the loop takes: tables of addresses, those of motions (k,), the one of what is given; valid as long as kept.
+    """Arguments of the loop: tables of addresses, those of motions (k,), and the address of the given data.
 
-    A row of a table has the address of a bundle's numbers, then of its kernels by role, 0 for none. Without compiling
-    the loop takes the bundles themselves. Raises TypeError for motions or what is given of other types than all have.
+    Valid as long as kept. A row of a table has the address of a bundle's numbers, then of its kernels by role, 0 for
+    none. Without compiling the loop takes the bundles themselves. Raises TypeError for motions or data of unexpected
+    types.
     """
     if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
         return laws, ties, turnings, motions, given

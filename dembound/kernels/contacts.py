@@ -27,9 +27,8 @@ UPDATED, BONDED, REFERENCE, SLID = 0, 1, 2, 3
 """Geometries of normals and arms.
 
 UPDATED: they follow the motion. BONDED, for ``geometry = "reference"``: those of intact bonds keep their initial
-values. REFERENCE: all keep them, and contacts that are closed at the start neither open nor slide. SLID, of energies:
-the same, of contacts that slid earlier.
-"""
+values. REFERENCE: all keep them, and contacts that are closed at the start neither open nor slide. SLID, only for
+energies: as REFERENCE, for contacts that slid earlier."""
 
 CLOSING = 1.05
 """Factor of a contact's first push after it was open.
@@ -58,11 +57,11 @@ def _bond_state(Fn, Fs, M, per_area, per_section, limits):
 
 @njit(**FAST, inline="always")
 def closing_work(stiffness, before, now, had_closed, push):
-    """Energy (J) that the normal force of a contact takes in a step in excess of what is stored; negative if it gives.
+    """Energy (J) taken by a contact's normal force in a step in excess of the stored energy; negative if released.
 
     stiffness : k_n, N/m; before, now : overlap (m) before and after the step, negative for a gap; had_closed : whether
     the force of the step before was a first push (`CLOSING`); push : the force now, N. Forces at whole steps do the
-    work ½(N⁻ + N)(now − before), while ½k_n·now² − ½k_n·before² is stored, of overlaps alone. They differ where a
+    work ½(N⁻ + N)(now − before), while ½k_n·now² − ½k_n·before² is stored, for overlaps only. They differ where a
     contact opens or closes, by ½k_n·|before·now|, and before and after a first push.
     """
     closed, closes = max(before, 0.0), max(now, 0.0)
@@ -218,7 +217,7 @@ def sum_forces(contacts, total):
 def start_from_displacements(u, contacts, keeps_slip=False):
     """Set the pairs' tangential displacements to those of small displacements u (3, n), without slip.
 
-    keeps_slip : contacts that are closed at the start keep theirs.
+    keeps_slip : contacts that are closed at the start keep their slip.
     """
     first, second, contact_type, constants = contacts.first, contacts.second, contacts.contact_type, contacts.constants
     shear, slip = contacts.shear, contacts.slip

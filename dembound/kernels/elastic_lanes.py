@@ -38,7 +38,7 @@ _ALL = np.uint8(2**LANES - 1)
 
 @njit(**INLINED)
 def _matrix_force(k, e, j, x, y, ux, uy, ut):
-    """What the neighbours in slots j to j + 7 do to eight disks by entry e, but for the disks' own rotation."""
+    """Forces and moment of the neighbours in slots j to j + 7 on eight disks by entry e, without own rotation."""
     dx = load(ux, j) - x
     dy = load(uy, j) - y
     tj = load(ut, j)

@@ -4,9 +4,9 @@ A block has six fields of N × N points in a work space: U and V are displacemen
 B = ∂_x u_y, C = ∂_y u_x and D = ∂_y u_y, of which A, B and D become the stresses σ_xx, σ_xy and σ_yy times the weights
 of the quadrature. Nodal forces replace U and V (Komatitsch & Tromp 1999, Geophys. J. Int. 139, 806–822).
 
-In elements that absorb, derivatives along x and y have memories of their own (outside/layer.py), and so have the nodal
-forces that belong to derivatives of the test functions along x and y. All elements at a node have the same coefficients
-there, so the memory of a nodal force is the sum of those of its elements.
+In absorbing elements, derivatives along x and y have their own convolution variables (outside/layer.py), and so have
+the nodal forces that belong to derivatives of the test functions along x and y. All elements at a node have the same
+coefficients there, so the variable of a nodal force is the sum over its elements.
 """
 
 from typing import Any
@@ -134,7 +134,7 @@ def _look_back(points, shape, absorber, layer, space):
 
 @njit(**WITHIN)
 def remember(points, shape, absorber, layer, memory, space):
-    """Add their memories to the fields A and B in blocks that absorb along x, and to C and D along y."""
+    """Add convolution variables to the fields A and B in blocks that absorb along x, and to C and D along y."""
     count = len(points)
     size = U(shape.weight.size) * _STEP
     axes = absorber.axes[layer]
@@ -160,7 +160,7 @@ def remember(points, shape, absorber, layer, memory, space):
 
 @njit(**WITHIN)
 def _forces_apart(points, shape, space):
-    """Nodal forces from the stresses in A, B and D: in A and B those of derivatives along x, in C and D along y."""
+    """Nodal forces from the stresses in A, B and D: of derivatives along x in A and B, along y in C and D."""
     size = U(shape.weight.size) * _STEP
     row = U(len(points)) * _STEP
     for line in range(len(points)):

@@ -4,7 +4,7 @@ First every block of eight elements computes its forces, moves the nodes that no
 forces on the others. Then each of these sums the forces of its at most four elements, in a fixed order, and is moved:
 the same bits for any number of threads. Nodes have no rotation, no local damping, and stay at rest on outer edges.
 
-In the ledger, the work done on elements that absorb counts as taken by damping when it is done: it has left the others.
+In the ledger, the work done on absorbing elements counts as damping when it is done: the other elements have lost it.
 The sum of it with kinetic energy and the strain energy of the others is conserved, exactly as by central differences.
 """
 

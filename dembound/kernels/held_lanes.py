@@ -44,7 +44,7 @@ def _columns(p, q):
 def _pair_force(rows, r, column, i, p, q, columns, x, w, turn, ux, uw):
     """Both components of the force on eight disks of row r in slots from i on, by the contacts that rows share.
 
-    x, w, turn : displacement p, what is subtracted from the neighbour's q, and rotation; zero where it is held.
+    x, w, turn : displacement p, value subtracted from the neighbour's q, and rotation; zero where it is held.
     """
     pp, pq, qp, qq = columns
     k = rows.constants

@@ -4,7 +4,7 @@ A kernel that reads `x = load(u, i)` and `f = k * (load(u, j) - x)` computes for
 `u[i]` and `u[j]` computes for slot i. The compiler turns each operation into one instruction of AVX-512, two of AVX2
 or four of NEON and SSE2; results are the same bits but for fused multiply-adds, which not all machines have.
 
-Without compiling (NUMBA_DISABLE_JIT=1) the functions below are what their Python lines say, on arrays of eight.
+Without compiling (NUMBA_DISABLE_JIT=1) the functions below run as Python, on arrays of eight.
 """
 
 import operator
@@ -78,7 +78,7 @@ def byte_of(chosen: np.ndarray) -> np.uint8:
 
 
 def where_equal(array: np.ndarray, i: int, value: int) -> np.ndarray:
-    """Where the eight bytes of a contiguous array (n,) from index i on have a value."""
+    """Mask of the eight bytes of a contiguous array (n,) from index i on that equal a value."""
     return array[int(i) : int(i) + LANES] == value
 
 
@@ -93,7 +93,7 @@ def choose(chosen: np.ndarray, values: np.ndarray, others: np.ndarray) -> np.nda
 
 
 def at_most(values: np.ndarray, limits: np.ndarray) -> np.ndarray:
-    """Where values are not above limits."""
+    """Mask of values that are not above limits."""
     return values <= limits
 
 
@@ -122,7 +122,7 @@ def combine(
 ) -> None:
     """Multiply N groups of eight doubles by a matrix (N·N,), row by row.
 
-    points : N numbers, of which only how many there are is used, which is known when a kernel is compiled. given, found
+    points : N numbers, of which only the count N is used, as it is known when a kernel is compiled. given, found
     : contiguous arrays (n,), in which the groups begin at i, i + stride, … and j, j + stride, …; both may be the same.
     """
     groups = int(stride) * np.arange(len(points))[:, None] + np.arange(LANES)
@@ -175,7 +175,7 @@ def _compiled(function: Any, result: Any, *arguments: Any) -> Callable[[Callable
 
 
 def _fits(given: Any, wanted: Any) -> bool:
-    """Whether a type will do where another one is wanted."""
+    """Whether a type can be passed for another one."""
     if wanted == lanes:
         return given == lanes or isinstance(given, types.Float)
     if isinstance(wanted, types.Array):
@@ -186,7 +186,7 @@ def _fits(given: Any, wanted: Any) -> bool:
 
 
 def _are_numbers(kinds: Any) -> bool:
-    """Whether all of several types are numbers, whose arithmetic numba has itself."""
+    """Whether all of several types are numbers, for which numba has arithmetic."""
     return len(kinds) > 1 and all(isinstance(kind, types.Number) for kind in kinds)
 
 
@@ -278,7 +278,7 @@ def _lane(builder: Any, values: Any, k: Any) -> Any:
 
 
 def _strided(builder: Any, first: Any, stride: Any, count: int) -> list[Any]:
-    """So many indices from the first one on."""
+    """`count` indices from the first one on, a stride apart."""
     places = [first]
     for _ in range(count - 1):
         places.append(builder.add(places[-1], stride))

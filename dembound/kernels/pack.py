@@ -169,10 +169,10 @@ def relax(places, velocities, held, pairs, origin, leash, tolerance, faint, max_
 
     places, velocities (2, n) change in place; the first `held` disks do not move; pairs lists every pair that can come
     into contact before a disk has moved by `leash` from origin (2, n). pace = [dt, mix, downhill steps] keeps FIRE's
-    state between calls: several of fewer steps do the same as one. Returns (mean unbalanced force / mean contact force,
-    steps done, whether `max_steps` alone ended them); balance is reached when the ratio is at most `tolerance`. Contact
-    forces below `faint` count as `faint`: disks with free space lose their last contacts only slowly, so that waiting
-    for them would take too long.
+    state between calls: several calls of fewer steps give the same result as one. Returns (mean unbalanced force / mean
+    contact force, steps done, whether only `max_steps` ended them); balance is reached when the ratio is at most
+    `tolerance`. Contact forces below `faint` count as `faint`: disks with free space lose their last contacts only
+    slowly, so that waiting for them would take too long.
     """
     forces, work = np.zeros_like(places), np.empty((3, BLOCK))
     free = max(places.shape[1] - held, 1)

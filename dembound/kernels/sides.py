@@ -1,6 +1,6 @@
 """Forces on the body through its sides, and the mean displacement of each side.
 
-The support table adds up the rows of all sides; here they are taken apart again into elements, each one dashpot,
+The support table adds up the rows of all sides; here they are separated again into elements, each one dashpot,
 spring, drive, prescribed motion or seam at one component of one supported node. Elements are summed one after the
 other, so that the sums have the same bits for any number of threads.
 """
@@ -14,7 +14,7 @@ from dembound.kernels.calls import given_at, motion_at
 from dembound.kernels.common import FAST, FASTMATH, U
 
 _REORDERED: Any = FAST | {"fastmath": FASTMATH | {"reassoc"}}
-"""Compiler options of sums whose order of terms depends on their number alone."""
+"""Compiler options of sums whose order of terms depends only on their number."""
 
 PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED, POWER = range(7)
 """Kinds of elements, see `tables.Sides`."""
@@ -22,9 +22,10 @@ PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED, POWER = range(7)
 
 @njit(**FAST, inline="always")
 def _dashpots(c, first, last, sides, old, new, incident):
-    """Sums of `_of_batch` of dashpots, through which a wave of the velocity `incident` (m/s) enters.
+    """Force, absorbed power and incoming power of a batch of dashpots, summed as by `_of_batch`.
 
-    Of a mean velocity v they absorb C(v − v_i)², the power of the outgoing wave, and C v_i² comes in.
+    A wave of the velocity v_i = `incident` (m/s) enters. At a mean velocity v they absorb C(v − v_i)², the power of the
+    outgoing wave, and C v_i² comes in.
     """
     force = 0.0
     before = 0.0
@@ -44,7 +45,7 @@ def _dashpots(c, first, last, sides, old, new, incident):
 
 @njit(**FAST, inline="always")
 def _following(c, first, last, sides, old, new, followed, incident):
-    """Sums of `_of_batch` of dashpots on velocities relative to those of twins, followed (k, 3) m/s."""
+    """Sums of a batch of dashpots, as by `_dashpots`, on velocities relative to twins, followed (k, 3) m/s."""
     force = 0.0
     power = 0.0
     before = 0.0
@@ -64,7 +65,7 @@ def _following(c, first, last, sides, old, new, followed, incident):
 
 @njit(**FAST, inline="always")
 def _springs(c, first, last, sides, nodes, u):
-    """Sums of `_of_batch` of springs at displacements u (3, n): the force alone, from which their energy follows."""
+    """Sum of forces of a batch of springs at displacements u (3, n); their energy is computed from the force."""
     force = 0.0
     for e in range(first, last):
         force -= sides.constant[U(e)] * u[c, U(nodes[U(sides.line[U(e)])])]
@@ -73,7 +74,7 @@ def _springs(c, first, last, sides, nodes, u):
 
 @njit(**FAST, inline="always")
 def _exerted(kind, c, first, last, sides, old, new, push, across, step):
-    """Sums of `_of_batch` of prescribed motion (the force needed, without ties), drives (constants·signal), seams."""
+    """Force and power of a batch of prescribed motion (the needed force, without ties), drives, or seams."""
     force = 0.0
     power = 0.0
     before = 0.0
@@ -93,7 +94,7 @@ def _exerted(kind, c, first, last, sides, old, new, push, across, step):
 def _mean(u, c, first, last, members, weights):
     """Sum of component c of displacements u (3, n) of members first to last − 1 of (m,) with weights (m,).
 
-    Its order depends on their number alone.
+    The order of terms depends only on their number.
     """
     total = 0.0
     for m in range(first, last):

@@ -18,7 +18,7 @@ def kick(v, f, b, damp):
 
 @njit(**FAST, inline="always")
 def damping_work(v, w, f, b, damp, step):
-    """Work (J) that local damping takes in a step from v to w under a force f: in all, and up to the whole step."""
+    """Work (J) of local damping in a step from v to w under a force f: in total, and up to the whole step."""
     taken = damp * abs(f) * np.sign(v) * step
     if b == 0.0:  # held: no local damping
         taken = 0.0
@@ -29,8 +29,8 @@ def damping_work(v, w, f, b, damp, step):
 def move_particle(i, fx, fy, moment, u, v, body, u_next):
     """Move particle i by a step under its contact forces plus steady loads; u_next receives its displacement.
 
-    For a supported particle u_next receives the forces, for `move_supported`. Returns the work (J) that local damping
-    took, in all and up to the whole step.
+    For a supported particle u_next receives the forces, for `move_supported`. Returns the work (J) of local damping, in
+    total and up to the whole step.
     """
     if body.load.shape[1] > 0:
         fx += body.load[U(0), i]

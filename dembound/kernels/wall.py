@@ -206,7 +206,7 @@ def tie_forces(ties, u, v, force, lag):
 
 @njit(**FAST)
 def wall_forces(ties, u, v, force):
-    """Add to force (k, 3) of the supported nodes those of the ties; v : (3, n) velocities half a step earlier."""
+    """Add to force (k, 3) of the supported nodes the forces of the ties; v : (3, n) velocities half a step earlier."""
     tie_forces(ties, u, v, force, ties.lag)
 
 

@@ -47,7 +47,7 @@ class Stiffness:
         return Stiffness(*(getattr(self, each.name)[contacts] for each in fields(self)))
 
     def times(self, factor: np.ndarray) -> "Stiffness":
-        """These contacts with their stiffness multiplied by factors (b,)."""
+        """The constants with stiffnesses multiplied by factors (b,) of contacts."""
         return Stiffness(factor * self.normal, factor * self.shear, factor * self.bending, self.arm_i, self.arm_j)
 
 
@@ -65,7 +65,7 @@ class Law(ABC):
 
     @property
     def is_linear(self) -> bool:
-        """Whether forces are linear in displacements; by default those of a law without a history (elastic.py)."""
+        """Whether forces are linear in displacements; by default True for laws without history (elastic.py)."""
         return not self.has_history
 
     @property
@@ -139,5 +139,5 @@ class Law(ABC):
 
 
 def touching(radius_i: np.ndarray, radius_j: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """Which disks (b,) bool touch or overlap, to rounding; all in m."""
+    """Mask (b,) of disks that touch or overlap, to rounding; all in m."""
     return distance <= (radius_i + radius_j) * (1.0 + 1e-9)

@@ -1,4 +1,4 @@
-"""From wave speed to particle moduli on the square lattice (Z eqs 7-11)."""
+"""Particle moduli from wave speeds on the square lattice (Z eqs 7-11)."""
 
 
 def lattice_moduli(

@@ -152,7 +152,7 @@ class Bonds:
         return np.flatnonzero(self.triggers & (self.spring > 0.0) & (np.diff(u) >= self.spring_limit))
 
     def stop_triggering(self) -> None:
-        """From now on break springs at the critical stretch without calling the method."""
+        """Break springs at the critical stretch from now on, without calling the method."""
         self.triggers[:] = False
         self.spring_limit[:] = self.rod.elongation
 
@@ -163,7 +163,7 @@ class Bonds:
 
     @property
     def springs(self) -> np.ndarray:
-        """(n − 1,) which local springs bear something, or will when pressed: those of cracks with a fracture energy."""
+        """Mask (n − 1,) of local springs with stiffness, now or under compression as in cracks of a fracture energy."""
         opened = np.zeros_like(self.spring)
         self.opening.put(np.ones(len(self.opening)), opened, np.zeros_like(self.bond))
         return (self.spring > 0.0) | (opened > 0.0)
@@ -202,7 +202,7 @@ class Bonds:
         return damage(self._family.pairs, factor[:, None] * volumes, left, self.rod.count)
 
     def breaks(self, since: int) -> tuple[np.ndarray, np.ndarray]:
-        """What broke in step `since` or later: steps (b,) and pairs of nodes (b, 2), in the order of the steps."""
+        """Bonds that broke in step `since` or later: steps (b,) and pairs of nodes (b, 2), in order of the steps."""
         planes = np.flatnonzero(self.spring_broken >= since)
         rows, first = np.nonzero(self.bond_broken >= since)
         steps = np.concatenate([self.spring_broken[planes], self.bond_broken[rows, first]])
@@ -211,7 +211,7 @@ class Bonds:
         return steps[order], pairs[order]
 
     def begun(self) -> tuple[np.ndarray, np.ndarray]:
-        """What broke or began to open so far: steps (b,) and pairs of nodes (b, 2)."""
+        """Bonds that broke or began to open so far: steps (b,) and pairs of nodes (b, 2)."""
         if len(self.opening) == 0:
             return self.breaks(0)
         first = self.opening["first"]
@@ -223,7 +223,7 @@ class Bonds:
         return kept | self.opening.memory() | {"zones": np.array(self.zones, dtype=np.int64).reshape(-1, 2)}
 
     def recall(self, memory: Mapping[str, np.ndarray]) -> None:
-        """Restore what `memory` has returned for the same bar."""
+        """Restore the arrays returned by `memory` for the same bar."""
         for name in _EVOLVING:
             getattr(self, name)[...] = memory[name]
         self.opening.recall(memory)

@@ -1,11 +1,11 @@
-"""How the bonds of a bar break: at once, or with a fracture energy, and how strength rises with the strain rate."""
+"""Fracture of the bonds of a bar: at once, or with a fracture energy; strength that rises with the strain rate."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Fracture:
-    """How bonds open: fracture energy J/m², 0 for bonds that break at once; and their strength at higher strain rates.
+    """Fracture energy J/m², 0 for bonds that break at once, and rate dependence of the strength.
 
     per_decade : Pa by which the strength rises for a tenfold strain rate, between the two rates (1/s).
     """

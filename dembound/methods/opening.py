@@ -1,4 +1,4 @@
-"""The bonds of a bar that open: those of cracks with a fracture energy."""
+"""The opening bonds of a bar: those of cracks with a fracture energy."""
 
 from __future__ import annotations
 
@@ -79,11 +79,11 @@ class Opening:
         bonds[row[row >= 0], first[row >= 0]] = values[row >= 0]
 
     def memory(self) -> dict[str, np.ndarray]:
-        """All that changes during a run, by name."""
+        """All arrays that change during a run, by name."""
         return {f"opening_{name}": self[name] for name in COLUMNS} | {"opening_below": self.bundle.below}
 
     def recall(self, memory: Mapping[str, np.ndarray]) -> None:
-        """Restore what `memory` has returned for the same bar."""
+        """Restore the arrays returned by `memory` for the same bar."""
         self.bundle.listed[0] = len(memory["opening_row"])
         for name in COLUMNS:
             self[name][:] = memory[f"opening_{name}"]

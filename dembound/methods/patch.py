@@ -39,7 +39,7 @@ class Patch(Triggered):
         return Bonds(rod, self.horizon, complement=True, trigger_ratio=self.trigger)
 
     def stages(self, rod: Rod) -> list[Bonds]:
-        """No zone; then, in every range alike, one in the middle, one at each end, and one over the whole of it."""
+        """Bonds without a zone; then with a zone in the middle, at each end, and over the whole of every range."""
         stages = [self.begin(rod)]
         for place in range(4):
             stages.append(self.begin(rod))

@@ -50,5 +50,5 @@ class Peridynamics(Method):
         return bonds
 
     def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
-        """Not called: no spring triggers, and those of corrected ends break at the critical stretch."""
+        """Never called: no spring triggers, and springs of corrected ends break at the critical stretch."""
         return self.name

@@ -129,7 +129,7 @@ class Range:
     def carried_beyond(self, influence: np.ndarray | None = None) -> np.ndarray:
         """Share (cells,) of the stress under uniform strain that the bonds beyond both ends carry across its planes.
 
-        Of those of length p, p − 1 − k cross the k-th plane from the end: they begin at a node farther from the end.
+        Of bonds of length p, p − 1 − k cross the k-th plane from the end: they begin at a node farther from the end.
         """
         carried = np.zeros(self.cells)
         for side, planes in enumerate((carried, carried[::-1])):
@@ -225,7 +225,7 @@ class Rod:
 
     @cached_property
     def springs(self) -> np.ndarray:
-        """(n − 1,) N/m, stiffness of whole local springs; 0 where none joins two ranges."""
+        """Stiffness (n − 1,) N/m of whole local springs; 0 where none joins two ranges."""
         return self._by_plane(lambda part: part.spring, 0.0)
 
     @cached_property
@@ -251,7 +251,7 @@ class Rod:
         return [(left, right) for left, right in sides if left.last < right.first]
 
     def summed(self, of: Callable[[Range], np.ndarray]) -> np.ndarray:
-        """Values (n,) of all nodes from those of the nodes of each range, which shared nodes add up."""
+        """Values (n,) of all nodes from the values of each range's nodes, which are added up at shared nodes."""
         values = np.zeros(self.count)
         for part in self.ranges:
             values[part.nodes] += of(part)

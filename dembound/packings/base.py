@@ -88,16 +88,16 @@ class Packing(Table, ABC):
 
     @property
     def expected_disks(self) -> float:
-        """Number of disks expected, for the memory a case needs: random ones fill 0.85 of the area, see `first_count`.
+        """Number of disks expected, to compute the RAM of a case: random ones fill 0.85 of the area, see `first_count`.
 
-        Those that close a frame are not counted.
+        Disks that close a frame are not counted.
         """
         width, height = self.extent
         return SOLID * width * height / (math.pi * self.radius**2)
 
     @property
     def expected_contacts(self) -> float:
-        """Contacts for each disk that are expected, for the same purpose."""
+        """Contacts per disk expected, to compute the RAM of a case."""
         return CONTACTS
 
     @property
@@ -115,7 +115,7 @@ class Packing(Table, ABC):
         return left, bottom, left + width, bottom + height
 
     def gaps(self, ground: Box) -> dict[str, float]:
-        """How far (m) a ground goes on beyond the box's sides, but for those at its end."""
+        """Distance (m) by which a ground goes on beyond each of the box's sides, except those at its end."""
         (left, bottom, right, top), own = ground, self.box
         gaps = {"left": own[0] - left, "right": right - own[2], "bottom": own[1] - bottom, "top": top - own[3]}
         return {side: gap for side, gap in gaps.items() if gap > TYPED * max(right - left, top - bottom)}
@@ -125,10 +125,10 @@ class Packing(Table, ABC):
         return extent[0] / (2.0 * self.radius) * (extent[1] / (2.0 * self.radius))
 
     def apart(self, axis: int, place: float) -> float:
-        """How far (m) a wall across an axis is from the nearest plane between disks; 0 beyond the box.
+        """Distance (m) of a wall across an axis from the nearest plane between disks; 0 beyond the box.
 
         place : of the wall along the axis, m. By default half a diameter on a lattice, which may have no such planes;
-        walls in random packings are taken to be between disks.
+        walls in random packings are assumed to be between disks.
         """
         inside = self.box[axis] < place < self.box[2 + axis]
         return self.radius if self.is_lattice and inside else 0.0
@@ -138,7 +138,7 @@ class Packing(Table, ABC):
         return {key: factor * value for key, value in self.given().items() if self.described(key).get("means") == SIZE}
 
     def reseeded(self, by: int) -> Self | None:
-        """Another random packing of the same ground, by a seed larger by a number; by default there is none."""
+        """Another random packing of the same ground, with a seed larger by `by`; None, the default, for others."""
         return None
 
     def with_copies(self, across: int, up: int) -> Self:
@@ -197,7 +197,7 @@ class DensePacking(Packing):
 
     @property
     def expected_contacts(self) -> float:
-        """More where gaps are bonded."""
+        """Contacts per disk expected: more where gaps are bonded."""
         return MOST_CONTACTS if self.bond_gap > 0.0 else CONTACTS
 
     @property

@@ -51,7 +51,7 @@ class Brick:
     residual_ratio: float
 
     def check(self) -> None:
-        """Raise ValueError if shapes, numbers or indices are not those of a brick."""
+        """Raise ValueError if shapes, numbers or indices are not valid for a brick."""
         count, contacts = len(self.radii), len(self.pairs)
         shapes = {
             "size": (2,),

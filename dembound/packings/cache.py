@@ -43,7 +43,7 @@ def load_or_pack(key_params: Mapping[str, Any], pack: Callable[[], Brick]) -> Br
     """The brick with these parameters, from the cache, else packed and written to it.
 
     key_params contains all parameters of the brick, as JSON values; pack() makes it. If another process is packing the
-    same brick, it is waited for. If a brick cannot be written (no space, no permission), it is still returned.
+    same brick, this call waits for it. If a brick cannot be written (no space, no permission), it is still returned.
     """
     path = cache_folder() / f"brick-{_digest(key_params)}.npz"
     if (brick := _load(path)) is not None:

@@ -71,9 +71,9 @@ def with_column(
 ) -> tuple[Assembly, Seam]:
     """A body and its free-field column in one assembly, the column first and to the left, and the seam between them.
 
-    sides : those at which the column represents the ground.
+    sides : at which the column represents the ground.
     rows : first row of bricks of the body in the column, and the number of rows of the column; None: it is as high as
-    the body. beside : lower left corner (m) of what it is beside, by default of the body.
+    the body. beside : lower left corner (m) of the region it stands beside, by default of the body.
 
     Raises PackingError when a disk of the body has no twin in the column.
     """

@@ -34,7 +34,7 @@ def near_pairs(
 def listed(
     positions: np.ndarray, radii: np.ndarray, box: np.ndarray, reach: float
 ) -> tuple[np.ndarray, np.ndarray, pack.Pairs]:
-    """The pairs (b, 2) and images (b, 2) of `near_pairs`, and the same for the kernels."""
+    """The pairs (b, 2) and images (b, 2) of `near_pairs`, and as a table for the kernels."""
     from dembound.kernels import pack
 
     pairs, images = near_pairs(positions, radii, box, reach)
@@ -46,6 +46,6 @@ def listed(
 def strip_order(positions: np.ndarray, width: float) -> np.ndarray:
     """The order (n,) of disks strip after strip along x, upwards within a strip.
 
-    positions (n, 2) and the strip width in metres. Neighbours in space are then neighbours in memory.
+    positions (n, 2) and the strip width in metres. Neighbours in space are then neighbours in RAM.
     """
     return np.lexsort((positions[:, 1], np.floor(positions[:, 0] / width)))

@@ -19,10 +19,10 @@ NO_TOPS: Mapping[str, float] = MappingProxyType({})
 
 
 class Hole(Protocol):
-    """What has been removed: which positions (k, 2) m lie in it, and the rectangle around it, m."""
+    """A removed region: a test of positions (k, 2) m, and the rectangle around it, m."""
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Which positions (k, 2) m lie in it, (k,) bool."""
+        """Mask (k,) of positions (k, 2) m that lie in the hole."""
 
     @property
     def box(self) -> tuple[float, float, float, float]:
@@ -115,7 +115,7 @@ def _ends_at(
 
 
 def _is_absent(found: CutContacts, brick: Brick, body: Assembly, near: np.ndarray) -> np.ndarray:
-    """Whether the other disks of contacts (e,), which are near (n,) bool if they are there, are not in a body."""
+    """Mask (e,) of contacts whose other disk is not in the body; near : (n,) bool, its disks that may be the other."""
     where = body.tile[near].astype(np.int64)
     return ~np.isin(_key(found.tile, found.other, brick), _key(where, body.brick_particle[near], brick))
 
@@ -126,7 +126,7 @@ def _heights(found: CutContacts, brick: Brick, body: Assembly) -> np.ndarray:
 
 
 def _beyond(tile: np.ndarray, closing: np.ndarray, copies: tuple[int, int]) -> np.ndarray:
-    """Whether disks (e,) lie beyond each of the sides of `BEYOND`, (e, 4).
+    """Mask (e, 4) of disks that lie beyond each of the sides of `BEYOND`.
 
     tile : (e, 2) in which copies of the brick they are; closing : (e, 2) bool, whether they are of its regular rows,
     which close the frame of a body, and so belong to it beyond its last bricks.

@@ -23,13 +23,13 @@ class Square(Packing):
 
     @property
     def expected_disks(self) -> float:
-        """One to a cell."""
+        """Number of disks: one per cell."""
         across, up = self.copies
         return float(across) * up
 
     @property
     def expected_contacts(self) -> float:
-        """To the right and above."""
+        """Contacts per disk: 2, to the right and above."""
         return 2.0
 
     def apart(self, axis: int, place: float) -> float:

@@ -53,7 +53,7 @@ class Assembly:
     loose: int = 0
 
     def part(self, disks: slice) -> "Assembly":
-        """A range of the disks as a separate assembly, itself if it is of all; it has no contacts with other disks."""
+        """A range of the disks as a separate assembly, without contacts to other disks; itself for all disks."""
         if disks == slice(0, len(self.radii)):
             return self
         chosen = (self.pairs[:, 0] >= disks.start) & (self.pairs[:, 0] < disks.stop)
@@ -183,7 +183,7 @@ def _closing_width(brick: Brick, periodic: tuple[bool, bool]) -> np.ndarray:
 
 
 def _present(edge_rows: np.ndarray, copies: tuple[int, int], periodic: tuple[bool, bool]) -> np.ndarray:
-    """Which disks (tile x, tile y, disk) exist: all of the tiles, and the rows that close the frame."""
+    """Mask (tile x, tile y, disk) of existing disks: all of the tiles, and the rows that close the frame."""
     extra = [not periodic[axis] and bool(edge_rows[:, axis].any()) for axis in range(2)]
     present = np.ones((copies[0] + extra[0], copies[1] + extra[1], len(edge_rows)), bool)
     present[copies[0] :] &= edge_rows[:, 0]

@@ -36,7 +36,7 @@ FEWEST = 10
 
 @dataclass(frozen=True)
 class FieldStyle:
-    """How a field is drawn: its name, its unit and the SI value of it, the meaning of its sign, a colour map.
+    """The drawing of a field: name, unit and its SI value, meaning of the sign, colour map.
 
     jumps: whether it changes suddenly, so that values between two snapshots must not be interpolated.
     """
@@ -50,7 +50,7 @@ class FieldStyle:
 
     @property
     def label(self) -> str:
-        """For an axis or a colour bar."""
+        """Text for an axis or a colour bar."""
         return f"{self.words}{self.sense} ({self.unit})"
 
 

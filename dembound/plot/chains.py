@@ -29,13 +29,13 @@ LEAST_WIDTH = 2.0
 """Points, of the widest lines where disks are small."""
 
 FEW = 0.01
-"""Share of the contacts whose larger forces have lines of the same width: the largest are several times the others."""
+"""Share of the contacts whose larger forces have lines of equal width: the largest are several times the others."""
 
 NARROWEST = 4.0
 """Inches on the page that title and legend need at least."""
 
 MOST_LINES = 30_000
-"""Number of lines in a picture: those of the largest forces."""
+"""Largest number of lines in a picture; the largest forces are drawn."""
 
 PUSH, PULL = COLOURS[0], COLOURS[1]
 """Colours of compression and tension."""

@@ -23,7 +23,7 @@ LEAST = 1e-4
 """Smallest error shown, in per cent; smaller ones are drawn there."""
 
 SPANS = (8.0, 20.0)
-"""Least ratio of the ends of the axis of costs, and of that of errors."""
+"""Least ratio of the ends of the axis of costs, and of the axis of errors."""
 
 MARGIN, DECADES = 0.6, 300.0
 """Ends of the axes over the extreme values; ratio of the ends up to which 2 and 5 have numbers, too."""
@@ -54,9 +54,10 @@ WIDTH = 60
 class Dot:
     """A choice of a chart.
 
-    number : from 1. error : RMS of the worst monitor, %; cost : s; both as they decide the front; exact : the error as
-    it is; nan after a failure. monitor : the worst, with its component. found : other numbers beside those of the
-    reference, in words. apart : m, largest distance of a monitor from where the reference recorded it.
+    number : from 1. error : RMS of the worst monitor, %; cost : s; both as they decide the front; exact : the error
+    before nearly equal ones are merged; nan after a failure. monitor : the worst, with its component. found : findings,
+    as differences from the reference, in words. apart : m, largest distance of a monitor from where the reference
+    recorded it.
     """
 
     number: int
@@ -145,7 +146,7 @@ def _threads(runs) -> int:  # type: ignore[no-untyped-def]
 
 
 def _draw(panel: Axes, dots: Sequence[Dot]) -> None:
-    """All points, the front as a line, and the levels."""
+    """Draw all points, the front as a line, and the levels."""
     panel.set(xscale="log", yscale="log")
     for dot in dots:
         colour = COLOURS[1] if dot.on_front else COLOURS[0]

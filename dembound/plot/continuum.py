@@ -76,7 +76,7 @@ def read_continuum(file: h5py.File) -> ContinuumCells | None:
 
 
 def is_scattered(file: h5py.File) -> bool:
-    """Whether stresses and peaks of the continuum of an open record are those of the scattered motion alone."""
+    """Whether the continuum of an open record has stresses and peaks of the scattered motion only."""
     return f"{GROUP}/total" in file
 
 

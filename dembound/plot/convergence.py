@@ -1,4 +1,4 @@
-"""How calibrations of a boundary's factor β converge, pass by pass (Z figs 6, 13)."""
+"""Convergence of calibrations of a boundary's factor β, pass by pass (Z figs 6, 13)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -49,7 +49,7 @@ class Window:
         return float(left), float(right), float(bottom), float(top)
 
     def touches(self, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
-        """Which disks (n,) bool reach into it; positions (n, 2), radii (n,) in m."""
+        """Mask (n,) of disks that reach into the window; positions (n, 2), radii (n,) in m."""
         nearest = np.clip(positions, self.corner, self.corner + self.size)
         return np.hypot(*(positions - nearest).T) < radii * (1.0 - 1e-9)  # touching disks, to rounding, are outside
 

@@ -60,7 +60,7 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
 
 
 def line_widths(lattices: Sequence[Lattice]) -> list[float]:
-    """Widths in points over spacings per wavelength, the larger the more lattices of the same horizon follow.
+    """Line widths in points over spacings per wavelength, larger where more lattices of the same horizon follow.
 
     There these nearly coincide, and each must be visible below the next.
     """

@@ -66,11 +66,11 @@ BESIDE = {
     "continuum": " of the continuum",
     "free_field.continuum": " of the continuum below the column",
 }
-"""By the ending of their names, what sides belong to other than the body."""
+"""Words for sides that do not belong to the body, by the ending of their names."""
 
 
 class EnergyLine(NamedTuple):
-    """A line of the picture: its name in the legend, energies (k,) in J or J/m, how it is drawn, and from which share.
+    """A line of the picture: its name in the legend, energies (k,) in J or J/m, style, and least share.
 
     least : share of the largest of all lines below which it is left out.
     """
@@ -122,7 +122,7 @@ def plot_energy(run: Path) -> Figure:
 
 
 def _of_ledger(columns: dict[str, np.ndarray], bar: bool, divided: bool) -> Iterator[EnergyLine]:
-    """The columns of the ledger; `divided`: the work from outside is drawn by sides, with that of loads."""
+    """The columns of the ledger; `divided`: the work from outside is drawn by sides and loads."""
     left_out = "outside" if divided else "loads"
     for index, (column, label) in enumerate((BAR_COLUMNS if bar else COLUMNS).items()):
         if column in columns and column != left_out:
@@ -131,7 +131,7 @@ def _of_ledger(columns: dict[str, np.ndarray], bar: bool, divided: bool) -> Iter
 
 
 def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[EnergyLine]:
-    """What came in through every side, what it absorbed, and what is stored in its springs."""
+    """For every side the energy that came in, the absorbed energy, and the energy stored in its springs."""
     for column, (label, looks) in OF_SIDES.items():
         for index, (side, energies) in enumerate(sides.items()):
             name, _, beside = side.partition(".")

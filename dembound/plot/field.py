@@ -34,7 +34,7 @@ MEGA = 1e6
 """Pascals in a megapascal."""
 
 STRESSES = ("stress_xx", "stress_yy", "stress_xy")
-"""In the order of the columns of a stress in a record."""
+"""Names of stresses in the order of the columns in a record."""
 
 SENSES = dict.fromkeys(STRESSES[:2], ", tension positive") | {"stress_xy": ", positive up on a face to the right"}
 """The meaning of a positive stress."""
@@ -78,12 +78,12 @@ class Disks:
 
     @property
     def in_words(self) -> str:
-        """For a title."""
+        """The number of disks as text for a title."""
         return f"{len(self.radii)} disks{'' if self.continuum is None else ' and a continuum'}"
 
     @property
     def seam(self) -> float | None:
-        """Where (m, along x) between the free-field column and the body or its continuum; None without a column."""
+        """Position (m, along x) between the free-field column and the body or its continuum; None without a column."""
         if self.column == 0:
             return None
         right, left = (self.positions + sign * self.radii[:, None] for sign in (1.0, -1.0))
@@ -100,7 +100,7 @@ class Field:
     captions, k texts with the times; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
     of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
     of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none;
-    moved (k, n, 2) and moved_beyond (k, m, 2) m, how far from their places disks and nodes are drawn, None at them.
+    moved (k, n, 2) and moved_beyond (k, m, 2) m, displacements with which disks and nodes are drawn, None for none.
     """
 
     captions: list[str]
@@ -116,12 +116,12 @@ class Field:
 
     @property
     def label(self) -> str:
-        """For a colour bar."""
+        """Text for a colour bar."""
         return f"{self.name}{self.sense} ({self.unit})"
 
 
 def read_disks(file: h5py.File) -> Disks:
-    """The disks of an open record; raises CaseError for one of histories alone."""
+    """The disks of an open record; raises CaseError for one of only histories."""
     require_run(file)
     laws = laws_of(file)
     places = {name: group.attrs["position"] for name, group in file.get("histories", {}).items()}
@@ -146,7 +146,7 @@ def read_disks(file: h5py.File) -> Disks:
 
 @dataclass(frozen=True)
 class FieldInRecord:
-    """Where a field is in a record, and its limits in all snapshots.
+    """The place of a field in a record, and its limits in all snapshots.
 
     groups, all snapshots; dataset and beyond, names in each of them, the latter of a continuum, None for none; column
     of both; words, sense and unit as of a `Field`, scale the SI value of the unit; largest (g,) size in each snapshot,
@@ -221,7 +221,7 @@ def evenly_chosen(count: int, most: int) -> list[int]:
 def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot: int | None, most: int) -> Field:
     """A field of an open record; name and component as in `plot_scene`.
 
-    Without the number of a snapshot there are up to `most`, evenly chosen, including the last, or if that is 1 the one
+    Without a snapshot number there are up to `most` snapshots, evenly chosen, including the last, or for 1 the one
     in which the field is largest. The limits are those of the whole run, 1 where all is zero.
 
     Raises CaseError when the record has no such snapshot or does not have the field, or disks have no such field.

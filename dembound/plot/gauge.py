@@ -15,10 +15,10 @@ MPA = 1e6
 """Pascals in a megapascal."""
 
 MEASURED = {"Pa": ("stress", "MPa", MPA), "strain": ("strain", "µε", 1e-6), "V": ("signal", "V", 1.0)}
-"""By the unit of what a gauge measures: its name, and the name and size of the unit in pictures."""
+"""By the unit of a gauge's signal: its name, and the name and size of the unit in pictures."""
 
 STEPS = (-1.5, -1.0, -0.5, 0.0, 0.5)
-"""Times of the stresses near the free end, relative to that of the spall, in travel times from there to the end."""
+"""Times of the stresses near the free end, relative to the spall, in travel times from the spall to the end."""
 
 PLACES = 500
 """Points of each line along the bar."""
@@ -28,7 +28,7 @@ PLACES = 500
 def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
     """The history, with the tension peaks and their exponential fit if used; next to it the stress near the end.
 
-    The latter, at several times, is that of the incident pulse and its image near the free end, without attenuation. It
+    The stress near the end, at several times, is that of the incident pulse and its image, without attenuation. It
     is drawn if the position of the spall is given.
 
     Parameters

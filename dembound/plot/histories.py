@@ -29,7 +29,7 @@ BESIDE_TWINS: tuple[Any, ...] = ("-", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 """Line style of monitors in runs with free-field twins, whose lines are dashed."""
 
 BEHIND: dict[str, Any] = {"linestyle": "--", "linewidth": 3.0, "alpha": 0.4, "zorder": 1.9}
-"""Line style of a twin: visible also below the line of a monitor with the same motion, as without a hole."""
+"""Line style of a twin, visible also below the line of a monitor with the same motion, as without a hole."""
 
 WITHIN: dict[str, Any] = {"alpha": 0.2, "linewidth": 0.0, "zorder": 1.5}
 """Style of the bands of estimated errors: below all lines."""
@@ -49,7 +49,7 @@ def plot_histories(
 
     With free-field sides the panel of a monitor also has its twin in the free-field column, dashed. Runs whose errors
     have been estimated have a band around their line, and where the error of the sides is known a line without it. The
-    title gives the position of the monitor's particle, and the position given in the case if it differs.
+    title gives the position of the monitor's particle, and the requested position if it differs.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ def plot_histories(
     monitors
         names of those to show, in this order; by default all. A twin that is given by its name has a separate panel.
 
-    Raises CaseError when a file cannot be read or has no stress where it is asked for, no run has a monitor, none has
-    one of those asked for, or a component of a stress is asked for.
+    Raises CaseError when a file cannot be read or lacks a requested stress, no run has a monitor, none has
+    a requested monitor, or a component of a stress is requested.
     """
     if quantity == "stress" and component is not None:
         raise CaseError(["component: is of motions; the stress of a bar is that along it"])
@@ -101,7 +101,7 @@ def plot_histories(
 def _draw(
     panel: Axes, run: Histories, monitor: str, column: int, seconds: float, label: str, style: dict[str, Any]
 ) -> None:
-    """A monitor's history in one run, if it has it, and that of its twin, dashed; times in units of `seconds`."""
+    """Draw a monitor's history in one run, if it has it, and its twin's, dashed; times in units of `seconds`."""
     twin: dict[str, Any] = {"color": style["color"], **BEHIND}
     for name, words, looks in ((monitor, label, style), (twin_of(monitor), f"{label}, free field", twin)):
         if name in run:

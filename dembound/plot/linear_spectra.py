@@ -21,9 +21,9 @@ FEWEST = 4
 def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = None) -> Figure:
     """Amplitude spectra |∫ v exp(−2πift) dt| of the velocities at the monitors, one panel each, with common axes.
 
-    Frequencies end where all spectra are below 1 % of the largest value of any. Of a motion that is not over at the end
-    of the run the spectrum is that of the part that was recorded. A monitor at rest, or with a velocity that is not
-    finite, has an empty panel.
+    Frequencies end where all spectra are below 1 % of the largest value of any. For a motion that is not over at the
+    end of the run the spectrum is that of the recorded part. A monitor at rest, or with a velocity that is not finite,
+    has an empty panel.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def spectrum_of(history: MonitorRecord, column: int) -> tuple[np.ndarray, np.nda
 
 
 def _end_of(spectra: Sequence[tuple[np.ndarray, np.ndarray]]) -> float:
-    """The frequency (Hz) above which all spectra have faded beside the largest; 1 without any."""
+    """The frequency (Hz) above which all spectra are negligible relative to the largest value; 1 without any."""
     least = FADED * max((amplitudes.max() for _, amplitudes in spectra), default=0.0)
     return max(
         (float(frequencies[amplitudes >= least].max(initial=0.0)) for frequencies, amplitudes in spectra), default=1.0

@@ -23,7 +23,7 @@ CHANGING = tuple(name for name in get_args(FieldName) if name != "peak")
 class MovingScene:
     """The disks of a run, and a continuum around them, coloured by a field at every snapshot.
 
-    A long scene has a second panel with an enlarged part of it. One snapshot is in memory at a time.
+    A long scene has a second panel with an enlarged part of it. One snapshot is in RAM at a time.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class MovingScene:
     field
         one of `CHANGING`, as in `plot_scene`.
     exaggerate
-        how many times their displacement disks, nodes and cracks are moved; 0 shows them where they began. Monitors,
+        factor of the displacements of disks, nodes and cracks; 0 shows them where they began. Monitors,
         outlines of elements and ties remain where they were at the start.
 
     Raises CaseError when the file cannot be read, has no snapshots, or does not contain the field.
@@ -80,7 +80,7 @@ class MovingScene:
         return Window(window.corner - margin, window.size + 2.0 * margin)
 
     def _make_panels(self) -> None:
-        """One panel, or of a long scene also one for the enlarged part: below, or beside an upright one."""
+        """Make one panel, or for a long scene also one for the enlarged part: below, or beside an upright one."""
         windows = [self._window] if self._part is None else [self._window, self._part]
         upright = bool(self._part and self._window.size[1] > self._window.size[0])
         room = [float(min(DRAWING / window.size)) for window in windows]

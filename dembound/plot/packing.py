@@ -72,7 +72,7 @@ def brick_disks(
     """Every disk of a brick and every follower of its neighbours that extends into the box.
 
     Arguments as in `plot_brick`. Returns places (m, 2) m, numbers (m,) of the disks in the brick, and kinds
-    (m,), keys of `KINDS`; the first n are those of the brick.
+    (m,), keys of `KINDS`; the first n belong to the brick.
     """
     box = Window(np.zeros(2), size)
     own = np.arange(len(radii))

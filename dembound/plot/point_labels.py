@@ -27,13 +27,13 @@ AROUND: list[tuple[tuple[float, float], str, str]] = [
     for radius in (12.0, 17.0, 25.0)
     for angle in np.radians([45, 225, 135, 315, 0, 90, 180, 270, *range(22, 360, 45)])
 ]
-"""The same of a number, which is so short that it may stand a little apart."""
+"""Places of a number, which is so short that it may stand a little apart."""
 
 GAP, APART, STEP = 2.0, 6.0, 3.0
 """Points between two labels, between a label and another point, and between places on a line that is not covered."""
 
 FARTHER = {True: 1.2, False: 1.02}
-"""Least distance of other points from a label over that of its own, from a name and from a number."""
+"""Least distance of other points from a label over the distance of its own, for a name and for a number."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Labels:
         return [each.number for each in numbered]
 
     def _placed(self, point: Labelled, text: str, places: Iterable[tuple[tuple[float, float], str, str]]) -> bool:
-        """Whether a text finds one of several places beside its point; it is written there."""
+        """Write a text at the first free one of several places beside its point; returns whether one is free."""
         is_name = text != str(point.number)
         others = self._pixels([each.place for each in self.points if each.place != point.place])
         lines = np.concatenate([np.empty((0, 2)), *(list(self._along_lines()) if is_name else [])])

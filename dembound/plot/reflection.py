@@ -1,4 +1,4 @@
-"""What a side sends back of P and S waves, against angle and against frequency."""
+"""Reflection of P and S waves by a side, against angle and against frequency."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ GREYS = ("#000000", "#606060", "#A8A8A8")
 
 
 class Curves(NamedTuple):
-    """Shares of energy sent back of one type of waves.
+    """Shares of reflected energy for one type of incident waves.
 
-    name : of the waves. same, converted : (f, a) as the same and as the other type. beside : name -> (f, a) in all, of
+    name : of the waves. same, converted : (f, a) as the same and as the other type. beside : name -> total (f, a) of
     other sides in place of this one.
     """
 
@@ -79,7 +79,7 @@ def _against_angle(panel: Axes, angles: np.ndarray, each: Curves) -> None:
 
 
 def _against_frequency(panel: Axes, angles: np.ndarray, frequencies: np.ndarray, each: Curves) -> None:
-    """In all, at some angles."""
+    """Draw the total against frequency, at some angles."""
     near = dict.fromkeys(int(np.argmin(np.abs(angles - angle))) for angle in SHOWN)
     for index, colour, dash in zip(near, GREYS, DASHES, strict=False):
         values, name = (each.same + each.converted)[:, index], f"in all at {angles[index]:g}°"

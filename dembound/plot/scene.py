@@ -23,7 +23,7 @@ LONG = 6.0
 """A scene longer than this many times its width has a second panel with an enlarged part of it."""
 
 CLOSE_UP_DIAMETERS = 40
-"""Width of that part in mean disk diameters, or that of the scene if it is less, so that every disk is visible."""
+"""Width of the enlarged part in mean disk diameters, or of the scene if it is less, so that every disk is visible."""
 
 CLOSE_UP_ASPECT = 3.0
 """Length of that part over its width, but its length is never below `CLOSE_UP_DIAMETERS` either."""
@@ -38,7 +38,7 @@ STRIP_GAP = 0.12
 """Inches between two strips."""
 
 SHORTEST = {"x": 0.8, "y": 0.4}
-"""Inches of a panel that has numbers along x or y: three of them, one beside or above the other."""
+"""Inches of a panel long enough for three numbers along x or y."""
 
 TICK_APART, SMALL = 0.6, 7
 """Inches between the numbers of a panel as far as it is long enough for three; their size in points if it is not."""
@@ -67,7 +67,7 @@ def plot_scene(
 
     Bonds broken up to this time are marked at their positions, above the disks and with the same size in every scene;
     the legend has their number. A very long scene has one more panel with an enlarged part of it. A continuum round the
-    disks has the same colours, its layers that absorb are hatched.
+    disks has the same colours, its absorbing layers are hatched.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def strips_on_page(scene: Window) -> int:
 
 
 def _draw_whole(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMappable]:
-    """One panel."""
+    """Draw the scene in one panel."""
     width, height = disks.window.size
     scale = min(DRAWING[0] / width, DRAWING[1] / height)
     rows = 1.6 if disks.continuum is None else 2.1  # of title, axis and legend
@@ -121,7 +121,7 @@ def _draw_whole(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarM
 
 
 def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMappable]:
-    """The whole scene as strips, one per time, and below or next to them an enlarged part of one of them."""
+    """Draw a long scene as strips, one per time, and below or next to them an enlarged part of one of them."""
     upright = bool(disks.window.size[1] > disks.window.size[0])
     count = len(shown.captions)
     framed = int(np.argmax(np.abs(shown.values).max(axis=1)))
@@ -144,7 +144,7 @@ def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMa
 
 
 def _draw_strips(panels: np.ndarray, disks: Disks, shown: Field, scale: float) -> None:
-    """The whole scene at each of its times, in panels (k,) with one axis at the last; `scale` in pixels per metre."""
+    """Draw the scene at each of its times, in panels (k,) with one axis at the last; `scale` in pixels per metre."""
     for index, (panel, caption) in enumerate(zip(panels, shown.captions, strict=True)):
         draw_panel(panel, disks, shown, index, disks.window, scale)
         beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}

@@ -26,11 +26,11 @@ def plot_section(
 ) -> Figure:
     """Histories of monitors, each drawn at its distance from the first one, with one scale for all, which is given.
 
-    Their names stand beside them on the right, at the distances in the first run.
-    The distances are those of the true positions of their particles. Parameters as of `plot_histories`; the order of
-    the monitors is free, the first of them is where distances begin.
+    The names of the monitors stand beside their histories on the right, at the distances in the first run. Distances
+    are those of the true positions of their particles. Parameters as of `plot_histories`; the order of the monitors is
+    free, distances begin at the first of them.
 
-    Raises CaseError as it does, with fewer than two monitors, and for both components.
+    Raises CaseError as `plot_histories`, with fewer than two monitors, and for both components.
     """
     if component == "both":
         raise CaseError(["--component: is both; a section shows one"])

@@ -34,7 +34,7 @@ FEW_DECADES = 300.0
 """End of an axis over its begin below which not only powers of ten have numbers, but also their multiples."""
 
 NUMBERED = (1.0, 2.0, 5.0)
-"""These multiples."""
+"""Multiples of powers of ten that are labelled on an axis."""
 
 FEWEST = 16
 """Samples that a spectrum needs at least."""
@@ -43,7 +43,7 @@ FAINT: dict[str, Any] = {"linewidth": 0.5, "alpha": 0.3, "zorder": 1.8}
 """Line style of spectra that are not smoothed."""
 
 LEGEND_OF_FAINT: dict[str, Any] = {"linewidth": 0.5, "color": REFERENCE, "label": "thin: not smoothed"}
-"""Line in the legend for those of all runs."""
+"""Line in the legend for the unsmoothed spectra of all runs."""
 
 
 class Curve(NamedTuple):
@@ -196,7 +196,7 @@ def _figure(
 def _draw(
     panel: Axes, curve: CurveOf, run: Histories, name: str, column: int, label: str, style: dict[str, Any]
 ) -> None:
-    """The line of a monitor in one run, if it has it, over a thin one not smoothed, and that of its twin, dashed."""
+    """Draw a monitor's smoothed spectrum in one run, if it has it, over a thin unsmoothed one; its twin's dashed."""
     if (twin := curve(run, twin_of(name), column)) is not None:
         behind = {"color": style["color"], **BEHIND}
         panel.plot(twin.along, twin.values, label=f"{label}, free field", gid=twin_of(name), **behind)
@@ -230,7 +230,7 @@ def _on_logarithmic_axes(panels: np.ndarray) -> None:
 
 
 def _those(histories: Sequence[Histories], names: Sequence[str]) -> list[Histories]:
-    """For each run the histories of some monitors, as far as it has them."""
+    """For each run the histories of the named monitors that it has."""
     return [{name: run[name] for name in names if name in run} for run in histories]
 
 

@@ -15,10 +15,10 @@ LEAST, MOST = 1e-20, 1e100
 
 @dataclass(frozen=True)
 class Line:
-    """Energy of a run over that of its noise.
+    """Energy of a run over the energy of its noise.
 
-    name : of the run; group : index of what was measured, which has one colour; steps (k,); energy (k,); dashed :
-    whether it is drawn so.
+    name : of the run; group : index of the trial, which has one colour; steps (k,); energy (k,); dashed :
+    whether the line is dashed.
     """
 
     name: str

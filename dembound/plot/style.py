@@ -69,7 +69,7 @@ class TimeUnit(NamedTuple):
 
     @property
     def label(self) -> str:
-        """For an axis."""
+        """Text for an axis."""
         return f"time ({self.name})"
 
 
@@ -112,7 +112,7 @@ def new_figure(width: float, height: float) -> Figure:
 def measured_once(panels: np.ndarray, *, same_y: bool = True) -> None:
     """Let the layout measure common axes only once, which is most of its time; nothing moves.
 
-    panels (rows, columns): only the last row has numbers on x; same_y : those on y are the same in all rows. Ticks
+    panels (rows, columns): only the last row has numbers on x; same_y : numbers on y are the same in all rows. Ticks
     without numbers belong to the spines.
     """
     for row, panel in ((row, panel) for row, across in enumerate(panels) for panel in across):
@@ -202,7 +202,7 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
 
 
 def is_seen(artist: Any, panel: Axes) -> bool:
-    """Whether any of an artist is within the axes, and not thinner than a line; one without data is a key alone."""
+    """Whether any part of an artist is within the axes, and not thinner than a line; False for one without data."""
     if isinstance(artist, tuple):  # bars, and points with the ranges of their errors
         return any(is_seen(part, panel) for part in np.ravel(np.array(artist, dtype=object)) if part is not None)
     if not artist.get_visible():
@@ -272,5 +272,5 @@ def pixels_of(figure: Figure) -> np.ndarray:
 
 
 def set_pixels(figure: Figure, width: int) -> None:
-    """Give a figure a width in pixels; its size in inches, and so that of its texts beside it, remains."""
+    """Set the width of a figure in pixels; its size in inches, and so the relative size of texts, is kept."""
     figure.set_dpi((width + 0.5) / figure.get_figwidth())  # the canvas leaves out fractions of a pixel

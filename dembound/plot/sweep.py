@@ -34,7 +34,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Content:
-    """What is drawn: the number of the group of every member (n,), the groups, and the panels."""
+    """Contents of the picture: the number of the group of every member (n,), the groups, and the panels."""
 
     title: str
     member_group: np.ndarray
@@ -77,7 +77,7 @@ def plot_sweep(path: Path) -> Figure:
 
 
 def read_content(path: Path) -> Content:
-    """What a picture shows; errors as `plot_sweep`."""
+    """The contents of a picture; errors as `plot_sweep`."""
     with open_record(path) as file:
         texts = [text_of(each) for each in file["members/group"][:]]
         names = list(dict.fromkeys(texts))
@@ -108,7 +108,7 @@ def _is_by_value(groups: Sequence[dict[str, Any]]) -> bool:
 
 
 def _places(groups: Sequence[dict[str, Any]]) -> tuple[np.ndarray, str]:
-    """Where groups are drawn along the horizontal axis (g,), and its label."""
+    """Positions (g,) of the groups along the horizontal axis, and its label."""
     keys = list(dict.fromkeys(key for group in groups for key in group))
     if _is_by_value(groups):
         return np.array([group[keys[0]] for group in groups], dtype=float), keys[0]
@@ -121,7 +121,7 @@ def _in_words(group: dict[str, Any]) -> str:
 
 
 def _draw(panel: Axes, each: Panel, content: Content, places: np.ndarray) -> None:
-    """The members of every group in their order, side by side, and beside them mean and interval."""
+    """Draw the members of every group in their order, side by side, and beside them mean and interval."""
     distance = float(np.diff(np.unique(places)).min()) if len(places) > 1 else 1.0
     for number, place in enumerate(places):
         inside = np.flatnonzero(content.member_group == number)

@@ -35,7 +35,7 @@ def write_lines(figure: Figure, path: Path) -> None:
 
 
 def columns_of(figure: Figure) -> Iterator[Column]:
-    """The columns of that table: for each group of lines with the same x values these, then the values of the lines.
+    """The columns of the table: for each group of lines with the same x values first these, then the lines' values.
 
     The heads of lines that are drawn against two quantities name the quantity.
     """
@@ -60,7 +60,7 @@ def columns_of(figure: Figure) -> Iterator[Column]:
 
 
 def _of(line: Line2D, lines: Sequence[Line2D]) -> str:
-    """To which of several lines x values belong: its run; if runs have several lines, its name and its run."""
+    """Name of the lines to which x values belong: their run; if runs have several lines, also the line's name."""
     if len(lines) == 1:
         return ""
     is_only_one = [each.get_label() for each in lines].count(line.get_label()) == 1

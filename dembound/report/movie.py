@@ -26,10 +26,10 @@ PALETTE_FRAMES = 6
 """Frames from which the colours of a GIF are taken, which all of its frames share."""
 
 SHADES = 96
-"""Colours of the palette that are those of a scene's colour map: neighbours differ by less than can be seen."""
+"""Colours of the palette taken from a scene's colour map: neighbours differ by less than can be seen."""
 
 ROUNDING = 2
-"""By which red, green and blue of a colour of the map may differ from those drawn, of 255."""
+"""Largest difference, of 255, between red, green and blue of a colour of the map and of a drawn pixel."""
 
 RARE = 0.3
 """Power of the number of pixels with which a colour counts for the palette: waves are small, and most is white."""

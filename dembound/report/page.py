@@ -1,4 +1,4 @@
-"""One HTML page of runs that holds all it shows: pictures, charts to zoom, tables, cases. It loads nothing."""
+"""One self-contained HTML page of runs: pictures, charts to zoom, tables, cases. It loads nothing."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def write_report(records: Sequence[Path], path: Path, say: Callable[[str], None]
     path
         of the HTML file.
     say
-        called with a line for everything that a run does not contain and the page therefore lacks.
+        called with a line for every part that the page lacks because a run does not contain it.
 
     Raises CaseError or RecordError, with a line for each record that cannot be used, FileNotFoundError if the folder of
     the path does not exist.
@@ -109,7 +109,7 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
     missing: list[str] = []
 
     def attempt(draw: Callable[[], Any]) -> Any:
-        """What can be drawn, or None and a line about what is missing."""
+        """The result of `draw`, or None after reporting in a line what is missing."""
         try:
             return draw()
         except RecordError:
@@ -163,7 +163,7 @@ def _source(environment: Environment, name: str) -> Markup:
 
 
 def _hash(text: str) -> str:
-    """The SHA-256 of an inline style sheet or script in base64, by which the policy of the page allows it alone."""
+    """The SHA-256 of an inline style sheet or script in base64, the only ones that the page's policy allows."""
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
@@ -177,7 +177,7 @@ def _shown_text(value: Any) -> Any:
 
 
 def _shown(run: ReportedRun, attempt: Callable[[Callable[[], Any]], Any]) -> ShownRun:
-    """The pictures of one run alone, none of histories alone."""
+    """The pictures of one run; none of a record of only histories."""
     if run.has_histories_alone:
         return ShownRun(run, [], None, None)
     scenes = attempt(lambda: [picture_of(figure) for name, figure in run.kind.pictures(run.record) if name == "scene"])
@@ -206,7 +206,7 @@ def _motion(record: Path, chosen: Sequence[int]) -> list[float]:
 
 
 def _charts(runs: Sequence[ReportedRun], attempt: Callable[[Callable[[], Any]], Any]) -> Iterator[Picture]:
-    """Histories and spectra of all runs together, of every component that is visible beside the largest."""
+    """Histories and spectra of all runs together, of every component that is not negligible."""
     records = [run.record for run in runs]
     components = attempt(lambda: _components(records)) or []
     draws = [partial(plot_histories, records, component) for component in components]
@@ -245,7 +245,7 @@ def _tables(runs: Sequence[ReportedRun]) -> dict[str, tables.Table | None]:
 
 
 def _packed(values: dict[str, Any]) -> str:
-    """Plain values as compressed JSON in characters that a page may contain; the same for the same values."""
+    """Plain values as compressed JSON in characters that a page may contain; equal values give equal text."""
     text = json.dumps(_visible_in(values), separators=(",", ":"), allow_nan=False)
     return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
 

@@ -94,7 +94,7 @@ def _named(panel: Axes) -> list[Line2D]:
 
 
 def _line(line: Line2D, ends: tuple[float, float]) -> dict[str, Any]:
-    """A line between two ends of x: its name, how it is drawn, and its points."""
+    """A line between two ends of x: its name, style, and points."""
     from matplotlib.colors import to_hex
 
     x, y = (np.asarray(values, dtype=float) for values in line.get_data())
@@ -115,7 +115,7 @@ def _line(line: Line2D, ends: tuple[float, float]) -> dict[str, Any]:
 def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
     """A line of up to `most` points in place of one of more, x and y (k,), with the same extremes.
 
-    Of every so many points in a row the smallest and the largest y remain, in their order.
+    Of each group of consecutive points the smallest and the largest y remain, in their order.
     """
     if len(x) <= most:
         return x, y

@@ -29,12 +29,12 @@ class ReportedRun:
 
     @property
     def has_histories_alone(self) -> bool:
-        """Whether it is the motion at monitors without a body: exact, or superposed from a library."""
+        """Whether the record has only histories of monitors, exact or superposed from a library, and no body."""
         return len(self.results.particles) == 0
 
     @property
     def is_bar(self) -> bool:
-        """Whether it is that of a bar."""
+        """Whether the record is that of a bar."""
         return self.kind.name == "bar"
 
 

@@ -15,7 +15,7 @@ from dembound.results.summary import end_in_words
 from dembound.words import Entries, percent
 
 NONE = "–"
-"""What stands where a run has no such entry."""
+"""Text where a run has no such entry."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ def beside(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedR
 
 
 def overview(runs: Sequence[ReportedRun]) -> Table:
-    """What each run is, and how it ended."""
+    """Table of the runs: case, contents, and how each run ended."""
     return beside("Runs", runs, _overview)
 
 
@@ -67,7 +67,7 @@ def _overview(run: ReportedRun) -> Entries:
 
 
 def _contents(run: ReportedRun) -> Iterator[str]:
-    """What the scene of disks consists of."""
+    """The contents of a scene of disks in words."""
     column = run.results.attributes.get("column", 0)
     yield f"{len(run.results.particles['radius']) - column:,} disks"
     if column > 0:
@@ -177,7 +177,7 @@ def _joules(energy: float, run: ReportedRun) -> str:
 
 
 def time_split(runs: Sequence[ReportedRun]) -> Table | None:
-    """Seconds by part of each run, rate and memory; None without summaries."""
+    """Seconds by part of each run, rate and RAM; None without summaries."""
     return _or_none(beside("Where the time went", runs, _time))
 
 

@@ -139,9 +139,9 @@ def calibrate(
     ----------
     motion : by default P, or S if the motion along the normal is held or only S waves run along it. method :
     "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
-        M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD, that of
-        "matched", from brick and side alone, without a run.
-    start : first β; by default the case's. Where that is "matched", β0 of the strip, and it is refined once at least.
+        M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD, as
+        "matched" does, from brick and side, without a run.
+    start : first β; by default the case's. Where the case has "matched", β0 of the strip, refined at least once.
     tolerance : ends when |M_out/M_in − 1| is below it.
     full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.

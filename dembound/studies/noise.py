@@ -56,7 +56,7 @@ ROUNDING = 100.0 * float(np.finfo(float).eps)
 
 @dataclass
 class Course:
-    """Energies over that of the noise at the start.
+    """Energies over the energy of the noise at the start.
 
     steps (k,); kinetic (k,), of velocities half a step earlier; energy (k,), see `long_run`, empty in short runs.
     """
@@ -102,7 +102,7 @@ class LongRun:
 
     @property
     def shown(self) -> tuple[list[int], list[float]]:
-        """Steps and energies for pictures; if it is not stable the kinetic ones, as the other may become negative."""
+        """Steps and energies for pictures; for an unstable run kinetic ones, as the other may become negative."""
         values = self.course.energy if self.is_stable else self.course.kinetic
         return self.course.steps[-len(values) :], values
 
@@ -120,11 +120,11 @@ def short_run(trial: Trial, step: float, resolution: float = RESOLUTION) -> Cour
 
 
 def long_run(trial: Trial, part: str, steps: int, samples: int = SAMPLES) -> LongRun:
-    """Noise in one part at the case's own step; samples : times that its energy is noted.
+    """Noise in one part at the case's own step; samples : number of times at which its energy is computed.
 
     Under a linear law the energy is ½v⁻ᵀMv⁻ + ½uᵀKu⁻ with the displacements u⁻ of the step before, which central
     differences conserve and dampers reduce. Under other laws it is the energy of the ledger, at whole steps and of all
-    parts, plus what boundaries have taken: friction and contacts that close reduce it. It begins with the second
+    parts, plus the energy taken by boundaries: friction and contacts that close reduce it. It begins with the second
     sample, as the law may change in the first step.
     """
     every, share = max(1, steps // samples), trial.step / trial.limit

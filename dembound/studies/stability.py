@@ -1,4 +1,4 @@
-"""How large a time step is stable, measured: with dampers, springs, columns and all else of a scene.
+"""The largest stable time step, measured: with dampers, springs, columns and all else of a scene.
 
 The limit from the largest eigenvalue (disks/stability.py, bar/stability.py) assumes that centred dampers, held
 components and one-sided seams do not lower it. Here noise is stepped (noise.py) in the scene without loads and waves
@@ -33,7 +33,7 @@ Report = Callable[[str], None]
 
 @dataclass
 class Stability:
-    """What was measured of one trial.
+    """The measured stability of one trial.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Stability:
 
     @property
     def is_stable(self) -> bool:
-        """Whether the case's own step is stable: it is below those at which noise grew, and so were the long runs."""
+        """Whether the case's own step is stable: below the steps at which noise grew, with stable long runs."""
         return self.trial.step < self.above and all(run.is_stable for run in self.long_runs)
 
 

@@ -20,7 +20,8 @@ MOST_SAMPLES = 2**20
 """Largest number of even samples of a spectrum; a file with very uneven times would have any number of them."""
 
 JUMP = 4.0
-"""Two samples that are so many neighbouring numbers apart, or fewer, are a jump, which rounding may move."""
+"""Spacing of two samples, in neighbouring floating-point numbers, up to which they are a jump, which rounding may
+move."""
 
 
 class FileWave(Wave):
@@ -95,7 +96,7 @@ class FileWave(Wave):
         return self.start + self._times[0]
 
     def duration(self) -> float:
-        """Time from which the wave is over, s: that of the last line."""
+        """Time from which the wave is over, s: the time of the last line."""
         return self.start + self._times[-1]
 
     def ends(self) -> tuple[tuple[str, float, float], ...]:
@@ -104,7 +105,7 @@ class FileWave(Wave):
         return ("begins", float(times[0]), float(velocities[0])), ("ends", float(times[-1]), float(velocities[-1]))
 
     def doubts(self, read: str, factor: float) -> Iterator[str]:
-        """What the header of the file and its samples show of wrong units, lost samples and the like."""
+        """Signs of wrong units, lost samples and the like in the header of the file and its samples."""
         yield from doubts_of_header(header_of(self._text), read, self.scale * factor)
         yield from doubts_of_samples(*self._samples())
 
@@ -208,7 +209,7 @@ def header_of(text: str) -> str:
 
 
 def _misfit(lines: Sequence[tuple[int, str]], separator: str | None) -> str:
-    """Which line, numbered, is not like the first one or not of numbers; it is not quoted."""
+    """The number of the first line that differs from the first one or has no numbers, in words; it is not quoted."""
     columns = len(lines[0][1].split(separator))
     for number, line in lines:
         fields = line.split(separator)

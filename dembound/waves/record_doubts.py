@@ -1,6 +1,6 @@
-"""What is wrong with a measured record: units in its header, lost samples, clipping, coarse sampling, an offset.
+"""Signs of errors in a measured record: units in its header, lost samples, clipping, coarse sampling, an offset.
 
-Only records of evenly sampled, smooth motion show it; tables of a few points, joined by lines, are as they are meant.
+Only records of evenly sampled, smooth motion are judged; tables of a few points, joined by lines, are intended.
 """
 
 import math
@@ -29,7 +29,7 @@ FEWEST_TURNS = 6
 """Changes of sign from which a record oscillates."""
 
 FLAT = 3
-"""Equal samples at the peak from which it is cut off."""
+"""Equal samples at the peak from which on it is clipped."""
 
 RISE = (0.01, 0.5)
 """Last step before such samples over the peak: smaller ones round a crest off, larger ones are of square waves."""
@@ -41,7 +41,8 @@ OUTSTANDING = 5.0
 """Times the others from which a change, or a drift, is no motion."""
 
 WIDE = 0.6
-"""Step over the peak from which it is none between two levels of a load, within a record that does not oscillate."""
+"""Step over the peak from which it is no change between two levels of a load, within a record that does not
+oscillate."""
 
 TENTHS = 10
 """Parts of a record in the last of which its motion is over."""
@@ -60,10 +61,10 @@ READ_AS = {"m/s": "velocities", "Pa": "pressures", "N": "forces", "m/s²": "acce
 
 
 def doubts_of_header(header: str, read: str, factor: float) -> Iterator[str]:
-    """What the header of a file says against its use, in words.
+    """Contradictions between the header of a file and its use, in words.
 
     header : the lines above the numbers. read : unit in which values are taken, of `READ_AS`. factor : by which they
-    are multiplied to be in it; one other than ±1 is taken for the change of units.
+    are multiplied to be in it; one other than ±1 is regarded as the change of units.
     """
     marked, bare, unknown = units_in(header, read)
     quantity, of_velocity, unchanged = READ_AS[read], read == "m/s", abs(factor) == 1.0
@@ -95,7 +96,7 @@ def _quantity_in_words(header: str) -> tuple[str, str] | None:
 
 
 def doubts_of_samples(times: np.ndarray, values: np.ndarray) -> Iterator[str]:
-    """What the samples of a record (k,), at times (k,) s, show of lost ones, a clipped peak and others, in words."""
+    """Signs of lost samples, a clipped peak and others in a record (k,) at times (k,) s, in words."""
     steps = np.diff(times)
     usual, peak = float(np.median(steps)), float(np.abs(values).max())
     if len(times) < FEWEST or np.isclose(steps, usual, rtol=0.01).mean() < EVEN:
@@ -135,7 +136,7 @@ def _clipped(values: np.ndarray, peak: float) -> Iterator[str]:
 
 
 def _coarse(mean: float, step: float) -> Iterator[str]:
-    """Samples too far apart (s) for straight lines between them, by the mean frequency, Hz."""
+    """A message if samples are too far apart (s) for straight lines between them, by the mean frequency, Hz."""
     loss = 1.0 - float(np.sinc(mean * step)) ** 2
     if loss > LOST:
         yield (
@@ -145,7 +146,7 @@ def _coarse(mean: float, step: float) -> Iterator[str]:
 
 
 def _spike(times: np.ndarray, values: np.ndarray, peak: float) -> Iterator[str]:
-    """One sample far from its neighbours, which are close to each other and to theirs."""
+    """A message about a sample far from its neighbours, which are close to each other and to theirs."""
     beside = np.abs(values[2:-2] - 0.5 * (values[3:-1] + values[1:-3]))
     others = [values[1:-3] - values[:-4], values[3:-1] - values[1:-3], values[4:] - values[3:-1]]
     worst = int(beside.argmax())

@@ -11,10 +11,9 @@ from dembound.waves.spectrum import FADED
 from dembound.waves.wave import Shape
 
 DELAY = 1.5
-"""Periods from the start to the crest, and from there to the end.
+"""Periods from the start to the crest, and from the crest to the end.
 
-The wavelet is nowhere exactly zero and is not cut off: it is 1e-8 of its amplitude at the start, less before.
-"""
+The wavelet is nowhere exactly zero and is not cut off: it is 1e-8 of its amplitude at the start, less before."""
 
 FADE = root(lambda x: x**2 * math.exp(1.0 - x**2) - FADED, 1.0, 10.0)
 """Frequency over crest frequency, x, above which the spectrum x² exp(1 − x²) is below 1 %: 2.764."""

@@ -53,7 +53,8 @@ class Triangle(Shape):
     def highest_frequency(self) -> float:
         """Frequency above which the amplitude spectrum stays below 1 % of its largest value, Hz.
 
-        Times the pulse's length it is 5.36 when rise and fall are alike, and up to 31.9 when one of them is sudden.
+        Its product with the pulse's length is 5.36 when rise and fall are equal, and up to 31.9 when one of them is
+        sudden.
         """
         share = self.rise / self._length()
         products = np.arange(1, math.ceil(FADED_AT_LATEST * PER_LOBE) + 2) / PER_LOBE

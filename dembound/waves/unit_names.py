@@ -31,7 +31,7 @@ QUANTITIES: dict[Powers, tuple[str, float]] = {
     (0, 0, 1): ("forces", STANDARD_GRAVITY),  # "kg" and "kg/cm²" are those of weights
     (-2, 0, 1): ("pressures", STANDARD_GRAVITY),
 }
-"""What a unit of these powers measures, and what 1 of it is in SI."""
+"""Quantity of a unit of these powers, and its size in SI."""
 
 
 def _all(powers: Powers, **sizes: float) -> dict[str, tuple[float, Powers]]:
@@ -85,9 +85,9 @@ _SUFFIX = re.compile(r"(?<=[a-z0-9])_([a-zµμ²/^_]+?)(?=[\s,;:\"']|$)", re.IGN
 
 
 def unit_named(text: str, read: str = "") -> Named | None:
-    """The unit that a text is, in any usual spelling; None for other texts.
+    """The unit named by a text, in any usual spelling; None for other texts.
 
-    read : the unit in which values are read; "kn" are knots beside m/s, else kilonewtons.
+    read : the unit in which values are read; "kn" means knots with m/s, else kilonewtons.
     """
     plain = _plain(text)
     if text.strip() in COMPONENTS:
@@ -116,7 +116,7 @@ def units_in(header: str, read: str) -> tuple[list[Named], list[Named], list[str
     """The units in the lines of a header: in brackets or behind a name and ``_``; of bare words; unknown ones.
 
     Unknown ones are looked for in the brackets of the last line and of lines that have a known unit, as names of
-    columns have; what says a direction, or a sentence, is none.
+    columns have; directions and sentences are no units.
     """
     marked, bare, unknown = [], [], []
     lines = [line for line in header.splitlines() if line.strip()]

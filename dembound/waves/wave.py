@@ -79,7 +79,7 @@ class Wave(Table, ABC):
         return ()
 
     def doubts(self, read: str, factor: float) -> Iterator[str]:
-        """What is probably wrong with a measured history, in words; by default nothing.
+        """Probable errors of a measured history, in words; by default none.
 
         read : unit of its values times the factor: m/s at a side, with factor 1; else that of a load, such as Pa.
         """

@@ -59,7 +59,7 @@ def _no_wall(place: str, load: Load, tables: Mapping[str, Any]) -> Iterator[str]
 
 
 def _at_periodic_sides(place: str, hole: Hole, tables: Mapping[str, Any]) -> Iterator[str]:
-    """A hole that reaches a periodic side, beyond which it is not repeated."""
+    """A message about a hole that reaches a periodic side, beyond which it is not repeated."""
     (x0, y0, x1, y1), (left, bottom, right, top) = hole.box, tables["packing"].box
     reached = {"left": x0 <= left, "right": x1 >= right, "bottom": y0 <= bottom, "top": y1 >= top}
     for side, table in tables["boundary"].items():

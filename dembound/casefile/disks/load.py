@@ -69,7 +69,7 @@ class Load(Table):
 
     @property
     def is_everywhere(self) -> bool:
-        """Whether it acts on all particles."""
+        """Whether the load acts on all particles."""
         return self.position is None and self.region is None and self.pressure is None
 
     @model_validator(mode="after")

@@ -131,7 +131,7 @@ def _places_outside(
 
 
 def _within(box: Box) -> str:
-    """Where a place in a box is, with the sides beyond which a continuum goes on."""
+    """The range of places in a box, in words, with the sides beyond which a continuum goes on."""
     if all(map(math.isfinite, box)):
         return f"in the scene, {corners(*box)}"
     left, bottom, right, top = box

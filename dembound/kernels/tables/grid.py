@@ -27,7 +27,7 @@ class Elements(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """What the elements of a block have in common.
+    """Data common to the elements of a block.
 
     gradient_x, gradient_y, divergence_x, divergence_y : (N·N,) matrices, row by row, that make derivatives (1/m) along
     an axis of displacements of a line of points, and nodal forces of fluxes. weight : (Q,) m², of the quadrature.

@@ -76,4 +76,4 @@ class Sides(NamedTuple):
 
 
 NO_SIDES = Sides.none()
-"""Where sides are not recorded."""
+"""Table for runs in which sides are not recorded."""

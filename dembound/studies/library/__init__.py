@@ -1,11 +1,11 @@
 """Responses of a linear scene to small inputs, from whose sums follow its histories under any record.
 
-The motion of disks under the elastic law is linear in what acts from outside. A record of velocities x_k at times kΔ,
+The motion of disks under the elastic law is linear in the inputs from outside. A record of velocities x_k at times kΔ,
 joined by straight lines, is the sum of triangles x_k·hat(t − kΔ), so its histories are
 
     u(t) = u_rest(t) + Σ_k x_k h(t − kΔ),
 
-with the response h to one triangle, from one run, and u_rest, that without waves, under steady loads. Where Δ is a
+with the response h to one triangle, from one run, and the motion u_rest without waves, under steady loads. Where Δ is a
 whole number of time steps this is no approximation: a direct run differs by rounding.
 """
 

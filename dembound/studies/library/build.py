@@ -24,7 +24,7 @@ from dembound.running import Progress, plan, run_case, warnings_before
 from dembound.version import __version__
 
 FILE = "library.json"
-"""Describes a library in its folder; written last, so that a library with it is complete."""
+"""File that describes a library in its folder; written last, so that a library with it is complete."""
 
 REST = "rest"
 """Name of the run without waves."""
@@ -45,7 +45,7 @@ def inputs_of(case: DiskCase) -> list[str]:
 
 
 def problems_of(case: DiskCase) -> Iterator[str]:
-    """Why a case has no library, a line each: it is not linear, has no input, or nothing is recorded."""
+    """Reasons why a case has no library, a line each: it is not linear, has no input, or nothing is recorded."""
     law, damp = case.material.law, case.material.damp
     linear = " or ".join(f'"{name}"' for name, each in LAWS.items() if each.is_linear)
     if not LAWS[law].is_linear:
@@ -79,14 +79,14 @@ def build_library(
 ) -> Path:
     """Run the inputs of a case one by one, and write ``results/<case name>_library/``; returns that folder.
 
-    Each input is a triangle of 1 m/s (of a load's factor: 1) that rises over the spacing and falls over it. All
-    else is that of the case, the settings of a continuum as chosen for its own waves; the time step is the largest
+    Each input is a triangle of 1 m/s (of a load's factor: 1) that rises over the spacing and falls over it. Everything
+    else is as in the case, the settings of a continuum as chosen for its own waves; the time step is the largest
     whole fraction of the spacing that is not above the case's own.
 
     Parameters
     ----------
-    spacing : time between two values of the records, s. duration : of the longest record, s; None: that of the case.
-    progress_of : gives the progress of a run of a name, which is informed.
+    spacing : time between two values of the records, s. duration : of the longest record, s; None: of the case.
+    progress_of : returns the progress of a run, given its name.
 
     Raises CaseError for a case that is not linear, and a given step of which the spacing is no multiple; else errors as
     of `run_case`.
@@ -197,7 +197,7 @@ def _triangle(spacing: float, start: float) -> dict[str, Any]:
 
 
 def _time_step(case: DiskCase, usual: float, spacing: float) -> float:
-    """The time step (s), a whole fraction of the spacing; usual : that of the case."""
+    """The time step (s), a whole fraction of the spacing; usual : time step of the case."""
     steps = spacing / usual
     if case.run.time_step == "auto":
         return spacing / math.ceil(steps - WHOLE)
@@ -210,12 +210,12 @@ def _time_step(case: DiskCase, usual: float, spacing: float) -> float:
 
 
 def _largest_divisor(number: int, most: int) -> int:
-    """The largest divisor of a whole number that is not above another one."""
+    """The largest divisor of a whole number that is at most `most`."""
     return next(divisor for divisor in range(min(most, number), 0, -1) if number % divisor == 0)
 
 
 class _WithoutWarnings(Progress):
-    """Passes on progress, but no warnings: those of triangles and silence are not about the case."""
+    """Passes on progress, but no warnings, as those about triangles and silence do not concern the case."""
 
     def __init__(self, progress: Progress) -> None:
         self.settling, self.running = progress.settling, progress.running  # type: ignore[method-assign]

@@ -27,10 +27,10 @@ class WatchedContact(NamedTuple):
 
 
 class LoadFactor(NamedTuple):
-    """Up to how many times a record its contacts follow the elastic law.
+    """The multiple of a record up to which its contacts follow the elastic law.
 
     factor : infinite if no limit is ever reached. contact : the first to reach one; limit : which one, in words; time :
-    when, s. The last three are those of the least factor.
+    when, s. The last three belong to the least factor.
     """
 
     factor: float
@@ -59,7 +59,7 @@ def watched_contacts(library: Library, pairs: Sequence[str]) -> list[WatchedCont
 
 
 def load_factor(library: Library, contacts: Sequence[WatchedContact], motion: np.ndarray) -> LoadFactor:
-    """The load factor of a motion (k, monitors, 6) of the library at its samples, of these contacts alone."""
+    """The load factor of a motion (k, monitors, 6) of the library at its samples, for these contacts only."""
     strength = strength_of(library.case.material)
     least = LoadFactor(np.inf, "", "", np.nan)
     for contact in contacts:

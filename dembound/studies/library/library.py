@@ -27,9 +27,9 @@ class Library:
     Attributes
     ----------
     folder : with the runs. name : of the case it was made from. case : the case with silent inputs. inputs : names of
-    the waves in whose place records are put. spacing : of records, s; lead : number of spacings after their first value
+    the waves that records replace. spacing : of records, s; lead : number of spacings after their first value
     during which they are zero. monitors : their names. time : (k,) s, of the samples of histories. attributes : of the
-    runs' record; places : of each monitor those of its history.
+    runs' record; places : attributes of each monitor's history.
 
     Raises CaseError where there is no library, or one of another version.
     """
@@ -85,8 +85,8 @@ class Library:
 
         values : input -> velocities at the times 0, Δ, 2Δ …, the first `lead` + 1 of which are 0.
 
-        Samples j of histories and times of records are on common places, so every `_per_spacing`-th sample is a
-        discrete convolution of the record with as many of the response, which is computed by Fourier transforms.
+        Samples of histories and times of records lie on common times, so every `_per_spacing`-th sample is a
+        discrete convolution of the record with the response at such samples, computed by Fourier transforms.
         """
         from scipy.fft import irfft, rfft
 

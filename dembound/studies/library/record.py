@@ -10,7 +10,7 @@ from dembound.errors import CaseError
 from dembound.waves.file_wave import read_text, samples_of
 
 WHOLE = 1e-6
-"""Part of the spacing by which a time of a record may differ from a whole number of them, as files round times."""
+"""Part of the spacing by which a record's time may differ from a whole multiple, as files round times."""
 
 
 class Record(NamedTuple):
@@ -40,7 +40,7 @@ def read_records(arguments: Sequence[str], inputs: Sequence[str], clock: RecordT
     ----------
     arguments : of a library with one input the path of a text file; else, or also, ``INPUT=PATH``, of several inputs
         separated by commas; inputs without a file remain silent.
-    inputs, clock : those of the library.
+    inputs, clock : of the library.
 
     Raises CaseError with a line for each mistake, see `on_spacing`, and for two records of one name.
     """
@@ -58,13 +58,13 @@ def read_records(arguments: Sequence[str], inputs: Sequence[str], clock: RecordT
 
 
 def on_spacing(samples: np.ndarray, clock: RecordTimes) -> np.ndarray:
-    """The values of a record at the times 0, Δ, 2Δ …, Δ being the spacing, as far as it goes.
+    """The values of a record at the times 0, Δ, 2Δ … up to its end, Δ being the spacing.
 
     samples (k, 2), times and values, are joined by straight lines; their times must be whole multiples of the spacing,
     so that nothing changes. Before and after it a record is zero, so it begins and ends with zero; one that lasts the
     whole duration may end with another value.
 
-    Raises ValueError, with what is wrong.
+    Raises ValueError, with the problem.
     """
     spacing, duration, lead = clock
     times, values = samples.T

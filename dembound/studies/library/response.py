@@ -28,7 +28,7 @@ def case_of(library: Library, record: Record) -> DiskCase:
 
 
 def record_warnings(library: Library, records: Sequence[Record]) -> Iterator[tuple[Record, str]]:
-    """What `dembound run` warns of under each record, and not under silence: units, samples, lengths, strengths."""
+    """Warnings of `dembound run` under each record that are not due to silence: units, samples, lengths, strengths."""
     silent = replace(library.case, silent=frozenset(library.inputs))
     before = set(warnings_before(plan(silent)))
     for record in records:

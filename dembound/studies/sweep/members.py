@@ -1,4 +1,4 @@
-"""The members of a sweep: changed cases with the names of their folders, and the groups that differ in seeds alone."""
+"""The members of a sweep: changed cases with the names of their folders, and the groups that differ only in seeds."""
 
 import hashlib
 import json
@@ -31,7 +31,7 @@ class Member:
     ----------
     name : of its folder. changes : its keys that differ from the case, with their values.
     case : the changed case, of that name.
-    key : a text that is the same for members with the same results, whatever their names: hash of case and action.
+    key : hash of case and action, equal for members with the same results, whatever their names.
     """
 
     name: str
@@ -41,14 +41,14 @@ class Member:
 
     @property
     def group(self) -> dict[str, Any]:
-        """The changes without seeds: members with the same are averaged."""
+        """The changes without seeds; members with equal ones are averaged."""
         return {key: value for key, value in self.changes.items() if not key.endswith(SEED)}
 
 
 def changes_of(vary: Mapping[str, Sequence[Any]], together: bool) -> list[dict[str, Any]]:
     """All combinations of the values of keys; together : the first values of all keys, then the second ones, and so on.
 
-    Raises CaseError if there is no key, or numbers of values differ that are taken together.
+    Raises CaseError if there is no key, or keys varied together have different numbers of values.
     """
     if not vary:
         raise CaseError(["--vary: is missing; give keys and values, or a table [sweep.vary] in the case"])

@@ -35,7 +35,7 @@ ALONE = threading.Lock()
 
 @dataclass(frozen=True)
 class Task:
-    """What a process is sent: a case as text with the files it refers to, what to do, and where.
+    """Data sent to a process: a case as text with the files it refers to, action, and folders.
 
     current : the folder from which ``static.from`` starts. folder : of the sweep.
     begun : a file that is made when the member is stepped, so that its code is compiled.

@@ -1,4 +1,4 @@
-"""Means over members that differ in seeds alone, their spread, and the confidence in them."""
+"""Means over members that differ only in seeds, their spread, and confidence intervals."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

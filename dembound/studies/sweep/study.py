@@ -29,9 +29,9 @@ LOCK = "sweep.lock"
 
 @dataclass(frozen=True)
 class Options:
-    """How a sweep is done: action and method as in the table ``[sweep]``.
+    """Options of a sweep: action and method as in the table ``[sweep]``.
 
-    processes : of this machine; None: as many as it has cores. scheduler : address of a Dask cluster in their place.
+    processes : on this machine; None: as many as it has cores. scheduler : address of a Dask cluster in their place.
     anew : whether members that are done are repeated.
     """
 
@@ -43,7 +43,7 @@ class Options:
 
 
 class Standing(NamedTuple):
-    """How far a sweep is: numbers of members; kept : done in an earlier sweep, and counted as done, too."""
+    """Progress of a sweep as numbers of members; kept : done in an earlier sweep, and counted as done, too."""
 
     members: int
     done: int
@@ -141,7 +141,7 @@ class _Work:
         return self._found
 
     def _submit(self, workers: Workers) -> None:
-        """Begin members as far as there is room; one alone until code is compiled."""
+        """Begin members as far as there is room; only one until code is compiled."""
         while self._waiting and workers.has_room(len(self._under_way)):
             if self._under_way and not self._found and not self._marks.begun.exists():
                 return

@@ -56,7 +56,7 @@ class Swept:
 
     @property
     def states(self) -> list[str]:
-        """State of every member: done, or why it is not."""
+        """State of every member: done, or the reason why it is not."""
         return [MISSING if each is None else each.failure or "done" for each in self.outcomes]
 
     @property
@@ -74,7 +74,7 @@ class Swept:
     def warnings(self) -> dict[str, int]:
         """Each distinct warning of the members' runs -> number of members with it.
 
-        Warnings that differ in numbers alone are one, with the numbers of the first member.
+        Warnings that differ only in numbers count as one, with the numbers of the first member.
         """
         first: dict[str, str] = {}
         count: Counter[str] = Counter()

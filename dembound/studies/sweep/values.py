@@ -24,7 +24,7 @@ COMPONENTS = ("x", "y", "xy")
 """Names of the entries of lists of two or three numbers."""
 
 ENDS = ("from", "to")
-"""Names of those of the ranges of a bar in which a spall is."""
+"""Names of the entries that give the ranges of a bar between which a spall lies."""
 
 ENERGY = "J/m, of bars J"
 

@@ -1,4 +1,4 @@
-"""Who performs the members of a sweep: processes of this machine, or an existing Dask cluster."""
+"""Workers that perform the members of a sweep: processes of this machine, or an existing Dask cluster."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Workers(ABC):
 
     @abstractmethod
     def has_room(self, under_way: int) -> bool:
-        """Whether another task may be submitted, with so many under way."""
+        """Whether another task may be submitted while `under_way` tasks run."""
 
     @abstractmethod
     def submit(self, task: Task) -> Performing:
@@ -60,7 +60,7 @@ class Workers(ABC):
 
 
 class Process(NamedTuple):
-    """A process of this machine, the pool with this worker alone, and its number, known once it has begun."""
+    """A process of this machine: the pool with this single worker, and its number, known once it has begun."""
 
     child: BaseProcess
     pool: ProcessPoolExecutor
@@ -198,7 +198,7 @@ class Cluster(Workers):
 
 @contextmanager
 def processes(count: int, stop: Path) -> Iterator[Processes]:
-    """So many processes of this machine; stop : as of `Processes`."""
+    """`count` processes of this machine; stop : as of `Processes`."""
     workers = Processes(count, stop)
     try:
         yield workers
