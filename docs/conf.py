@@ -28,7 +28,7 @@ ITEM = re.compile(r"(?:^|(?<=[.;]) )(\w+(?:, \w+)*) : ")
 
 
 def in_fields(app: Any, what: str, name: str, item: Any, options: Any, lines: list[str]) -> None:
-    """Turn sections of a docstring with entries "name : meaning" into fields; napoleon would take meanings for types."""
+    """Turn sections of a docstring with entries "name : meaning" into fields; else meanings are taken for types."""
     text = "\n".join(lines)
     for section, kind in FIELDS.items():
         head, found, rest = text.partition(f"{section}\n{'-' * len(section)}\n")
