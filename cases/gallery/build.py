@@ -1,0 +1,272 @@
+"""Runs the examples of this folder, draws their pictures and writes their pages, docs/gallery.
+
+python cases/gallery/build.py [--quick] [--pages] [NAME ...]
+
+Without names all examples are run, with --quick those of `QUICK`; --pages writes the pages alone, with the figures of
+the last runs, which measured.json holds. An example is a case file of this folder. Its first comment has what it shows
+and, indented, the commands that run it and draw its picture; its title is that of the page.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shlex
+import sys
+import tempfile
+import tomllib
+from collections.abc import Sequence
+from contextlib import chdir
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+import numpy as np
+from matplotlib.figure import Figure
+from PIL import Image
+
+import dembound
+from dembound import shipped
+from dembound.cli import app
+from dembound.plot import scene, style
+from dembound.words import percent
+
+HERE = Path(__file__).parent
+DOCS = HERE.parents[1] / "docs"
+PAGES = DOCS / "gallery"
+MEASURED = HERE / "measured.json"
+
+TOPICS = {
+    "Waves along a bar of disks": ("p_pulse", "p_and_s", "packings"),
+    "What artificial sides return": ("calibration", "beta_sweep", "sides", "side_reflection", "error_chart"),
+    "Ground under waves from below": ("free_field", "earthquake", "resonance", "tunnel", "two_tunnels"),
+    "Waves at an angle, and surfaces": ("oblique_sv", "canyon", "slope", "rayleigh"),
+    "Sources and exact solutions": ("point_source", "lamb", "blast", "blast_cracks"),
+    "Weight, stress and contacts": ("excavation", "in_situ_stress", "force_chains", "sliding"),
+    "Bars: waves": ("dispersion", "interface", "matched_layer", "measured_pulse", "hopkinson"),
+    "Bars: cracks": ("spalling", "fracture_energy"),
+}
+"""Topic of the index -> names of its examples."""
+
+QUICK = ("p_pulse", "p_and_s", "resonance", "interface")
+"""Examples that tests run."""
+
+DRAWING = ("plot", "signals", "sweep", "chart", "boundary", "packing", "movie")
+"""Commands whose pictures are shown."""
+
+WIDTH, DOTS = 6.2, 160
+"""Width of a picture in inches, and its dots per inch: ten points are legible on a page of 390 and of 1440 pixels."""
+
+SCENE = (4.4, 4.2)
+"""Largest width and height of a scene in a picture, inches."""
+
+TALLEST = 5.0
+"""Height of the tallest figure of a picture, inches."""
+
+RUNS = ("build", "settle", "step", "record")
+"""Sections of the entry `seconds` of a summary that are the time of a run, without imports, compiling and pictures."""
+
+LINE = 100
+"""Characters of a line of Python."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the last run of an example gave: its time, what it computed, its predicted error, and what is drawn."""
+
+    seconds: float
+    size: str
+    error: str
+    drawn: str
+
+
+@dataclass(frozen=True)
+class Example:
+    """A case of this folder: its text and commands, from its first comment, and its tables as TOML."""
+
+    name: str
+    text: str
+    commands: tuple[str, ...]
+    tables: str
+
+    @classmethod
+    def read(cls, name: str) -> Example:
+        """The example of this name."""
+        lines = (HERE / f"{name}.toml").read_text(encoding="utf-8").splitlines()
+        end = next(number for number, line in enumerate(lines) if not line.startswith("#"))
+        comment = [line.removeprefix("#").removeprefix(" ") for line in lines[:end]]
+        commands = tuple(line.strip() for line in comment if line.startswith("  "))
+        text = "\n".join(line for line in comment if line and not line.startswith("  "))
+        return cls(name, text, commands, "\n".join(lines[end:]).strip())
+
+    @property
+    def title(self) -> str:
+        """Title of the case."""
+        return str(tomllib.loads(self.tables)["title"])
+
+    def python(self) -> str:
+        """The case, its run and its estimate from Python."""
+        arguments = ["", f'    "{self.name}",']
+        for key, value in tomllib.loads(self.tables).items():
+            arguments.append(f"    {key}={as_python(value, 4, len(key) + 1)},")
+        made = "import dembound\n\ncase = dembound.case(" + "\n".join(arguments) + "\n)\n"
+        return f'{made}results = dembound.run(case, "results")\nprint(dembound.estimate("{self.estimated}").worst())'
+
+    @property
+    def estimated(self) -> str:
+        """Folder of the results whose error is estimated."""
+        (command,) = (each for each in self.commands if each.startswith("dembound estimate "))
+        return command.split()[-1]
+
+    def page(self, measured: Measured) -> str:
+        """The page of the example."""
+        copied = f"dembound cases copy gallery/{self.name}"
+        tabs = {
+            "TOML": ("toml", self.tables),
+            "Python": ("python", self.python()),
+            "Command line": ("sh", "\n".join((copied, *self.commands))),
+        }
+        shown = "\n".join(f":::{{tab-item}} {tab}\n```{of}\n{code}\n```\n:::" for tab, (of, code) in tabs.items())
+        return (
+            f"# {self.title}\n\n{self.text}\n\n![{measured.drawn}](../pictures/gallery_{self.name}.png)\n\n"
+            f"| computed | run time | predicted error |\n|---|---|---|\n"
+            f"| {measured.size} | {measured.seconds:.2g} s | {measured.error} |\n\n::::{{tab-set}}\n{shown}\n::::\n"
+        )
+
+
+def as_python(value: Any, indent: int = 0, before: int = 0) -> str:
+    """A value of TOML as Python, in lines of at most `LINE` characters after `indent` blanks and `before` others."""
+    if isinstance(value, bool | float):
+        short = f"{value:g}".replace("e+0", "e").replace("e-0", "e-")
+        return short if "e" in short and float(short) == value else repr(value)
+    if not isinstance(value, dict | list):
+        return json.dumps(value, ensure_ascii=False)
+    opened, closed = "{}" if isinstance(value, dict) else "[]"
+    keys = [f"{json.dumps(key)}: " for key in value] if isinstance(value, dict) else [""] * len(value)
+    items = list(zip(keys, value.values() if isinstance(value, dict) else value, strict=True))
+    line = ", ".join(key + as_python(each, -10_000) for key, each in items)
+    if indent + before + len(line) + 3 <= LINE:
+        return f"{opened}{line}{closed}"
+    inner = indent + 4
+    rows = [f"{' ' * inner}{key}{as_python(each, inner, len(key))}," for key, each in items]
+    return "\n".join([opened, *rows, " " * indent + closed])
+
+
+def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
+    """The page of all examples, cards by topic, and the list of pages."""
+    parts = [
+        "# Gallery\n\nEvery picture is a case that runs in seconds: `dembound cases copy gallery/p_pulse`, then the commands of "
+        "its page. Run times are those of one core, compiled, without pictures; errors are those that `dembound "
+        "estimate` predicts.\n"
+    ]
+    for topic, names in TOPICS.items():
+        parts.append(f"## {topic}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n")
+        for name in names:
+            picture = f"[![{measured[name].drawn}](../pictures/gallery_{name}.png)]({name}.md)"
+            parts.append(f":::{{grid-item-card}}\n{picture}\n\n[{examples[name].title}]({name}.md)\n:::\n")
+        parts.append("::::\n")
+    parts.append("```{toctree}\n:hidden:\n\n" + "\n".join(examples) + "\n```\n")
+    return "\n".join(parts)
+
+
+@style.styled
+def fitted(figure: Figure) -> np.ndarray:
+    """The pixels (rows, columns, 3) of a figure in the common width; legends are laid out again for it."""
+    width, height = figure.get_size_inches()
+    figure.set_size_inches(WIDTH, min(height * max(WIDTH / width, 0.75), TALLEST))
+    figure.set_dpi(DOTS)
+    figure.suptitle(figure.get_suptitle(), fontsize=9)
+    if figure.legends:
+        figure.legends[0].remove()
+        style.outside_legend(figure, figure.axes, columns=3)
+    return style.pixels_of(figure)
+
+
+def execute(command: str, figures: list[Figure]) -> None:
+    """Run a command in this process; its figures are kept instead of saved, if they are to be shown."""
+    verb, *more = shlex.split(command)[1:]
+    settings = ["--set", "output.pictures=false"] if verb in ("run", "sweep") else []
+    saved, kept = style.save, figures if verb in DRAWING else []
+    style.save = lambda figure, path, title=None: kept.append(figure)
+    try:
+        app([verb, *more, *settings], standalone_mode=False)
+    finally:
+        style.save = saved
+
+
+def measure(example: Example) -> Measured:
+    """Run all commands of an example in a new folder, and draw its picture."""
+    figures: list[Figure] = []
+    with tempfile.TemporaryDirectory() as folder, chdir(folder):
+        shipped.copy(f"gallery/{example.name}", Path())
+        for command in example.commands:
+            if not command.startswith("dembound estimate "):
+                execute(command, figures)
+            else:
+                error = predicted(Path(example.estimated))
+        summary = dembound.Results(example.estimated).summary
+    pixels = np.vstack([fitted(figure) for figure in figures])
+    Image.fromarray(pixels).save(DOCS / "pictures" / f"gallery_{example.name}.png", optimize=True)
+    size = f"{summary['particles']:,} disks" if "particles" in summary else f"{summary['nodes']:,} nodes"
+    seconds = sum(summary["seconds"][section] for section in RUNS)
+    drawn = "; ".join(figure.get_suptitle().replace("\n", ", ") for figure in figures)
+    return Measured(round(seconds, 2), f"{size}, {summary['steps']:,} steps", error, drawn)
+
+
+def predicted(results: Path) -> str:
+    """The largest error of a run that is predicted at any monitor, with its main cause, or why there is none."""
+    try:
+        budget = dembound.estimate(results)
+    except dembound.CaseError as refused:
+        return f"none: {refused.problems[0]}"
+    worst, unknown = budget.worst(), budget.summary()["not_estimated"]
+    if not worst.monitor:
+        return f"none: {unknown[0]}"
+    cause = max(worst.by, key=lambda name: worst.by[name], default="rounding")
+    size = f"{percent(worst.share.value)}, at most {percent(worst.share.upper)}"
+    words = f"{size}: {worst.quantity} at `{worst.monitor}`, most by {cause}"
+    return "; ".join([words, *(f"not: {each}" for each in unknown[:1])])
+
+
+def write_pages(examples: dict[str, Example], measured: dict[str, Measured]) -> None:
+    """Write all pages, and the index."""
+    PAGES.mkdir(exist_ok=True)
+    for name, example in examples.items():
+        (PAGES / f"{name}.md").write_text(example.page(measured[name]), encoding="utf-8")
+    (PAGES / "index.md").write_text(index(examples, measured), encoding="utf-8")
+
+
+def read_measured() -> dict[str, Measured]:
+    """Name of every example -> what its last run gave."""
+    held = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.exists() else {}
+    return {name: Measured(**each) for name, each in held.items()}
+
+
+def read_examples() -> dict[str, Example]:
+    """Name of every example -> the example, by topic."""
+    return {name: Example.read(name) for names in TOPICS.values() for name in names}
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Run examples and write the pages."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--quick", action="store_true", help=f"run only {', '.join(QUICK)}")
+    parser.add_argument("--pages", action="store_true", help="run nothing")
+    asked = parser.parse_args(arguments)
+    examples, measured = read_examples(), read_measured()
+    chosen = [] if asked.pages else asked.names or (QUICK if asked.quick else list(examples))
+    for name in chosen:
+        measured[name] = measure(examples[name])
+        ordered = {each: asdict(measured[each]) for each in examples if each in measured}
+        MEASURED.write_text(json.dumps(ordered, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
+    if set(examples) <= set(measured):
+        write_pages(examples, measured)
+
+
+if __name__ == "__main__":
+    scene.DRAWING = SCENE
+    main(sys.argv[1:])
