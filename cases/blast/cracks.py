@@ -1,4 +1,4 @@
-"""How much the cracks of docs/tasks/blasts.md depend on the time step, which alone differs between runs: its table.
+"""How much the cracks of docs/evidence/blast.md depend on the time step, which alone differs between runs: its table.
 
 python cases/blast/cracks.py results/blast_cracks      (half a minute of CPU time)
 """

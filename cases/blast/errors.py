@@ -1,4 +1,4 @@
-"""Errors of cases/blast.toml beside a large lattice and beside the exact cavity: the tables of docs/tasks/blasts.md.
+"""Errors of cases/blast.toml beside a large lattice and beside the exact cavity: the tables of docs/evidence/blast.md.
 
     python cases/blast/errors.py      (three minutes of CPU time; it needs 1 GB)
 
