@@ -1,14 +1,14 @@
-"""How fast bars are stepped, and how much of this machine that is.
+"""Speed of stepping bars, and its share of what this machine can do.
 
     python benchmarks/bar_rate.py [--nodes 1000 10000 100000] [--repeats 9]
 
 Sets bars of several lengths in motion under finite differences and peridynamics, compiled first, and takes the CPU time
 of blocks of steps on one core, everything a run does at every step included: ends, one gauge, the watch for breaking
 bonds. In turn with it two bare loops over two arrays are timed, v += k·Δ²u and u += Δt·v, which are no bar but show
-what one could cost; the last column is the time over theirs. A bar of a thousand nodes lives in the processor's first
-caches, so the same run times the fastest plain array copy there; the share of it is what a step reads and writes over
-what the copy does in the same time. Medians are quoted, of the copy the best. The last lines compare the time from the
-blow to just after the first spall of a bar by all methods.
+the least possible cost; the last column is the time over theirs. A bar of a thousand nodes lives in the processor's
+first caches, so the same run times the fastest plain array copy there; the share of it is the bytes read and written by
+a step over the bytes that the copy moves in the same time. Medians are quoted, of the copy the best. The last lines
+compare the time from the blow to just after the first spall of a bar by all methods.
 """
 
 import argparse
@@ -84,7 +84,7 @@ def two_loops(u, v, k, step, times):
 
 
 def bare(nodes: int, steps: int) -> Callable[[], None]:
-    """Those loops on as many nodes for as many steps, compiled."""
+    """The two bare loops on `nodes` nodes for `steps` steps, compiled."""
     u, v = np.sin(np.linspace(0.0, 20.0, nodes)), np.zeros(nodes)
     two_loops(u, v, 0.25, 1.0, 2)
     return lambda: two_loops(u, v, 0.25, 1.0, steps)

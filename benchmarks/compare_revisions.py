@@ -36,7 +36,7 @@ STEPPED = {
     "zhou2018/tunnel_b": ("elastic",),
     "lu2016/table1_row1": (),
 }
-"""Cases → laws under which they are stepped in blocks; the others are only run whole."""
+"""Case -> laws under which it is stepped in blocks; other cases are only run whole."""
 
 COLUMNS = {
     "measured": "{measured}",
@@ -107,7 +107,7 @@ def steps(workers: list[Worker], case: Path, law: str, options: argparse.Namespa
 
 
 def commands(trees: list[Tree], case: Path | None, options: argparse.Namespace) -> dict[str, Any]:
-    """A whole run, or `--help` without a case, in turns; seconds of the CPU. Each is run once before."""
+    """CPU seconds of a whole run, or of `--help` without a case, in turns. Each is run once before."""
     arguments = ("--help",) if case is None else ("run", case)
 
     def of(tree: Tree) -> Callable[[], float]:

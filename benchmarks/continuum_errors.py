@@ -1,4 +1,4 @@
-"""How near the expected errors of a continuum are to the true ones: small boxes of disks in it, beside large ones.
+"""Expected errors of a continuum compared with true ones: small boxes of disks in it, and large ones.
 
     python benchmarks/continuum_errors.py [NAME...]   # scenes whose names begin with one of these; by default all
 
@@ -32,7 +32,7 @@ WAVES: dict[str, Tables] = {
 
 
 def common(pattern: str, wide: float, high: float, wave: str, accuracy: float, order: int) -> Tables:
-    """What all scenes have."""
+    """Tables common to all scenes."""
     packing = lattice(wide, high, 1.0) if pattern == "A" else grains(wide, high, 1.0, 10.0, pattern=pattern)
     return {
         "packing": packing,

@@ -1,11 +1,11 @@
-"""How fast a continuum of spectral elements is stepped, elastic and absorbing.
+"""Speed of stepping a continuum of spectral elements, elastic and absorbing.
 
     python benchmarks/continuum_rate.py [--sides 8 16 32 64] [--orders 4] [--repeats 9] [--json FILE]
 
 Steps square meshes with noise in them, on one core, whole steps as in a run: without layers, with all but one row of
 elements absorbing along y, and with nearly all of them absorbing along both axes; last a mesh round a box with layers
-on three sides, as a scene has. Prints the CPU time of a step for each unique node, medians of blocks of steps; compiled
-first. So it does for each tie of bodies of disks, lattices and random packings, and for whole steps of them.
+on three sides, as a scene has. Prints the CPU time of a step per unique node, medians of blocks of steps; compiled
+first. Then the CPU time per tie of bodies of disks, lattices and random packings, and of their whole steps.
 """
 
 import argparse
@@ -31,7 +31,7 @@ from dembound.outside.mesh import Around, Mesh
 ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
 ELEMENT = 30.0, 30.0
 NODE_STEPS = 4e6
-"""Of a block, about."""
+"""Node-steps of a block, about."""
 
 
 def meshes(order: int, side: int) -> Iterator[tuple[str, Mesh]]:

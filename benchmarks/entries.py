@@ -1,10 +1,11 @@
-"""How much later waves enter disks than through the plane of a side, beside `entries_of`.
+"""Delay of waves that enter disks relative to waves through the plane of a side, compared with `entries_of`.
 
     python benchmarks/entries.py
 
-Columns 160 m high of disks of 1 m, periodic sideways, under a wave 100 disks long from below. How late the motion is
-follows from the best fit of v(t − (y + late)/c) to 400 disks at 20 to 100 m; what these scatter is the same however
-waves enter, so that it is taken off as it is where they enter through a continuum, whose entry is known.
+Columns 160 m high of disks of 1 m, periodic sideways, under a wave 100 disks long from below. The delay of the motion
+follows from the best fit of v(t − (y + late)/c) to 400 disks at 20 to 100 m. The bias of the fit by scatter of the
+packing is the same however waves enter, so it is removed with a run in which they enter through a continuum, whose
+delay is known.
 """
 
 from collections.abc import Iterator
@@ -45,7 +46,7 @@ def column(packing: Tables, motion: str, kind: str) -> Tables:
 
 
 def measured(tables: Tables, motion: str) -> tuple[float, float]:
-    """How late the motion is, and by formula, m."""
+    """Distance (m) by which the motion is late, measured and by formula."""
     from scipy.optimize import minimize_scalar
 
     from dembound.accuracy.runner import measure

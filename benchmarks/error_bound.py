@@ -1,7 +1,7 @@
-"""How often the choice of `dembound advise` is as accurate as asked for: small scenes beside enlarged, finer ones.
+"""How often the choice of `dembound advise` keeps its error bound: small scenes compared with enlarged, finer ones.
 
     python benchmarks/error_bound.py [NAME...]           # scenes whose names contain one of these; all by default
-    python benchmarks/error_bound.py --every [NAME...]   # what choices cost beside the cheapest ones that keep a bound
+    python benchmarks/error_bound.py --every [NAME...]   # costs of choices over those of the cheapest that keep a bound
 
 The reference of a scene is a larger one, from whose sides nothing returns. It is run with its own disks and with a
 third of their diameter, whose particles include the places of the first. As the errors of both are in the ratio 9 : 1,
@@ -83,7 +83,7 @@ def _plane(history: History) -> History:
 
 
 def every_choice(case: DiskCase, bound: float, most: float) -> list[Built]:
-    """All choices for a bound that cost at most so much (s), whatever their error, the cheapest first."""
+    """All choices for a bound that cost at most `most` s, whatever their error, the cheapest first."""
     options = Options(plan(case), bound, ())  # type: ignore[arg-type]
     counted = [each for factor in options.factors for each in options.of(factor) if each.cost <= most]
     found = [built for each in counted if (built := options.build(each)) is not None]
@@ -99,7 +99,7 @@ class Truth:
 
     @cached_property
     def reference(self) -> Motions:
-        """What they are compared with."""
+        """The reference motion of the choices."""
         return reference(self.case)
 
     def of(self, choice: DiskCase) -> float:
@@ -113,7 +113,7 @@ class Truth:
 
 
 def every(names: list[str]) -> None:
-    """Print how much the choice for each bound costs beside the cheapest one whose true error is below it."""
+    """Print the cost of the choice for each bound over the cost of the cheapest one whose true error is below it."""
     ratios = []
     print("| scene | bound | choice, s | cheapest, s | ratio | choice | cheapest | its error |")
     print("|---|---|---|---|---|---|---|---|")

@@ -1,4 +1,4 @@
-"""How often the choice of `dembound run --error` for bars is as accurate as asked for, beside exact motions.
+"""How often the choice of `dembound advise` for bars keeps its error bound, compared with exact motions.
 
     python benchmarks/error_bound_bars.py [NAME...]      # of tests/estimated_bars.py; by default those of `NAMES`
     python benchmarks/error_bound_bars.py --every [NAME...]      # computes the errors of all choices
@@ -7,8 +7,8 @@ The exact motion is d'Alembert's, for attenuation and ranges that of finite diff
 those of the choice. Errors are those at the places of the monitors.
 
 With `--every` it prints how many errors the search computes, whether it finds the choice that all of them give, and the
-largest factor by which the rules of bar_floors.py are wrong, of all pairs of choices: for finer nodes and other ends,
-which `MARGIN` has to cover, and for coarser ones, which only matter where no choice keeps the bound.
+largest factor by which the rules of accuracy/of_bars/floors.py are wrong, of all pairs of choices: for finer nodes and
+other ends, which `MARGIN` has to cover, and for coarser ones, which only matter where no choice keeps the bound.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def wrong_by(motions: list[Motion]) -> tuple[float, float]:
 
 
 def every(names: list[str]) -> None:
-    """Print a line for each scene: the search beside the errors of all choices."""
+    """Print a line for each scene: the choice of the search and the errors of all choices."""
     bounds = " | ".join(f"computed at {100 * bound:g} %" for bound in BOUNDS)
     print(f"| bar | choices | {bounds} | same choices | finer nodes, other ends | coarser nodes |")
     print("|---|---|" + "---|" * len(BOUNDS) + "---|---|---|")

@@ -126,19 +126,19 @@ def ground(wave: str, hole: bool) -> Tables:
 
 
 def confined(tables: Tables, stress: float) -> Tables:
-    """The same under a pressure (Pa) at rest, with contacts that may open or slide, and bonds that may break."""
+    """The tables with a pressure (Pa) at rest, and contacts that may open or slide, and bonds that may break."""
     strength = {"law": "linearpbond", "fric": 0.5, "pb_ten": 2.0 * stress, "pb_coh": 2.0 * stress, "pb_fa": 30.0}
     return tables | {"material": ROCK | strength, "static": {"stress": [-stress, -stress, 0.0]}}
 
 
 def bonded(tables: Tables) -> Tables:
-    """The same with bonds alone, that may break."""
+    """The tables with bonds that may break, and no contacts."""
     strength = {"law": "linearpbond", "contact_share": 0.0, "pb_ten": 1e8, "pb_coh": 1e8}
     return tables | {"material": ROCK | strength}
 
 
 def lasting(tables: Tables, duration: float) -> Tables:
-    """The same for a longer time (s)."""
+    """The tables with a longer duration (s)."""
     return tables | {"run": {"duration": duration}}
 
 

@@ -29,10 +29,10 @@ FINER = 3
 
 @dataclass(frozen=True)
 class Scene:
-    """A scene, and what it is measured against.
+    """A scene, and the reference for its error.
 
     reference : "extended", the same disks with sides so far away that nothing returns, for the error of the sides
-    alone; "finer", such a scene with disks `FINER` times smaller; "layer", plane waves in a layer with a free top;
+    only; "finer", such a scene with disks `FINER` times smaller; "layer", plane waves in a layer with a free top;
     "changed", the scene with `changes`, keys of a case file, whose continuum is larger and finer.
     """
 
@@ -188,7 +188,7 @@ def tunnel(packing: Tables, side: Tables, base: Tables, motion: str = "s") -> Ta
 
 
 def tunnels() -> Iterator[Scene]:
-    """Tunnels under P and S waves, beside free fields and dashpots."""
+    """Tunnels under P and S waves, with free fields and dashpots at their sides."""
     free_field, viscous, half = {"type": "free_field"}, VISCOUS, {"half_mass": True}
     ground = lattice(60.0, 60.0, 1.0)
     yield Scene("tunnel A free field", tunnel(ground, free_field, half))
@@ -276,7 +276,7 @@ def layers() -> Iterator[Scene]:
 
 
 def continua() -> Iterator[Scene]:
-    """A continuum beyond the sides: canyons and benches, beside larger and finer ones."""
+    """Canyons and benches with a continuum beyond the sides, compared with larger and finer ones."""
     canyon: Tables = {
         "ground": {"size": [80.0, 60.0]},
         "packing": lattice(40.0, 20.0, 1.0) | {"origin": [20.0, 40.0]},

@@ -1,12 +1,12 @@
-"""How near estimates of errors are to the true ones, on 79 small scenes of disks.
+"""Estimated errors compared with true ones, on 79 small scenes of disks.
 
     python benchmarks/estimates.py [--scenes lamb "bar A" ...] [--json FILE]
 
 Each scene is run, its error is estimated, and measured with its reference: the same disks with sides so far away that
-nothing returns, which gives the error of the sides alone, disks three times smaller, or an exact solution. Errors are
-RMS over RMS, of the component with the largest value. `corrected` is the error that is left when the estimated history
-is subtracted, `gained` the one before over it, bracketed where the larger companion has echoes of its own, for which no
-corrected history is offered.
+nothing returns, which gives only the error of the sides, disks three times smaller, or an exact solution. Errors are
+RMS over RMS, of the component with the largest value. `corrected` is the remaining error when the estimated history
+is subtracted, `gained` the original error over it, bracketed where the larger companion has echoes of its own, for
+which no corrected history is offered.
 """
 
 import argparse
@@ -60,7 +60,7 @@ def reference_of(scene: Scene, case: Any, recorded: Mapping[str, Any]) -> dict[s
 
 
 def _gauges(scene: Scene, case: Any) -> Mapping[str, Any]:
-    """What the monitors of the reference record."""
+    """Records of the monitors of the reference."""
     from dembound.accuracy.extended import extended
     from dembound.accuracy.runner import measure
     from dembound.kinds import with_changes
@@ -128,7 +128,7 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
 
 
 def _row(scene: Scene, found: Any, recorded: Any, monitor: str, quantity: str, expected: np.ndarray) -> dict[str, Any]:
-    """One row."""
+    """A row of the table for one monitor and quantity."""
     own = recorded[monitor]
     column = own.component(quantity)
     values, expected = own.values[quantity][:, column], expected[:, column]

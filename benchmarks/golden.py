@@ -1,11 +1,11 @@
-"""Whether a change of the code keeps what dembound computes: facts, runs, estimates, choices of two revisions.
+"""Checks that a change of the code keeps results of dembound: facts, runs, estimates, choices of two revisions.
 
     python benchmarks/golden.py write FILE [--sections check run estimate choice] [--names NAME...]
     python benchmarks/golden.py compare BEFORE AFTER
 
 `check`: facts and warnings of all shipped cases. `run`: of each the digest of every array in its record, equal only to
-the bit, and the norm of every history to ten digits, which also another processor has. `estimate`: errors by cause of
-the scenes of `estimates.py` and `estimate_bars.py`. `choice`: what `run --error` takes for the scenes of
+the bit, and the norm of every history to ten digits, which are the same on other processors. `estimate`: errors by
+cause of the scenes of `estimates.py` and `estimate_bars.py`. `choice`: the choices of `advise` for the scenes of
 `error_bound.py`. `compare` prints a line for each difference, and ends with 1 if there is one.
 """
 
@@ -117,7 +117,7 @@ def _short(value: Any) -> str:
 
 
 def choices() -> Iterator[tuple[str, Callable[[], Found]]]:
-    """What is chosen for each bound in the scenes of the benchmark of choices."""
+    """The choice for each bound in the scenes of the benchmark of choices."""
     from error_bound_scenes import scenes
 
     from dembound.accuracy.advise import advise

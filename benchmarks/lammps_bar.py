@@ -42,14 +42,14 @@ BARS = {
 ELASTIC, FULL, BPM, HARMONIC = "elastic", "linearpbond, reference", "bpm/rotational", "harmonic"
 
 TARGETS = ((ELASTIC, BPM, 75.0), (ELASTIC, HARMONIC, 8.0), (FULL, BPM, 25.0))
-"""How many times as fast the first is to be as the second on pattern A."""
+"""Least ratio of the first law's speed to the second's on pattern A."""
 
 PULSE, AMPLITUDE = 100.0, 0.1
 """Length (m) and largest velocity (m/s) of the pulse in the middle of the bar."""
 
 HISTORY_STEPS, HISTORY_EVERY = 1000, 20
 PROBES = (300.0, 450.0, 500.0, 650.0)
-"""Where displacements are compared (m)."""
+"""Places (m) at which displacements are compared."""
 
 COLUMNS = {
     "bar": "{bar}",

@@ -1,10 +1,10 @@
-"""The largest memory of whole runs, beside what `dembound check` computes from the case.
+"""The largest RAM of whole runs, compared with the RAM that `dembound check` computes from the case.
 
     python benchmarks/memory.py [--cases elastic full ...] [--sizes 1e4 3e4 ...] [--json results/benchmarks/memory.json]
 
 Every case is run for a few steps in a new process, with the command line, two snapshots, their files for ParaView and
-pictures; each kind of case once before, so that it is packed and compiled. "before" is what the case alone gives,
-without packing it, "after" that of the scene built.
+pictures; each kind of case once before, so that it is packed and compiled. "before" is computed from the case, without
+packing it, "after" from the scene built.
 
 elastic  a bar of pattern B; full: with the history-dependent law from the start; switch: that may change to it
 static   ground under gravity with the history-dependent law, after a static stage; statically elastic: with the other
@@ -176,7 +176,7 @@ MOST = {"few": 3e4, "one": 3e4}
 
 
 def measured(name: str, count: float, folder: Path) -> dict[str, Any]:
-    """One row of the table: memory as computed, before and after the scene is built, and as measured."""
+    """One row of the table: RAM as computed, before and after the scene is built, and as measured."""
     from dembound.kinds import kind_of
     from dembound.running import plan
     from dembound.schemas import load

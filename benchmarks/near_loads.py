@@ -1,4 +1,4 @@
-"""The error of disks near a force in a lattice, beside `errors_near_loads`.
+"""The error of disks near a force in a lattice, compared with `errors_near_loads`.
 
     python benchmarks/near_loads.py
 
@@ -22,13 +22,13 @@ from dembound.kinds import loads, with_changes
 from dembound.running import plan
 
 WIDE = 32.0
-"""Of the body, m; its disks are 1 m wide."""
+"""Width of the body, m; its disks are 1 m wide."""
 
 DISTANCES = (4, 7, 10, 14)
-"""From the middle of the force, m."""
+"""Distances of monitors from the middle of the force, m."""
 
 FREQUENCIES = (15.0, 25.0)
-"""Of the Ricker wave, Hz."""
+"""Frequencies of the Ricker wave, Hz."""
 
 PERIODS = 2.6
 """Length of the runs, in periods."""

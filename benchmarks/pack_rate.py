@@ -1,4 +1,4 @@
-"""How fast bricks are packed, and where the time goes.
+"""Speed of packing bricks, and the time of its parts.
 
     python benchmarks/pack_rate.py [--sides 10 50] [--repeats 5]
 
@@ -26,7 +26,7 @@ counted: dict[str, int] = {}
 
 
 def timed(name: str, work: Callable[..., Any]) -> Callable[..., Any]:
-    """The same function, whose CPU seconds and calls are added up under a name."""
+    """The function `work`, with its CPU seconds and calls added up under a name."""
 
     def call(*args: Any) -> Any:
         began = time.process_time()

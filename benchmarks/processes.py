@@ -1,8 +1,8 @@
-"""Whole processes: their time and memory, and workers that answer requests while they keep what they compiled.
+"""Whole processes: their time and RAM, and workers that answer requests and keep their compiled code.
 
-    python benchmarks/processes.py COMMAND ...     # runs a command, prints its CPU and wall time and largest memory
+    python benchmarks/processes.py COMMAND ...     # runs a command, prints its CPU and wall time and largest RAM
 
-A new process starts with the memory of the one that starts it as its largest, so commands are started by this small
+The largest RAM of a new process includes that of the process that starts it, so commands are started by this small
 script, which imports no packages.
 """
 
@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 
 class Usage(NamedTuple):
-    """CPU and wall seconds of a process, its largest memory in bytes, and its exit status."""
+    """CPU and wall seconds of a process, its largest RAM in bytes, and its exit status."""
 
     cpu: float
     wall: float

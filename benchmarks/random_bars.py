@@ -1,4 +1,4 @@
-"""How good what is advised for random bars is, beside runs of all choices on a grid and a fine reference.
+"""Quality of the advice for random bars, compared with runs of all choices on a grid and a fine reference.
 
     python benchmarks/random_bars.py [--scenes 20] [--first SEED] [--no-grid]
 
@@ -162,7 +162,7 @@ def reference(case: BarCase, step: float) -> dict[str, History]:
 def error_of(case: BarCase, truth: dict[str, History], at_steps: bool = False) -> float:
     """The largest error of all quantities at monitors that move; without the stress of end nodes.
 
-    at_steps : whether at the steps of the run alone, else at all times of the reference.
+    at_steps : only at the steps of the run, else at all times of the reference.
     """
     recorded, _ = recorded_of(case)
     scene = build_bar(case)

@@ -1,13 +1,13 @@
-"""How fast disks are stepped, packed and run, and how much of the machine that is.
+"""Speed of stepping, packing and running disks, and its share of what the machine can do.
 
     python benchmarks/rates.py [--sections steps copies ...] [--threads 1 2] [--json results/benchmarks/rates.json]
 
 Sections:
 
 steps     particle-steps per second of shipped cases under the elastic law and both geometries of the full law: the
-          compiled loop alone, and all of `Simulation.advance`; share of the bandwidth of an array copy measured beside
-copies    the same for 1 to 100 copies of a brick
-sizes     the same for 1e4 to 1e6 particles, with --large also 4e6
+          compiled loop, and all of `Simulation.advance`; share of the bandwidth of an array copy measured at the time
+copies    particle-steps per second for 1 to 100 copies of a brick
+sizes     particle-steps per second for 1e4 to 1e6 particles, with --large also 4e6
 commands  CPU seconds of whole commands, in the first run and later
 packing   CPU seconds of packing a brick
 
@@ -192,7 +192,7 @@ def _command(*arguments: str | Path) -> list[str | Path]:
 
 
 def commands(options: argparse.Namespace) -> list[dict[str, Any]]:
-    """Whole commands in new processes, each run before on an empty cache of compiled code: its first run."""
+    """CPU seconds of whole commands in new processes; the first run of each is on an empty cache of compiled code."""
     rows = []
     for name, arguments in COMMANDS.items():
         called = [str(ROOT / "cases" / f"{a}.toml") if a in FILES else a for a in arguments]

@@ -1,4 +1,4 @@
-"""What reductions save on the shipped cases, and how far the results are from those without them.
+"""Savings by reductions on the shipped cases, and the difference of the results from those without them.
 
     python benchmarks/reductions.py [--cases zhou2018/long_bar_a ...] [--seconds 20] [--repeats 3] [--json FILE]
 
@@ -212,7 +212,7 @@ def _row(small: list[Ran], whole: list[Ran]) -> dict[str, Any]:
 def shipped(names: list[str]) -> Iterator[tuple[str, Any, list[str]]]:
     """Names, cases and reductions of the shipped cases, without those of charts, which are the same scenes.
 
-    names : those that are requested; all without names.
+    names : of the requested cases; all if empty.
     """
     from dembound.kinds import load, with_changes
 

@@ -1,12 +1,13 @@
-"""Wave packets that sides send back in runs, beside what `dembound boundary` measures without one.
+"""Wave packets reflected by sides in runs, compared with reflections that `dembound boundary` measures without a run.
 
     python benchmarks/reflection_packets.py [--only viscous] [--json FILE]
 
 A packet of plane P or S waves runs at an angle through a strip of disks, periodic sideways, to its right side. The
 strip is as high as one wave is long along the side, so that all waves of the packet have the same wave number k_y, and
-wave numbers k_x with energies exp(−(k_x − k₀)²σ²): each is a plane wave of its own angle and frequency, which the side
-sends back by itself. Kinetic and strain energy of all disks are measured before and after; what is P and what S follows
-from wave numbers and directions of motion. Beside it is what the meter gives, its mean over the waves of the packet.
+wave numbers k_x with energies exp(−(k_x − k₀)²σ²): each is a plane wave with its own angle and frequency, which the
+side reflects independently. Kinetic and strain energy of all disks are measured before and after; P and S waves are
+distinguished by wave numbers and directions of motion. The last column is the meter's mean over the waves of the
+packet.
 """
 
 import argparse
@@ -62,7 +63,7 @@ FEW = 100
 """Motions of a brick up to which all of its waves are computed at once."""
 
 SHORTEST = 3.0
-"""Largest k_x in which P and S waves are told apart, over the length of the packet's wave vector."""
+"""Largest k_x in which P and S waves are distinguished, over the length of the packet's wave vector."""
 
 
 class Wave(NamedTuple):
@@ -189,7 +190,7 @@ class Packet:
 
 
 class Energies(NamedTuple):
-    """Energies sent back, over that of the packet: as P and as S waves, and in all."""
+    """Reflected energies over that of the packet: as P and as S waves, and in total."""
 
     p: float
     s: float
@@ -222,7 +223,7 @@ def share_of_p(packet: Packet, scene: DiskScene, velocity: np.ndarray) -> float:
 
 
 def in_a_run(packet: Packet) -> tuple[Energies, int, int]:
-    """What comes back in a run; disks and steps."""
+    """Reflected energies in a run; numbers of disks and steps."""
     ground = ground_of(packet.case(BRICK))
     came = packet.speed(ground, packet.kind)
     duration = 2.0 * REACH * packet.width / (came * (1.0 - 3.0 * SPREAD))  # until slower waves have left the side, too
@@ -240,7 +241,7 @@ def in_a_run(packet: Packet) -> tuple[Energies, int, int]:
 
 
 def without_a_run(packet: Packet) -> Energies:
-    """What the meter gives: its mean over the waves of the packet."""
+    """Reflected energies by the meter: means over the waves of the packet."""
     case = packet.case(2.0 * REACH * packet.width)
     scene = build(case)
     time_step, _ = choose_step(scene)

@@ -1,4 +1,4 @@
-"""Whether tests catch single edits in the physics: a sign, a factor of two, an axis, an index.
+"""Checks that tests catch single edits in the physics: a sign, a factor of two, an axis, an index.
 
     python benchmarks/single_edits.py [NAME...] [--all-tests] [--without-compiling]
 
@@ -33,7 +33,7 @@ def place_of(edit: dict[str, str], package: Path) -> Path:
 
 
 def tests_of(edit: dict[str, str], module: Path, *, all_tests: bool) -> list[str]:
-    """What pytest is to run for an edit of a module."""
+    """Arguments of pytest for an edit of a module."""
     known = edit.get("test", "")
     if known and not all_tests:
         name, _, function = known.partition(".")

@@ -21,8 +21,8 @@ LAWS: dict[str, dict[str, Any]] = {
 """Laws that are measured -> changes of the case; the history-dependent law is used from the first step."""
 
 AMPLITUDE = 1e-3
-"""Of the waves of a case (m/s), as small as the random velocities: what a step costs then does not depend on where a
-wave is, and pairs are not listed anew as disks are carried along."""
+"""Amplitude of the waves of a case (m/s), as small as the random velocities: then the cost of a step does not depend
+on where a wave is, and pairs are not listed anew as disks are carried along."""
 
 BAR = """
 [packing]
@@ -95,7 +95,7 @@ def steps_for(simulation: Any, seconds: float) -> int:
 
 
 class Stepping:
-    """One simulation at a time, by requests."""
+    """Holds one simulation at a time and answers requests to step it."""
 
     def __init__(self) -> None:
         self.simulation: Any = None
@@ -110,7 +110,7 @@ class Stepping:
         return {"count": int(self.simulation.scene.count), "time_step": float(self.simulation.time_step)}
 
     def steps_for(self, seconds: float) -> int:
-        """See `steps_for`."""
+        """Number of steps that take about this many seconds, see `steps_for`."""
         return steps_for(self.simulation, seconds)
 
     def block(self, steps: int) -> list[float]:

@@ -1,4 +1,4 @@
-"""How benchmarks take time, describe the machine, and print and write what they measured."""
+"""Timing, description of the machine, and printing and writing of measurements for benchmarks."""
 
 import json
 import os

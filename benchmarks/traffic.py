@@ -1,10 +1,10 @@
-"""Memory traffic and arithmetic of one step, counted from the arrays that the kernels are given.
+"""RAM traffic and arithmetic of one step, counted from the arrays that the kernels are given.
 
 Bytes are the least that has to be moved: every array of particles or pairs once for each pass over it, 8 bytes more
 where a number is written without having been read, as its line of the cache is fetched first. Neighbours come from
 cache, and so do constants, which are stored once for all copies of a disk. Slots without a particle are moved, too, and
-count. Operations are additions and multiplications, a root or quotient counted as one, for what exists: not for slots
-or lanes without a particle, contact or pair.
+count. Operations are additions and multiplications, a root or quotient counted as one, for existing contacts and
+particles only: not for slots or lanes without one.
 
 All numbers are for steps without steady loads, local damping and sliding contacts.
 """
@@ -43,7 +43,7 @@ UPDATED_PAIR, REFERENCE_PAIR = 72.0, 54.0
 bond 18, force and moments 12, sums 6."""
 
 UPDATED_STRAY, REFERENCE_STRAY = 91.0, 75.0
-"""The same for pairs that are computed one by one (contacts.py)."""
+"""Operations of pairs that are computed one by one (contacts.py), with updated and with reference geometry."""
 
 
 class Cost(NamedTuple):
@@ -112,7 +112,7 @@ def _(law: LaneBonded, count: int, ends: int, free: tuple[float, ...]) -> Cost:
 
 
 def lane_cost(rows: LaneRows, count: int, ends: Ends, free: tuple[float, ...]) -> Cost:
-    """The elastic law in rows of copies, of the moving components alone where two move."""
+    """Cost of the elastic law in rows of copies; of only the moving components where two move."""
     whole, masked, particle = LANE_FLOPS.get(free, LANE_FLOPS[1.0, 1.0, 1.0])
     moved = COMPONENT * (sum(free) if free in LANE_FLOPS else 3.0) * slots(rows)
     moved += special_bytes(rows, len(rows.stray) > 0) + len(rows.masks) + 8.0 * ends.strays
@@ -131,12 +131,12 @@ def slots(rows: LaneRows) -> int:
 
 
 def special_bytes(rows: LaneRows, strays: bool) -> float:
-    """Whether each block is special, and what such blocks read: mobilities, and forces of strays that were written."""
+    """Bytes of the flags of special blocks, and those read by such blocks: mobilities, and forces of strays."""
     special = int(np.count_nonzero(rows.special[rows.group_block[0] :]))
     return slots(rows) / LANES + LANES * special * (16.0 + (72.0 if strays else 0.0))
 
 
 def lane_ends(rows: LaneRows, ends: int) -> Ends:
-    """How the contact ends of a part, so many in all, are computed."""
+    """How the `ends` contact ends of a part are computed."""
     masked = int(np.bitwise_count(rows.masks).sum())
     return Ends(ends - masked - len(rows.stray_neighbour), masked, len(rows.stray_neighbour))

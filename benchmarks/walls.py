@@ -3,9 +3,10 @@
     python benchmarks/walls.py
 
 Round holes under a pressure and under an SV wave, in lattices and in bricks of random disks, in a continuum all round,
-beside the exact solutions in the medium that the packing is; rectangular ones in lattices beside disks three times
-smaller, for which differences are multiplied by 3/2, as these errors are of first order. Pressures last ten times as
-long as S waves take along the smaller half, waves `LASTING` times. RMS over RMS, means over 12 directions.
+compared with the exact solutions in the homogenised medium of the packing; rectangular ones in lattices compared with
+disks three times smaller, for which differences are multiplied by 3/2, as these errors are of first order. Pressures
+last ten times as long as S waves take along the smaller half, waves `LASTING` times. RMS over RMS, means over 12
+directions.
 """
 
 from collections.abc import Iterator, Mapping
@@ -111,7 +112,7 @@ def row(name: str, own: Mapping[str, Any], expected: Mapping[str, Any], along: f
 
 
 def round_holes() -> Iterator[dict[str, Any]]:
-    """Circles beside exact solutions."""
+    """Circles compared with exact solutions."""
     lattices = [("A", 1, n, offset) for n in (3.5, 5.0, 7.0, 8.0, 10.0, 12.5, 16.0, 20.0) for offset in OFFSETS]
     random = [(pattern, seed, n, (0.0, 0.0)) for n in (4.0, 6.0, 10.0) for pattern in "BC" for seed in range(1, 6)]
     for pattern, seed, n, offset in [*lattices, *random]:
@@ -128,7 +129,7 @@ def round_holes() -> Iterator[dict[str, Any]]:
 
 
 def rectangles() -> Iterator[dict[str, Any]]:
-    """Squares in lattices, with walls between disks, beside smaller disks."""
+    """Squares in lattices, with walls between disks, compared with smaller disks."""
     for n in (3.0, 5.0, 8.0, 12.0):
         half = np.ceil(3.0 * n)
         middle, wide = np.full(2, half), 2.0 * float(half)

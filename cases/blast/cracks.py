@@ -1,4 +1,4 @@
-"""How much the cracks of docs/evidence/blast.md depend on the time step, which alone differs between runs: its table.
+"""Dependence of the cracks of docs/evidence/blast.md on the time step, the only difference between runs: its table.
 
 python cases/blast/cracks.py results/blast_cracks      (half a minute of CPU time)
 """
@@ -16,7 +16,7 @@ STEPS = (0.99, 0.98, 0.97, 0.95, 0.9, 0.75, 0.5, 0.25)
 
 
 def main() -> None:
-    """Print each draw, and how far they are apart."""
+    """Print each draw, and the differences between draws."""
     record = Path(sys.argv[1]) / "run.h5"
     own = Cracked.of(record)
     again = [repeated(recorded_case(record), record, own, step) for step in STEPS]

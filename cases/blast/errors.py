@@ -1,4 +1,4 @@
-"""Errors of cases/blast.toml beside a large lattice and beside the exact cavity: the tables of docs/evidence/blast.md.
+"""Errors of cases/blast.toml compared with a large lattice and the exact cavity: the tables of docs/evidence/blast.md.
 
     python cases/blast/errors.py      (three minutes of CPU time; it needs 1 GB)
 
@@ -31,7 +31,7 @@ DISTANCES, ANGLES = (1.12, 1.32, 1.52, 1.82), (0.0, 22.5, 45.0, 67.5)
 
 
 def quarter(diameter: float, width: float, side: str, **more: object) -> dembound.Case:
-    """The case beside two mirror planes, with the other two sides of one type; lengths in m."""
+    """The case with two mirror planes, and the other two sides of one type; lengths in m."""
     beyond = {"type": side, **({"half_mass": True} if side == "viscous" else {})}
     sides = {"left": {"type": "symmetry"}, "bottom": {"type": "symmetry"}, "right": beyond, "top": beyond}
     changes = {
@@ -81,7 +81,7 @@ class Motion:
 
 
 def error(found: np.ndarray, expected: np.ndarray) -> float:
-    """RMS of the difference over that of what is expected, per cent."""
+    """RMS of the difference over RMS of the expected motion, per cent."""
     return 100.0 * float(np.sqrt(np.sum((found - expected) ** 2) / np.sum(expected**2)))
 
 
@@ -101,13 +101,13 @@ def beside_exact(motion: Motion, displacement: np.ndarray, velocity: np.ndarray)
 
 
 def best_radius(motion: Motion, displacement: np.ndarray, diameter: float) -> float:
-    """By how many diameters the exact cavity with the most similar displacement is larger than the hole."""
+    """Diameters by which the exact cavity with the most similar displacement is larger than the hole."""
     wider = motion.exact(RADIUS + 0.1 * diameter)[0] - displacement
     return 0.1 * float(np.sum(wider * (motion.displacement - displacement)) / np.sum(wider**2))
 
 
 def of_the_hole() -> Iterator[str]:
-    """Errors beside the exact cavity, with a continuum, dashpots, or a large lattice beyond the box."""
+    """Errors relative to the exact cavity, with a continuum, dashpots, or a large lattice beyond the box."""
     for diameter in (0.5, 0.25, 0.125):
         for on in ("outline", "bonds"):
             for side, width in (("outside", BOX), ("viscous", BOX), ("free", LARGE)):
@@ -118,7 +118,7 @@ def of_the_hole() -> Iterator[str]:
 
 
 def of_the_continuum() -> Iterator[str]:
-    """Errors of boxes with a continuum beside the same hole in a large lattice, with equal steps."""
+    """Errors of boxes with a continuum relative to the same hole in a large lattice, with equal steps."""
     large = Motion(quarter(0.5, LARGE, "free"), step=1.2e-4)
     for width in (BOX, SMALL):
         inside = np.hypot(*large.places.T) < (1.4 if width < BOX else 2.0) * RADIUS
@@ -130,7 +130,7 @@ def of_the_continuum() -> Iterator[str]:
 
 
 def of_random_packings() -> Iterator[str]:
-    """Errors of pattern B, all round the axis, beside the exact cavity with the mean of its speeds along x and y."""
+    """Errors of pattern B, all round the axis, relative to the exact cavity with its mean speed along x and y."""
     packing = {"pattern": "B", "size": [160.0, 160.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
     common = {"hole.tunnel.centre": [80.0, 80.0], "monitor": [], "boundary": {}, "material.match": "assembly"}
     for seed in (1, 2, 3):

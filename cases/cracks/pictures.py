@@ -28,7 +28,7 @@ ENERGY = 200.0
 OPEN = 2.0 * ENERGY / 10e6
 LENGTH = MODULUS * ENERGY / 10e6**2
 HORIZON = 8e-3
-"""Of peridynamics, m, at every spacing."""
+"""Horizon of peridynamics, m, at every spacing."""
 
 PULL = 0.02
 """Speed of the pulled end, m/s."""
@@ -36,7 +36,7 @@ PULL = 0.02
 MILLI, MICRO, MEGA = 1e-3, 1e-6, 1e6
 
 SPACINGS = (2e-3, 1e-3, 0.5e-3, 0.25e-3)
-"""Of the nodes, m."""
+"""Spacings of the nodes, m."""
 
 
 def pulled(method: dict[str, Any], cells: int) -> tuple[np.ndarray, np.ndarray]:

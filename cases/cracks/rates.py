@@ -26,7 +26,7 @@ PERIODS = np.array([60e-6, 80e-6, 120e-6, 160e-6, 240e-6, 320e-6, 480e-6])
 """Lengths of the pulses, s."""
 
 PRESSURE = 20e6
-"""Their crest, Pa."""
+"""Crest of the pulses, Pa."""
 
 ENERGIES = (100.0, 20.0)
 """Fracture energies, J/m²."""
@@ -52,7 +52,7 @@ class Spalled:
 
     @property
     def to_both_sides(self) -> tuple[float, float]:
-        """From the mean to the smallest and to the largest, MPa."""
+        """Distances from the mean to the smallest and to the largest, MPa."""
         return self.mean - self.pull_backs.min() / MEGA, self.pull_backs.max() / MEGA - self.mean
 
     def __str__(self) -> str:

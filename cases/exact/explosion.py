@@ -128,7 +128,7 @@ def solid_of(scene: DiskScene) -> Solid:
 
 
 class Motion:
-    """Motion of the surface beside the exact one.
+    """Motion of the surface, computed and exact.
 
     Attributes
     ----------
@@ -153,7 +153,7 @@ class Motion:
         return errors(self.found, self.exact)
 
     def errors_of_means(self) -> np.ndarray:
-        """The same (2, p/2) of the means of both sides, of which the second half of the places are the left ones."""
+        """RMS errors (2, p/2), %, of the means of both sides; the second half of the places are the left ones."""
         return errors(*(0.5 * sum(np.split(values * self._outwards, 2)) for values in (self.found, self.exact)))
 
     @property

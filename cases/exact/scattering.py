@@ -17,7 +17,7 @@ from dembound.motion.simulation import Simulation
 
 BLAST = dembound.load(Path(__file__).parents[1] / "blast.toml")
 RADIUS, PLACES = 10.0, 72
-"""m, and number of points of the wall; rock, tunnel and box are those of the blast."""
+"""Radius, m, and number of points of the wall; rock, tunnel and box are those of the blast."""
 
 
 def case_of(kind: str, angle: float, diameter: float, places: int) -> dembound.Case:
@@ -58,7 +58,7 @@ def errors(kind: str, angle: float, diameter: float, places: int = PLACES) -> np
 
 
 def error(found: np.ndarray, expected: np.ndarray) -> float:
-    """RMS of the difference over that of what is expected, per cent."""
+    """RMS of the difference over RMS of the expected motion, per cent."""
     return 100.0 * float(np.sqrt(np.sum((found - expected) ** 2) / np.sum(expected**2)))
 
 

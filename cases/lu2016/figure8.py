@@ -20,7 +20,7 @@ BEFORE = (36, 27, 18, 9, 0)
 
 @styled
 def figure_8(results: Path) -> Figure:
-    """Both parts, one above the other."""
+    """Both parts of figure 8, one above the other."""
     figure = new_figure(8.5, 9.5)
     damage, stress = figure.subplots(2, 1, height_ratios=[5, 4])
     runs = [results / f"table1_row{number}" for number in range(1, 8)]

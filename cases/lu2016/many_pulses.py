@@ -1,10 +1,10 @@
-"""How far the first spall is from the closed form over many pulses, by method and spacing, as Markdown.
+"""Deviation of the first spall from the closed form over many pulses, by method and spacing, as Markdown.
 
     python cases/lu2016/many_pulses.py RUN...
 
 Each run's case meets 36 triangles: crests of 20 to 40 MPa after 0.02 to 0.08 ms. As nodes and steps are discrete, a
-single pulse says little about a method; so does the difference between two methods for one pulse. The last column is by
-how much the bar breaks later than with FDM–PD3 of the same spacing, from the least to the most.
+single pulse says little about a method; so does the difference between two methods for one pulse. The last column is
+the time by which the bar breaks later than with FDM–PD3 of the same spacing, from the least to the most.
 """
 
 import sys

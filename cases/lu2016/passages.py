@@ -1,4 +1,4 @@
-"""Lu & Wang (2016), section 3.2: how wrong the pulse is each time it passes the middle of the bar, as Markdown.
+"""Lu & Wang (2016), section 3.2: error of the pulse each time it passes the middle of the bar, as Markdown.
 
     python cases/lu2016/passages.py RUN...
 
@@ -24,7 +24,7 @@ def exact_stress(case: BarCase, place: float, time: np.ndarray) -> np.ndarray:
 
 
 def errors(run: Path, monitor: str = "middle") -> list[float]:
-    """Of each whole passage of a run's pulse through the middle of the bar."""
+    """Errors of each whole passage of a run's pulse through the middle of the bar."""
     case = case_of(run)
     time, stress, place = history(run, monitor)
     exact = exact_stress(case, place, time)

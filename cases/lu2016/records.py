@@ -1,4 +1,4 @@
-"""What the scripts beside this file read from the results of `dembound run`, and how they show it."""
+"""Reading of results of `dembound run` for the scripts of this folder, and their presentation."""
 
 import json
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from dembound.running import plan
 MILLI, MEGA = 1e-3, 1e6
 
 ROW = 1.25
-"""From one row of damage to the next; damage itself is 1 high."""
+"""Distance from one row of damage to the next; damage itself is 1 high."""
 
 
 def summary_of(run: Path) -> dict[str, Any]:
@@ -29,7 +29,7 @@ def summary_of(run: Path) -> dict[str, Any]:
 
 
 def first_spall(run: Path) -> dict[str, Any]:
-    """Its first spall: `time` (s) and `start`, the range of its cracked nodes (m)."""
+    """The first spall of a run: `time` (s) and `start`, the range of its cracked nodes (m)."""
     return summary_of(run)["spalls"][0]
 
 

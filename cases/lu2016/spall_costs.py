@@ -1,9 +1,9 @@
-"""Lu & Wang (2016), table 2: where and when runs spall, and what it costs to come so far, as Markdown.
+"""Lu & Wang (2016), table 2: places, times and costs of spalls, as Markdown.
 
     python cases/lu2016/spall_costs.py [--repeats 41] RUN...
 
 Each case is run anew to its first spall, in this process and compiled before; the time is the median of the repeats,
-without building the bar. Ratios are to the run with peridynamics alone of the same spacing.
+without building the bar. Ratios are to the run with only peridynamics of the same spacing.
 """
 
 import argparse
@@ -29,7 +29,7 @@ HEADS = (
 
 
 def costs(runs: dict[Path, BarCase], repeats: int) -> dict[Path, tuple[int, float]]:
-    """Of each run the forces of bonds computed up to its first spall, and how long that takes, s."""
+    """For each run the number of bond forces computed up to its first spall, and the time, s."""
     planned = {run: plan(case) for run, case in runs.items()}
     steps = {run: round(first_spall(run)["time"] / each.time_step) + 1 for run, each in planned.items()}
     updates, times = {}, {run: [] for run in runs}

@@ -1,4 +1,4 @@
-"""Table 1 of Lu & Wang (2016): where and when the seven bars spall, beside the printed values, as Markdown.
+"""Table 1 of Lu & Wang (2016): place and time of spalls of the seven bars, with the printed values, as Markdown.
 
     python cases/lu2016/table1.py [RESULTS]      (default: results/lu2016)
 

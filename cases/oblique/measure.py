@@ -1,11 +1,11 @@
-"""Measures waves at an angle: ground without a tunnel against its exact motion, and a tunnel beside a larger box.
+"""Measures oblique waves: ground without a tunnel against its exact motion, and a tunnel against a larger box.
 
     python measure.py [exact] [tunnel] [corners]
 
 "exact": the largest deviation of any disk and of the continuum's nodes, in per cent of the disks' largest velocity.
-"tunnel": RMS of (v_x, v_y) at the tunnel and on the surface in the box of ``oblique.toml``, beside a box of twice the
-size in elements of half the size, in per cent of the RMS of the total motion. "corners": the same in the continuum,
-from the box to where its layers begin. All take some five minutes.
+"tunnel": RMS error of (v_x, v_y) at the tunnel and on the surface in the box of ``oblique.toml``, relative to a box of
+twice the size in elements of half the size, in per cent of the RMS of the total motion. "corners": the same error in
+the continuum, from the box to where its layers begin. All take some five minutes.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""Draws the motion of ``oblique.toml``: its total velocity at some times, and that of the tunnel's wall.
+"""Draws the motion of ``oblique.toml``: total velocity at some times, and velocity of the tunnel's wall.
 
 dembound run oblique.toml
 python oblique/picture.py results/oblique oblique.png

@@ -1,4 +1,4 @@
-"""What a side with a continuum beyond it sends back of plane waves, against the angle of incidence.
+"""Reflection of plane waves by a side with a continuum beyond it, against the angle of incidence.
 
 Exact for the discrete equations. Lattice, ties and continuum repeat themselves along the side with the height h of an
 element, so of a wave e^(i(k_y y − ωt)) only the nodes of one row of elements (element_row.py) and the disks beside it
@@ -27,7 +27,7 @@ FREQUENCY = 14.0
 """Hz, at which an S wave is 101 diameters long."""
 
 NODES = 17.0
-"""Of elements, in the length of that S wave."""
+"""Nodes of elements per wavelength of the S wave."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ class Side:
 
     @classmethod
     def of(cls, nodes: float = NODES, layers: int = 3, reflection: float = 1e-4, **keys: Any) -> "Side":
-        """Beside elements with so many nodes in the S wave, rounded down to whole diameters; keys : of [outside]."""
+        """A side with `nodes` nodes in the S wave, elements rounded down to whole diameters; keys : of [outside]."""
         order = keys.get("order", 4)
         size = DIAMETER * int(order * SPEED * 0.5**0.5 / FREQUENCY / nodes / DIAMETER)
         case = api.case(
@@ -59,7 +59,7 @@ class Side:
 
     @property
     def speeds(self) -> tuple[float, float]:
-        """Of P and S waves, m/s."""
+        """Speeds of P and S waves, m/s."""
         p_speed, s_speed = self.scene.ground.wave_speeds(0)
         return float(p_speed), float(s_speed)
 
@@ -95,7 +95,7 @@ class Harmonic:
 
     @classmethod
     def of(cls, frequency: float, along: float) -> "Harmonic":
-        """For a frequency (rad/s) of accelerations and a wave number (1/m)."""
+        """The waves for a frequency (rad/s) of accelerations and a wave number (1/m)."""
         inertia, inside, at_the_side = _free_lattice()
         factor, shape, flow = waves(column_matrices(inside, along), inertia, frequency)
         edge = column_matrices(at_the_side, along)

@@ -1,4 +1,4 @@
-"""Noise in a continuum with absorbing layers, alone and round disks: its kinetic energy over many steps."""
+"""Noise in a continuum with absorbing layers, without and round disks: its kinetic energy over many steps."""
 
 from collections.abc import Sequence
 from typing import Any

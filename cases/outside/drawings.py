@@ -65,7 +65,7 @@ CHOICES: dict[str, dict[str, float]] = {
 
 @styled
 def lasting() -> Figure:
-    """Settlement beside a load that stays, against time; and what is missing of it, against c_p t/L."""
+    """Settlement beside a load that stays, against time; and its missing part, against c_p t/L."""
     figure = new_figure(10.0, 4.8)
     left, right = figure.subplots(1, 2)
     times = np.geomspace(0.3, 20.0, 60)

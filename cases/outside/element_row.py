@@ -18,7 +18,7 @@ from dembound.outside.layer import Profile
 from dembound.outside.mesh import Mesh
 
 ROWS = 3
-"""Of elements along the side; the middle one is taken."""
+"""Rows of elements along the side; the middle one is used."""
 
 
 def layer_profile(body: GridBody) -> Profile:
@@ -70,7 +70,7 @@ class Row:
 
     @cached_property
     def elements(self) -> np.ndarray:
-        """(E,) those of the row, from the wall on."""
+        """Elements (E,) of the row, from the wall on."""
         place = self.mesh.elements
         row = np.flatnonzero(place[:, 1] == ROWS // 2)
         return row[np.argsort(place[row, 0])]
@@ -82,7 +82,7 @@ class Row:
         return 2 * p * (p * len(self.elements) + 1)
 
     def spread(self, element: int) -> np.ndarray:
-        """(2Q, count) the motion of the nodes of an element, x of all and then y, from that of the row's nodes.
+        """Matrix (2Q, count) from the motion of the row's nodes to that of an element's nodes, x of all and then y.
 
         The upper end of the row is the lower one of the next, a phase e^(ik_y h) ahead.
         """
@@ -124,7 +124,7 @@ class Row:
         return np.vstack([of_x @ xx + of_y @ xy, of_x @ xy + of_y @ yy])
 
     def grid(self) -> np.ndarray:
-        """(count, count) forces on the row's nodes per displacement, with those of inertia."""
+        """Forces (count, count) on the row's nodes per displacement, including inertia."""
         mesh, body = self.mesh, self.outside.body
         weight = 0.25 * np.prod(self.size) * np.outer(mesh.rule.weights, mesh.rule.weights).ravel()
         inertia = body.medium.density * self.accelerated**2 * np.diag(np.tile(weight, 2))
@@ -141,7 +141,7 @@ class Row:
 
     @cached_property
     def disks(self) -> np.ndarray:
-        """(ROWS, n) disks beside each row, by number in the scene."""
+        """Disks (ROWS, n) beside each row, by number in the scene."""
         bonds = self.outside.wall.bonds
         return bonds.particle[np.argsort(bonds.point[:, 1])].reshape(ROWS, -1)
 

@@ -20,16 +20,16 @@ from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 
 RADIUS, SPEED = 0.25, 300.0
-"""m and m/s: those of Z's problem, section 3.2. The lattice is isotropic, ν = 0."""
+"""Radius (m) and wave speed (m/s) of Z's problem, section 3.2. The lattice is isotropic, ν = 0."""
 
 WIDTH, HEIGHT = 25.5, 10.0
-"""Of the body, m: 51 × 20 disks."""
+"""Size of the body, m: 51 × 20 disks."""
 
 SETTINGS: dict[str, Any] = {"element": 6.4, "margin": 1, "layers": 3, "reflection": 1e-4}
-"""Of [outside]: elements of 6.4 m × 5 m."""
+"""Keys of [outside]: elements of 6.4 m × 5 m."""
 
 DISTANCE = 10.0
-"""From the load to the receiver, m: 20 disks."""
+"""Distance from the load to the receiver, m: 20 disks."""
 
 RISE = 0.5
 """s, in which the load is put on."""
@@ -82,13 +82,13 @@ def rule(reached: np.ndarray | float) -> np.ndarray | float:
 
 
 def exact_settlement(case: api.Case, times: np.ndarray) -> np.ndarray:
-    """That of the half-space."""
+    """Settlement (k,) m of the half-space."""
     receiver = exact_motions(build(case))[1]["receiver"]
     return -receiver.at(times).displacement[:, 1]
 
 
 def on_a_grid(ratio: float, times: np.ndarray, elements: int = 3) -> tuple[np.ndarray, np.ndarray, float]:
-    """Settlement (k,) m beside a unit force on a continuum alone at times (k,) s, the exact one, and L_inner, m.
+    """Settlement (k,) m beside a unit force on a continuum without disks at times (k,) s, exact one, and L_inner, m.
 
     ratio : Poisson's; elements : of 10 m, and twice as many along the surface, within three layers. c_p is `SPEED`.
     """

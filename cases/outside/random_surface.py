@@ -1,4 +1,4 @@
-"""What each part of the continuum beside random packings is worth: Lamb's problem beside a packing alone.
+"""Effect of each part of the continuum beside random packings: Lamb's problem, compared with an endless packing.
 
     python cases/outside/random_surface.py [--period 0.3] [--seeds 1 2 3] [--picture surface.png]
 
@@ -29,17 +29,17 @@ from dembound.outside.interpolation import interpolation
 from dembound.plot.style import COLOURS
 
 BRICK, BODY, ALONE = 25.0, (2, 1), (34, 17)
-"""Side of a brick, m; bricks of the body and of the packing alone."""
+"""Side of a brick, m; numbers of bricks of the body, and of the packing without a continuum."""
 
 DISTANCES = (10.0, 20.0, 40.0, 80.0)
-"""Of the places on the surface to both sides of the force, m."""
+"""Distances of the places on the surface to both sides of the force, m."""
 
 BELOW = ((0.0, 60.0), (40.0, 40.0), (-40.0, 40.0))
 """Places in the continuum: distance and depth, m."""
 
 ALL = "all three"
 PARTS = ("nothing", "C16, C26", "correctors", "skin", ALL)
-"""What is left out."""
+"""Parts of the continuum that are left out in turn."""
 
 MEAN = 12
 """Disks of a place."""
@@ -86,7 +86,7 @@ def case(bricks: tuple[int, int], seed: int, period: float, extra: str = "") -> 
 
 @dataclass(frozen=True)
 class Reference:
-    """Motion (steps, p, 4) at p places of the packing alone, and the positions (p, MEAN, 2) m of their disks there."""
+    """Motion (steps, p, 4) at p places of the endless packing, and the positions (p, MEAN, 2) m of their disks."""
 
     motion: np.ndarray
     disks: np.ndarray
@@ -113,7 +113,7 @@ def alone(seed: int, period: float, step: float, steps: int) -> Reference:
 
 
 def beside(scene: DiskScene, reference: Reference, step: float) -> np.ndarray:
-    """The same means in the body and, where it has no disks, of the continuum in the places of the disks."""
+    """Means at the reference's places in the body and, where it has no disks, of the continuum."""
     points = reference.disks.reshape(-1, 2)
     far, disk = cKDTree(scene.positions[: scene.recorded]).query(points)
     at = interpolation(scene.outside.body.mesh, points)
@@ -140,7 +140,7 @@ def without(part: str) -> ExitStack:
 
 
 def measured(seed: int, period: float) -> tuple[float, np.ndarray, dict[str, np.ndarray]]:
-    """Time step (s), motion of the packing alone (steps, p, 4), and beside the continuum by the part left out."""
+    """Time step (s), motion of the endless packing (steps, p, 4), and motion beside the continuum by part left out."""
     scenes = {}
     for part in PARTS:
         with without(part):

@@ -1,4 +1,4 @@
-"""Z's tunnel in random disks: ground of disks, and a box of them, with a continuum beyond, beside disks without an end.
+"""Z's tunnel in random disks: ground of disks, and a box of them in a continuum, compared with endless disks.
 
     python cases/outside/random_tunnel.py [--pattern B] [--period 0.5] [--element 30] [--margin 1] [--seeds 1 2 3]
 
@@ -19,7 +19,7 @@ from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
 
 WIDTH, HEIGHT, DEPTH, RADIUS = 1225.0, 750.0, 162.5, 20.0
-"""Of the ground, and of the tunnel's centre and wall, m."""
+"""Width and height of the ground, depth of the tunnel's centre and radius of its wall, m."""
 
 DURATION = 1.9
 """s, in which P waves run from the tunnel, which the pulse reaches after 0.8 s, to the sides and back."""
@@ -28,7 +28,7 @@ BODIES = {"endless": (1225.0, 750.0, 0.0), "325 m × 300 m": (325.0, 300.0, 450.
 """Width, height, and height of the lower side of the bodies of disks, m; all consist of whole bricks."""
 
 PLACES = {"P1": (-20.5, 0.0), "P2": (0.0, 20.5), "shoulder": (-15.5, 15.5), "surface": (0.0, 162.0)}
-"""From the tunnel's centre, m."""
+"""Places relative to the tunnel's centre, m."""
 
 MEAN = 12
 """Disks of a place."""
@@ -76,7 +76,7 @@ def motions(seed: int, given: argparse.Namespace) -> dict[str, np.ndarray]:
 
 
 def errors(found: np.ndarray, expected: np.ndarray) -> np.ndarray:
-    """RMS of differences (steps, …, 2) over that of what is expected."""
+    """RMS of differences (steps, …, 2) over RMS of the expected motion."""
     return np.sqrt(np.sum((found - expected) ** 2, axis=(0, -1)) / np.sum(expected**2, axis=(0, -1)))
 
 

@@ -63,7 +63,7 @@ def of_loads_that_stay() -> Iterator[str]:
 
 
 def of_noise() -> Iterator[str]:
-    """Kinetic energies over that of the noise they begin with."""
+    """Kinetic energies over the initial energy of the noise."""
     steps = [1_000, 10_000, 50_000, 100_000, 150_000, 200_000]
     runs = {f"{pattern}, fric {fric:g}": (pattern, fric) for pattern in "AB" for fric in (0.5, 0.0)}
     for name, (pattern, fric) in runs.items():

@@ -1,4 +1,4 @@
-"""Where bars of nodes fail: thresholds, measured."""
+"""Measured thresholds of methods for bars of nodes."""
 
 from typing import Any
 
@@ -52,9 +52,10 @@ def smeared(horizon: int, length: float = 20e-6) -> float:
 
 
 def seam_echo(cells: float, horizon: int = 3, complement: bool = True) -> float:
-    """Reflected part of a burst at the border of a zone of peridynamics, for so many spacings in a wavelength.
+    """Reflected part of a burst at the border of a zone of peridynamics, for `cells` spacings per wavelength.
 
-    complement : whether local springs carry what the zone's bonds do not, as those of the method `patch` do.
+    complement : whether local springs carry the rest of the stress that the zone's bonds do not, as in the method
+    `patch`.
     """
     count, seam, gauge, courant = 1600, 900, 450, 0.5
     spacing = 1.0 / count

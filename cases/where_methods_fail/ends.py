@@ -1,4 +1,4 @@
-"""What the ends of bars return: matched layers and dashpots, beside an endless bar and at every wavelength."""
+"""Reflection of ends of bars: matched layers and dashpots, compared with an endless bar and at every wavelength."""
 
 from functools import cache
 from typing import Any
@@ -68,7 +68,7 @@ def harmonic_echo(horizon: int, nodes: int, cells: float, share: float = 0.9) ->
 
 
 def dashpot_echo(cells: float, courant: float = 0.9) -> float:
-    """The same of a dashpot on half a node, finite differences: (ν sin θ − sin ωΔt)/(ν sin θ + sin ωΔt)."""
+    """Reflection of a dashpot on half a node, finite differences: (ν sin θ − sin ωΔt)/(ν sin θ + sin ωΔt)."""
     angle = 2.0 * np.pi * courant / cells
     theta = 2.0 * np.arcsin(np.sin(0.5 * angle) / courant)
     out, taken = courant * np.sin(theta), np.sin(angle)

@@ -1,4 +1,4 @@
-"""Where packings and contact laws fail: thresholds, measured."""
+"""Measured thresholds of packings and contact laws."""
 
 from typing import Any
 
@@ -32,7 +32,7 @@ def pulse_along_bar(pattern: str, per_wavelength: float) -> tuple[float, float]:
 
 
 def coda(wavelength: float, brick: float = 10.0) -> float:
-    """Largest motion that a random bar sends back behind a burst of four waves, over that of the burst.
+    """Largest motion scattered by a random bar behind a burst of four waves, over that of the burst.
 
     wavelength : m; brick : its length along the bar, m.
     """

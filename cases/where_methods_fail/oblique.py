@@ -50,7 +50,7 @@ def couplings(scene: DiskScene, column: int) -> list[tuple[int, int, np.ndarray]
 
 
 def column_matrices(couplings: list[tuple[int, int, np.ndarray]], wavenumber: float) -> dict[int, np.ndarray]:
-    """For a wave along y: offset of a column -> matrix (3, 3) of the forces its displacements cause on a disk."""
+    """For a wave along y: offset of a column -> matrix (3, 3) of forces on a disk per displacement of the column."""
     found: dict[int, np.ndarray] = {}
     for across, up, block in couplings:
         phase = np.exp(1j * wavenumber * DIAMETER * up)
@@ -119,7 +119,7 @@ def reflection(
 
 
 def dashpot_formula(motion: str, angle: float, ratio: float = 0.5**0.5) -> dict[str, float]:
-    """The same of an elastic continuum with matched dashpots; ratio : c_s/c_p. Units in which ω = ρ = c_p = 1.
+    """Reflection of an elastic continuum with matched dashpots; ratio : c_s/c_p. Units in which ω = ρ = c_p = 1.
 
     P moves along its wave vector (k_x, k_y), S across it; the tractions at the side are σ_xx = −ρc_p v_x and
     σ_xy = −ρc_s v_y.

@@ -103,7 +103,7 @@ def springs_and_dampers() -> Figure:
 
 @styled
 def bar_ends() -> Figure:
-    """What matched layers and a dashpot return, against the wavelength and against the number of nodes."""
+    """Reflection of matched layers and a dashpot, against the wavelength and against the number of nodes."""
     figure = new_figure(9.5, 4.4)
     left, right = figure.subplots(1, 2, sharey=True)
     cells = np.geomspace(5.0, 2000.0, 40)

@@ -1,4 +1,4 @@
-"""Where dashpots, springs and columns fail: thresholds, measured."""
+"""Measured thresholds of dashpots, springs and columns."""
 
 import numpy as np
 from oblique import reflection

@@ -132,7 +132,7 @@ def _rings(divisions: int) -> MeshQuad:
 def solve(
     problem: Problem, mesh: MeshQuad, places: dict[str, tuple[float, float]], steps: int = 1
 ) -> dict[str, History]:
-    """Histories at the nodes next to named places, by central differences with lumped mass in at least so many steps.
+    """Histories at the nodes next to named places, by central differences with lumped mass in at least `steps` steps.
 
     The pulse comes in as the state at time 0: it then stands in the ground below its level, everything above is at
     rest. Sides move along x only, which is exact beside a vertical SV wave; surface and wall are free.
@@ -208,7 +208,7 @@ def _rms(values: np.ndarray, reference: np.ndarray) -> float:
 
 
 def _arguments() -> argparse.Namespace:
-    """What the command line says, with wave speeds from the moduli where none are given."""
+    """The arguments of the command line, with wave speeds from the moduli where none are given."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     number = partial(parser.add_argument, type=float, metavar="X")
     number("--density", default=2500.0, help="kg/m3 (%(default)s)")

@@ -1,4 +1,4 @@
-"""How far the motion in the tunnel's model is from that in a wider and deeper one, or in a continuum.
+"""Difference of the motion in the tunnel's model from that in a wider and deeper one, or in a continuum.
 
     python cases/zhou2018/tunnel_errors.py RUN REFERENCE [--monitors P1 P2]
 
@@ -40,7 +40,7 @@ def at(times: np.ndarray, time: np.ndarray, velocity: np.ndarray) -> np.ndarray:
 
 
 def share(error: np.ndarray, of: np.ndarray) -> str:
-    """RMS of an error (k, c) over that of a motion, in words."""
+    """RMS of an error (k, c) over RMS of a motion, in words."""
     scale = np.sqrt(np.mean(of**2))
     return f"{np.sqrt(np.mean(error**2)) / scale:.2%}" if scale > NOTHING else "-"
 
