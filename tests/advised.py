@@ -1,4 +1,4 @@
-"""What is advised for a case and one error bound, flat, for tests."""
+"""The advice for a case and one error bound, as a flat mapping, for tests."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple

@@ -166,7 +166,7 @@ def removed(path: Path, draw: random.Random) -> str:
 
 
 def one_changed(values: np.ndarray, draw: random.Random) -> tuple[np.ndarray, str]:
-    """The same numbers, of at least one row, with one of them changed, or with rows in another order."""
+    """The numbers, of at least one row, with one of them changed, or with rows in another order."""
     new = np.array(values)
     flat, at = new.reshape(-1), draw.randrange(new.size)
     row, other = at // (new.size // len(new)), draw.randrange(len(new))
@@ -192,7 +192,7 @@ def one_changed(values: np.ndarray, draw: random.Random) -> tuple[np.ndarray, st
 
 
 def miscounted(path: Path, draw: random.Random) -> str:
-    """One number of a dataset that is another one, or rows in another order."""
+    """Change one number of a dataset, or the order of its rows; returns the change in words."""
     with h5py.File(path, "a") as file:
         place = some(file, draw, h5py.Dataset)
         item = file[place]

@@ -97,7 +97,7 @@ def scene(name: str) -> BarCase:
 
 
 def recorded_of(case: BarCase) -> tuple[dict[str, History], float]:
-    """What a run of a case records, and its time step, s."""
+    """The records of a run of a case, and its time step, s."""
     outcome, _, _ = measure(case, Progress())
     return {name: _recorded(outcome.motions, name) for name in outcome.motions}, outcome.time_step
 
@@ -148,7 +148,7 @@ def _reflected(case: BarCase, side: str) -> float:
 
 
 def _finer(case: BarCase, recorded: History) -> dict[str, np.ndarray]:
-    """By finite differences on finer nodes; the right end, if it absorbs, is farther away by half of all ways."""
+    """Motion by finite differences on finer nodes; a right end that absorbs is farther away by half of all ways."""
     bar = case.bar
     changes: dict[str, Any] = {}
     if case.side("right").is_artificial:

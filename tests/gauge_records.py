@@ -18,7 +18,7 @@ from dembound.gauge.treatment import Treatment
 LENGTH, POSITION, SPEED, DECAY = 0.99, 0.6, 2740.0, 0.52
 DENSITY = 2620.0
 SPALL = 0.79
-"""Where the strong pulse breaks the bar, m."""
+"""Place where the strong pulse breaks the bar, m."""
 
 Change = Callable[[np.ndarray, np.ndarray], np.ndarray]
 

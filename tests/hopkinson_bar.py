@@ -43,20 +43,20 @@ def signals(
     transit, arrives = LENGTH / specimen[0], 100e-6 + SETUP.incident_gauge / SPEED
 
     def incident(at: np.ndarray) -> np.ndarray:
-        """At the front, at times since the pulse has reached it."""
+        """The incident pulse at the front, at times since it has reached the front."""
         return amplitude * pulse(at)
 
     def reflected(at: np.ndarray) -> np.ndarray:
-        """At the front."""
+        """The reflected pulse at the front."""
         again = sum(back ** (2 * turn + 1) * incident(at - 2 * (turn + 1) * transit) for turn in range(60))
         return -back * incident(at) + into * out * again
 
     def transmitted(at: np.ndarray) -> np.ndarray:
-        """At the back."""
+        """The transmitted pulse at the back."""
         return into * out * sum(back ** (2 * turn) * incident(at - (2 * turn + 1) * transit) for turn in range(60))
 
     def at_gauge(distance: float) -> np.ndarray:
-        """On the incident bar."""
+        """The signal of a gauge on the incident bar."""
         way = distance / SPEED
         return incident(time - arrives + way) + reflected(time - arrives - way)
 

@@ -25,7 +25,7 @@ def motion(steps: int, size: float = 0.3) -> list[tuple[np.ndarray, np.ndarray]]
 
 
 def pushed(pairs: Contacts, limits: Limits, u: np.ndarray, v: np.ndarray, number: int = 0) -> np.ndarray:
-    """One push by the kernel; what friction, cracks and opening and closing took."""
+    """Push once by the kernel; returns the energies taken by friction, cracks, and opening and closing."""
     lost = np.full((CHUNKS, 4), np.nan)
     push(u, v, STEP, number, pairs, limits, lost, 0)
     return lost.sum(axis=0)[:3]

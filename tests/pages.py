@@ -1,4 +1,4 @@
-"""What a page holds, read from its text."""
+"""Contents of a page, read from its text."""
 
 import base64
 import gzip

@@ -78,7 +78,7 @@ class Stepped:
         return after
 
     def bundles(self) -> tuple[tables.Body, tables.Supports, tables.Log]:
-        """The same as the kernels take it, with a log of all particles."""
+        """Body, supports and log as bundles for the kernels, with a log of all particles."""
         unsupported = np.ones(self.count)
         unsupported[self.nodes] = 0.0
         body = tables.Body(

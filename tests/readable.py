@@ -1,4 +1,4 @@
-"""What every picture has: numbers and units on its axes, texts that are texts, and a legend of what is seen."""
+"""Checks of every picture: numbers and units on its axes, texts that are texts, and a legend of visible lines."""
 
 import re
 from collections.abc import Iterator
@@ -16,11 +16,11 @@ LATER = "bond broken"
 """Legends of moving pictures have what their last frame shows."""
 
 COUNTED = {"pass", "steps", "member", "row"}
-"""What is counted has no unit."""
+"""Names of counts, which have no unit."""
 
 
 def problems_of(figure: Figure) -> list[str]:
-    """What cannot be read in a figure as it is saved, one line each."""
+    """Illegible parts of a figure as it is saved, one line each."""
     number_axes(figure)
     return [*_texts(figure), *_axes(figure), *_legends(figure)]
 
@@ -55,7 +55,7 @@ def numbers_of(axis: Axis) -> list[str]:
 
 
 def _has_numbers(axis: Axis) -> bool:
-    """Whether it is meant to have numbers: inner ones of common axes, and those of strips, have none."""
+    """Whether an axis is meant to have numbers: inner common axes, and those of strips, have none."""
     return not isinstance(axis.get_major_locator(), NullLocator) and any(
         tick.label1.get_visible() or tick.label2.get_visible() for tick in axis.get_major_ticks()
     )

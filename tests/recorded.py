@@ -1,4 +1,4 @@
-"""What a record contains, to compare two of them to the bit."""
+"""Contents of a record, to compare two records to the bit."""
 
 from pathlib import Path
 

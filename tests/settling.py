@@ -6,7 +6,7 @@ from dembound.disks.scene import DiskScene, build
 
 G = 9.81
 MASS = 2500.0 * 0.5**2
-"""Of a disk, kg."""
+"""Mass of a disk, kg."""
 
 FIXED = {"type": "fixed"}
 WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -G]}]}

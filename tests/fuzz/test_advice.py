@@ -1,9 +1,9 @@
-"""What is advised for random cases of disks: it is built, has all monitors, and runs with the error that was expected.
+"""Advice for random cases of disks: the choice is built, has all monitors, and runs with the predicted error.
 
 Forces at the surface or inside, or a wave from below, with a hole or without, beside dashpots, springs, columns or a
 continuum, on lattices and a random packing. Each choice is written as text and read again, and has the monitors, loads
-and holes of the case at their places. The error beside a run of the chosen disks with far sides is at most three times
-the bound.
+and holes of the case at their places. The error relative to a run of the chosen disks with far sides is at most three
+times the bound.
 """
 
 import random

@@ -254,7 +254,7 @@ def _change(draw: st.DrawFn, parent: Any, key: Any) -> None:
 
 
 def is_small(case: Case) -> bool:
-    """Whether it is planned within a second."""
+    """Whether the case is planned within a second."""
     if isinstance(case, BarCase):
         return case.bar.cells <= MOST_CELLS
     assert isinstance(case, DiskCase)

@@ -49,7 +49,7 @@ def record(request, tmp_path) -> Path:
 
 
 def contents(path: Path) -> Iterator[tuple[str, Any]]:
-    """All that a record is read for, by name."""
+    """All contents of a record that readers use, by name."""
     results = Results(path)
     yield "attributes", results.attributes
     yield "laws", results.laws
@@ -76,7 +76,7 @@ def drawn(path: Path, sound: Path) -> None:
 
 
 def outcome(read: Callable[[], Any]) -> Any:
-    """What is read, or None for a record that is refused, in one line and with exit code 5."""
+    """The result of `read`, or None for a record that is refused, in one line and with exit code 5."""
     try:
         return read()
     except RecordError as error:

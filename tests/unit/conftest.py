@@ -230,7 +230,7 @@ def in_order() -> Callable[[DiskScene], DiskScene]:
 
 
 ROCK = Medium(2500.0, c11=9e9, c22=7e9, c12=2e9, c66=3e9, c16=0.4e9, c26=-0.3e9)
-"""Without any symmetry."""
+"""A medium without any symmetry."""
 
 
 def uneven(order: int) -> Mesh:
@@ -272,7 +272,7 @@ def noise() -> Callable[[GridBody], np.ndarray]:
 
 
 class Answer(NamedTuple):
-    """What a command ended with."""
+    """Exit code and output of a command."""
 
     code: int
     out: str

@@ -1,4 +1,4 @@
-"""What a case would come to, without running it."""
+"""Checks of a case, without running it."""
 
 from dembound.bar.facts import bar_facts
 from dembound.check import check, duration_in_words

@@ -27,7 +27,7 @@ LATTICE: Tables = PUSHED | {
     "boundary": {"left": {"type": "viscous_input", "wave_p": "push", "beta_p": 1.0, "beta_s": 1.0}},
     "run": {"duration": 0.2},
 }
-"""Nothing about it is unlikely."""
+"""A lattice without unlikely numbers."""
 
 MODULI = {"material": {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9, "fric": 0.5}}
 BREAKING = {"material": LATTICE["material"] | {"law": "linearpbond", "pb_ten": 5e6, "pb_coh": 10e6, "pb_fa": 30.0}}
@@ -40,7 +40,7 @@ BAR: Tables = SPALLING | {
     "load": [{"name": "hit", "pressure": 12e6, "wave": "hit"}],
     "run": {"duration": 1.5e-3},
 }
-"""Nothing about it is unlikely."""
+"""A bar without unlikely numbers."""
 
 STRIKER: Tables = {
     "bar": {"spacing": 0.01, "density": 7800.0, "wave_speed": 5000.0, "diameter": 0.02}

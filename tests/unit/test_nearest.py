@@ -1,4 +1,4 @@
-"""Of points that are equally near the same one is taken, however they are numbered and rounded."""
+"""One of several equally near points is chosen, however they are numbered and rounded."""
 
 import numpy as np
 import pytest

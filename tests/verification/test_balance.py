@@ -15,7 +15,7 @@ def body(request, lab):
 
 
 def rounding(terms: np.ndarray) -> float:
-    """What a sum of forces may be off by.
+    """Rounding error of a sum of forces.
 
     A force sums some ten products and `terms` are summed in turn: less than 100 ε of their sizes, whatever the signs.
     """

@@ -11,7 +11,7 @@ import pytest
 from dembound.motion.simulation import Simulation
 
 ROUNDING = 5e-13
-"""Of the energy that came in: some 500 steps of sums of 500 terms, each rounded by ε of that, either way."""
+"""Rounding over the energy that came in: some 500 steps of sums of 500 terms, each rounded by ε of that, either way."""
 
 METHODS = {
     "finite_difference": {"type": "finite_difference"},

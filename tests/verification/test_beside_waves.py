@@ -1,4 +1,4 @@
-"""What sides along a plane wave take from it is foreseen without a run; beside runs with free fields at these sides."""
+"""Errors by sides along a plane wave are predicted without a run; compared with runs with free fields there."""
 
 import numpy as np
 import pytest

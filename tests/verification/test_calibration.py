@@ -33,7 +33,7 @@ def bar(request, lab):
 
 @pytest.fixture(scope="module")
 def calibrated(bar):
-    """What a pulse of so many seconds tells on the strip; once for all tests."""
+    """Calibration by a pulse of so many seconds on the strip; once for all tests."""
     return cache(lambda period: calibrate(*bar(period)))
 
 
@@ -64,7 +64,7 @@ def test_ratio_method_halves_the_error(bar, start):
 
 
 def test_strip_stands_for_the_whole_scene(bar, calibrated):
-    """What the strip leaves out arrives after the peak has left the side."""
+    """Effects of the parts outside of the strip arrive after the peak has left the side."""
     strip, full = calibrated(0.2), calibrate(*bar(0.2), full=True)
     assert strip.particles < full.particles
     # both take β from their first pass, whose peak sees the same bricks and dashpots. The strip's pulse travels half

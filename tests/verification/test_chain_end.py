@@ -1,4 +1,4 @@
-"""What a matched dashpot at the end of a chain returns of a harmonic wave.
+"""Reflection of a harmonic wave by a matched dashpot at the end of a chain.
 
 With the end disk's whole mass tan(qa/4), half a disk too much mass; with half of it tan²(qa/4). Springs behind it
 return [1 + (2ωLρc/(αG))²]^(−1/2).

@@ -19,7 +19,7 @@ from dembound.motion.simulation import Simulation
 SIDES = ("left", "right", "bottom")
 SIZE = (40.0, 20.0)
 WIDE = 130.0
-"""What the large body has beyond that at each side, m: a P wave needs 0.26 s to its sides and back."""
+"""Additional ground of the large body at each side, m: a P wave needs 0.26 s to its sides and back."""
 
 WAVES = {
     "cosine": {"type": "cosine", "amplitude": 1.0, "period": 0.1},
@@ -53,7 +53,7 @@ def velocities(scene: DiskScene, corner: float, step: float, steps: int) -> np.n
 
 @pytest.mark.parametrize(("wave", "where"), [("cosine", "surface"), ("ricker", "inside")])
 def test_velocities_have_the_accuracy_asked_for(lab, wave: str, where: str) -> None:
-    """Or that which the ties leave, if that is more: 0.09 % is expected of the pulse, 0.55 % of the wavelet.
+    """Errors may be those of the ties, if these are larger: 0.09 % is expected of the pulse, 0.55 % of the wavelet.
 
     Measured with 1 % and 0.2 %: 0.24 and 0.40 %, then 0.08 and 0.10 % of the pulse, 0.29 and 0.28 % of the wavelet.
     """

@@ -1,4 +1,4 @@
-"""What a side of disks with a continuum beyond it sends back of plane waves: little more than its layers' formula.
+"""Reflection of plane waves by a side with a continuum beyond: little more than its layers' formula.
 
 Three layers with R0 = 1e-4 and 17 nodes in the S wave; `angles` is exact for the discrete equations, which the last two
 tests are about.
@@ -19,7 +19,7 @@ from dembound.outside.layer import Absorption
 from dembound.outside.part import GridPart
 
 FLOOR = 4e-4
-"""What elements with 17 nodes in the shortest S wave send back: 2e-4 was measured at normal incidence."""
+"""Reflection by elements with 17 nodes in the shortest S wave: 2e-4 was measured at normal incidence."""
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def side() -> Side:
 
 
 def with_layers(scene: DiskScene, absorption: Absorption) -> DiskScene:
-    """The same scene with other settings of its layers."""
+    """The scene with other settings of its layers."""
     body = replace(scene.outside.body, absorption=absorption)
     return replace(scene, outside=replace(scene.outside, body=body))
 
@@ -58,9 +58,9 @@ def test_without_absorption_all_comes_back() -> None:
 
 
 def test_forces_of_a_row_are_those_of_the_kernels(side: Side) -> None:
-    """Of all elements moved by a wave of any shape along the side, once memories have become periodic.
+    """For all elements moved by a wave of any shape along the side, once convolution variables have become periodic.
 
-    A large α makes memories shorter, e^(−αΔt) or less for 1,000 steps: e⁻²⁵.
+    A large α makes them forget faster, by e^(−αΔt) or less for 1,000 steps: e⁻²⁵.
     """
     scene = with_layers(side.scene, Absorption(shift=30.0))
     body = replace(scene.outside.body, first_slot=0)

@@ -1,4 +1,4 @@
-"""What breaks or slides beside a continuum, which stays elastic, is warned of; what does so far from it is not."""
+"""Breaks or slip beside a continuum, which stays elastic, cause a warning; those far from it do not."""
 
 import json
 import re

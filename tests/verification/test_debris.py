@@ -1,4 +1,4 @@
-"""What breaks off a stressed body flies on without the force that balanced its stress."""
+"""Pieces that break off a stressed body fly on without the force that balanced its stress."""
 
 from dataclasses import dataclass
 from functools import cache

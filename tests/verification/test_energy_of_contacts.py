@@ -17,7 +17,7 @@ UNACCOUNTED = 0.005
 """Largest error over the supplied energy, also after 200,000 steps."""
 
 SHORTLY = 1e-4
-"""The same after some thousand steps: a first push of which one half is not counted would leave 0.2 to 1 %."""
+"""Largest energy error after some thousand steps: a first push counted by half only would leave 0.2 to 1 %."""
 
 BROKEN = {"pb_ten": 1e5, "pb_coh": 1e5}
 

@@ -1,4 +1,4 @@
-"""What comes in through each side and what it absorbs add up to the work from outside, exactly."""
+"""Energies that come in through each side and that it absorbs add up to the work from outside, exactly."""
 
 import numpy as np
 import pytest

@@ -7,11 +7,11 @@ RAYLEIGH = 0.874 * 1000.0 / np.sqrt(2.0)
 """m/s, of Rayleigh waves for ν = 0."""
 
 LAG = np.sqrt(15.0) / 24.0
-"""Of a wave with the motion x^3.5 e^(−x²) at x times the crest's wave number k, on a lattice of pitch D: it lags by
-(xkD)²/24 · xkL, whose RMS over this spectrum is √15 (kD)² kL/24."""
+"""Lag of a wave with the motion x^3.5 e^(−x²) at x times the crest's wave number k, on a lattice of pitch D: it lags
+by (xkD)²/24 · xkL, whose RMS over this spectrum is √15 (kD)² kL/24."""
 
 RETURNED = np.sqrt(10.0) * (1.0 / 16.0 + 0.1 / 8.0)
-"""Likewise the part of it that ties to a continuum return, (kD)²(1/16 + 0.1/8), of a mean x⁴ of Γ(6)/2²Γ(4)."""
+"""Part of that wave returned by ties to a continuum, (kD)²(1/16 + 0.1/8), of a mean x⁴ of Γ(6)/2²Γ(4)."""
 
 CONTINUUM = 1e-3
 """The accuracy for which elements and layers are chosen."""

@@ -150,7 +150,7 @@ def test_spikes_are_no_waves(width, tmp_path):
 
 
 def flat(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """The same bar under a pulse with a plateau of its own."""
+    """The bar under a pulse with a plateau of its own."""
     passed = np.zeros_like(time)
     for turn in range(20):
         for sign, way in ((-1.0, 2 * turn * LENGTH + POSITION), (1.0, 2 * (turn + 1) * LENGTH - POSITION)):
@@ -161,7 +161,7 @@ def flat(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def test_a_plateau_of_the_wave_itself_is_not_clipped(tmp_path):
-    """It comes back, lower; what the amplifier cuts is flat where it is cut alone."""
+    """A plateau of the wave comes back, lower; one made by the amplifier is flat only where it clips."""
     found = evaluate(Record("plateau", (flat,)).gauge(tmp_path / "flat.txt"))
     assert found.speed.value == pytest.approx(SPEED, rel=0.005)
     assert found.attenuation.value == pytest.approx(DECAY, rel=0.05)

@@ -59,7 +59,7 @@ def shares(theta: float, keys: dict[str, float], method: dict, courant: float = 
 
 
 def of_lattice(theta: float, keys: dict[str, float], courant: float) -> tuple[float, float]:
-    """The same of finite differences: from the impedances Z cos(θ/2), sin(θ/2) = sin(ωΔt/2)/ν."""
+    """Reflection and transmission of finite differences: from the impedances Z cos(θ/2), sin(θ/2) = sin(ωΔt/2)/ν."""
     material = {"density": DENSITY, "wave_speed": SPEED, "spacing": SPACING, "section": 1.0}
     step = courant * min(SPACING / SPEED, keys.get("spacing", SPACING) / keys.get("wave_speed", SPEED))
     impedances = []

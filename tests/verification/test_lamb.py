@@ -39,7 +39,7 @@ def half_model(size: float, radius: float, side: dict) -> DiskScene:
 
 @cache
 def exact(step: float, steps: int, distance: float) -> np.ndarray:
-    """What the half-space's surface does, downwards, so far from the load."""
+    """Exact motion of the half-space's surface, downwards, at this distance from the load."""
     pulse = CubicSpline(type="cubic_spline", amplitude=1.0, period=PULSE)
     speeds = SPEED, SPEED / np.sqrt(2.0)
     times = step * np.arange(steps)
@@ -72,5 +72,5 @@ def test_extended_model_is_the_half_space():
 
 @pytest.mark.parametrize(("sides", "error"), [({"type": "viscous"}, 0.37), (SPRINGS, 0.21)], ids=["viscous", "springs"])
 def test_known_errors_of_sides(sides, error):
-    """Of a 100 m model over 3 s, to the half per cent they are known to and that half-metre radii cost."""
+    """For a 100 m model over 3 s, to the half per cent of their uncertainty and of the error of half-metre radii."""
     assert rms(*receiver(100.0, 0.5, 3.0, sides)) == pytest.approx(error, abs=0.0075)

@@ -1,4 +1,4 @@
-"""What dashpots send back of oblique plane waves: the lattice's exact reflection is that of the continuum's formula."""
+"""Reflection of oblique plane waves by dashpots: the lattice's exact reflection is that of the continuum's formula."""
 
 import pytest
 from oblique import dashpot_formula, lattice, reflection

@@ -122,7 +122,7 @@ def test_all_commands_agree(case: Case, apart: float) -> None:
     ],
 )
 def test_a_chart_gives_the_same_numbers(name: str, tmp_path: Any) -> None:
-    """What its reference leaves out is what others know by formula, and what it measures is what sides are said to add.
+    """Errors that its reference leaves out are those known by formula, and errors that it measures are those of sides.
 
     A total is one number there, which is to be within what others expect at least, value²/upper, and at most.
     """

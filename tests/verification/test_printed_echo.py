@@ -1,4 +1,4 @@
-"""What `check` says an end returns is a bound of what it does return, and no more than needed.
+"""The reflection of an end printed by `check` is an upper bound of its true reflection, and no larger than needed.
 
 Measured is the largest difference of the velocity, at any node and step of a run, from that of a bar that goes on: its
 end has a layer so long, in which nothing decays, that nothing comes back. The bound is this number by another way, the

@@ -152,13 +152,14 @@ def differences(one, other) -> list[str]:
 
 
 LATE = "settled box in the ground"
-"""Its loop takes minutes to compile."""
+"""Case whose loop takes minutes to compile."""
 
 FILED = ("law changes, bonds break", "cracks that open")
 """Cases whose checkpoints in files are tried; the others with ``-m slow``."""
 
 STEPS, CUTS = 240, (0, 1, 57, 58, 100, 161, 239)
-"""In between, before and after entries of the ledger, of which there is one every 57 steps, and steps that follow."""
+"""Number of steps, and steps at which the run is cut: in between, before and after entries of the ledger, of which
+there is one every 57 steps, and steps that follow."""
 
 CHANGING = [name for name, tables in CASES.items() if tables.get("method", {}).get("type") in ("switch", "patch")]
 CHANGING += ["law changes, bonds break", "free field that breaks"]
@@ -286,7 +287,7 @@ def test_the_static_stage_of_a_column_is_resumed_to_the_same_bits(tmp_path) -> N
 
 
 def assert_a_stage_is_resumed(case, stage: str, whole, folder) -> None:
-    """That a run stopped in a static stage comes to the results of the whole one."""
+    """Assert that a run stopped in a static stage comes to the results of the whole one."""
     partial = stopped(case, folder / "cut", 150, stage)
     assert not (partial / "run.h5").exists()
     again = resume_case(partial)

@@ -1,4 +1,4 @@
-"""How kernels hold particles is bookkeeping: rows of copies move as particles one by one do, all parts of the step."""
+"""The order in which kernels hold particles does not matter: rows of copies move as particles one by one do."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ HALF_CELLS = {"left": {"type": "viscous_input", "wave_p": "pulse"}, "right": {"t
 
 
 def in_order(scene):
-    """The same scene held particle by particle."""
+    """The scene held particle by particle."""
     rows = tuple(contact_rows(scene.assembly.part(part), scene.ground, part.start) for part in scene.parts.values())
     return replace(scene, slots=None, rows=rows)
 
@@ -63,7 +63,7 @@ def test_local_damping_and_its_work(lab):
 
 
 def assert_same_breaking(scene, steps):
-    """The same cracks in the same steps, and the same motion until rounding has grown in contacts that open."""
+    """Assert equal cracks in equal steps, and equal motion until rounding has grown in contacts that open."""
     step = choose_step(scene)[0]
     before, after = (Simulation(each, step) for each in (in_order(scene), scene))
     for simulation in (before, after):

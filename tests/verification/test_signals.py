@@ -43,7 +43,7 @@ MOST = 60.0
 """Seconds from a signal to the end in which a machine that does much else compiles one kernel."""
 
 STARTING = re.compile("init_import_site|<frozen site>|<frozen runpy>|<frozen importlib")
-"""In the traceback of Ctrl-C while Python itself starts, before it comes to any line of a program."""
+"""Pattern in the traceback of Ctrl-C while Python itself starts, before it comes to any line of a program."""
 
 NOT_STARTED = "Could not import runpy module"
 """Said by Python, with exit code 1, where Ctrl-C comes while it imports what runs a module."""
@@ -51,7 +51,7 @@ NOT_STARTED = "Could not import runpy module"
 
 @dataclass
 class Found:
-    """What the signals of a sweep have led to.
+    """Outcome of the signals of a sweep.
 
     took : s from the signal to the end, with its command. outcomes : how often each way to end.
     """

@@ -167,7 +167,7 @@ def test_a_largest_stress_as_equilibrium_begins_gives_no_slope_and_says_so():
 
 
 def doubts(given, setup=SETUP):
-    """What is said about pulses that do not fit each other."""
+    """Doubts about inconsistent pulses."""
     faces, found = measured(given, setup)
     return list(doubts_of_pulses(given, faces, setup, Windows(), found))
 

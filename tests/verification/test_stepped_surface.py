@@ -84,7 +84,7 @@ def test_a_bench_moves_as_one_of_disks_alone(lab, monkeypatch) -> None:
 
 
 def shifted(cut, by: float):
-    """Where mass and continuum end below cuts, both higher by so much, m."""
+    """Heights where mass and continuum end below cuts, both higher by `by`, m."""
     return lambda ground, height: (cut(ground, height)[0] + by, cut(ground, height)[1] + by)
 
 

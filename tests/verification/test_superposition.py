@@ -1,4 +1,4 @@
-"""Sums of responses are direct runs to rounding, also where a wave at an angle enters a box of disks on all sides."""
+"""Sums of responses are direct runs to rounding, also where an oblique wave enters a box of disks on all sides."""
 
 import h5py
 import numpy as np

@@ -1,4 +1,4 @@
-"""Where bars of nodes fail: the thresholds of docs/evidence/where_methods_fail.md, measured again."""
+"""The thresholds of bars of nodes in docs/evidence/where_methods_fail.md, measured again."""
 
 import bars
 import ends

@@ -1,4 +1,4 @@
-"""Where packings and contact laws fail: the thresholds of docs/evidence/where_methods_fail.md, measured again."""
+"""The thresholds of packings and contact laws in docs/evidence/where_methods_fail.md, measured again."""
 
 import grains
 import numpy as np

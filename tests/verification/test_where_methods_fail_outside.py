@@ -1,4 +1,4 @@
-"""Where sides with a continuum beyond fail: the thresholds of docs/evidence/where_methods_fail.md, measured again."""
+"""The thresholds of sides with a continuum beyond in docs/evidence/where_methods_fail.md, measured again."""
 
 import numpy as np
 import pytest

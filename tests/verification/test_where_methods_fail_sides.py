@@ -1,4 +1,4 @@
-"""Where dashpots, springs and columns fail: the thresholds of docs/evidence/where_methods_fail.md, measured again."""
+"""The thresholds of dashpots, springs and columns in docs/evidence/where_methods_fail.md, measured again."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What a changed case has in place of a given one."""
+"""Keys and values in which a changed case differs from a given one."""
 
 from typing import Any
 

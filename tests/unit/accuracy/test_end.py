@@ -28,7 +28,7 @@ BAR: dict[str, Any] = PUSHED | {
 """A wave of 0.03 s that comes to the farther monitor after 0.0245 s, and has passed it at 0.0545 s."""
 
 PASSED, ECHO = 0.0245 + 0.03, 2.0 * 26.25 / 1000.0
-"""When the wave has passed, and the time from the nearer monitor to the end on its right and back, s."""
+"""Time when the wave has passed, and travel time from the nearer monitor to the end on its right and back, s."""
 
 
 def passing(late: float = 0.0) -> dict[str, History]:

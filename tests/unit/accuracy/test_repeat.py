@@ -18,7 +18,7 @@ from dembound.running import run_case
 from dembound.running.recorded import recorded_case
 
 BREAKING = TORN | {"output.estimate": True, "run.checkpoint": 100.0}
-"""With keys that a second run must not have."""
+"""Changes with keys that a second run must not have."""
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def test_cracks_in_common_are_counted_in_both_runs_and_the_radius_leaves_out_the
 
 
 def test_a_repeat_with_the_same_step_is_the_same_run(torn) -> None:
-    """All but the step is that of the run: also duration, laws and output of histories."""
+    """Everything but the step is that of the run: also duration, laws and output of histories."""
     record = torn / "run.h5"
     same = repeated(recorded_case(record), record, Cracked.of(record), 1.0)
 
@@ -123,7 +123,7 @@ def test_without_a_repeat_many_cracks_are_said_to_be_one_draw(torn) -> None:
 
 
 def test_a_bar_is_repeated_too(tmp_path) -> None:
-    """Its size is its largest spacing; its step was given as a Courant number."""
+    """The size of its cracks is the largest spacing; its step was given as a Courant number."""
     folder = run_case(small(PULLED, "bar", {"output.snapshots": 0}), tmp_path)
     found = estimate_results(folder, repeat=True).repeat
 

@@ -24,7 +24,7 @@ class Linear(Elastic):
     name: ClassVar[str] = "linear"
 
     def springs(self, moduli, radius_i, radius_j):
-        """Those of the elastic law."""
+        """The stiffnesses of the elastic law."""
         springs = super().springs(moduli, radius_i, radius_j)
         return replace(springs, bending=np.zeros_like(springs.bending))
 
@@ -43,7 +43,7 @@ class Graded(Linear):
     name: ClassVar[str] = "graded"
 
     def springs(self, moduli, radius_i, radius_j):
-        """Those of the law without moments, bonds in proportion to the radius."""
+        """The stiffnesses of the law without moments, with bonds in proportion to the radius."""
         springs = super().springs(moduli, radius_i, radius_j)
         return replace(springs, bond_normal=springs.bond_normal * radius_i, bond_shear=springs.bond_shear * radius_i)
 
@@ -63,7 +63,7 @@ class Rubber(Linear):
 
 
 class Cork(Rubber):
-    """The same, and names the law of its stiffness at rest."""
+    """A law like `Rubber` that names the law of its stiffness at rest."""
 
     name: ClassVar[str] = "cork"
     linear = "linear"
@@ -75,7 +75,7 @@ class Cone(Peridynamics):
     type: Literal["cone"]
 
     def begin(self, rod):
-        """All bonds."""
+        """Bonds of the whole bar."""
         influence = 1.0 - np.arange(1, self.horizon + 1) / (self.horizon + 1.0)
         bonds = Bonds(rod, self.horizon, complement=self.corrected_ends, influence=influence)
         bonds.add_zone(0, rod.count)
@@ -108,7 +108,7 @@ class Mattress(Dashpots):
             supports.add(edge.nodes, component, damping=damping, stiffness=self.stiffness)
 
     def dashpots_alone(self):
-        """Without the springs."""
+        """The side without the springs."""
         return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
 
@@ -118,7 +118,7 @@ class Quilt(Mattress):
     type: Literal["quilt"]
 
     def equal_supports(self, own, other):
-        """As stiff per length."""
+        """The side with equal stiffness per length."""
         per_length = [len(edge.nodes) / edge.length for edge, _ in (own, other)]
         return self.model_copy(update={"stiffness": self.stiffness * per_length[1] / per_length[0]})
 
@@ -149,7 +149,7 @@ class Shock(Boundary):
 
 
 class Pads(Shock):
-    """The same, of dampers that are part of the structure: it does not stand in for ground."""
+    """A side like `Shock` whose dampers are part of the structure: it does not stand in for ground."""
 
     type: Literal["pads"]
     is_artificial: ClassVar[bool] = False
@@ -168,17 +168,17 @@ class Whisper(Driven):
                 supports.add(edge.nodes, component, drive=self.forces(edge), signal=waves[name].velocity)
 
     def forces(self, edge):
-        """In proportion to the widths of disks."""
+        """Forces in proportion to the widths of disks."""
         return 2e6 * edge.widths
 
 
 class Shout(Whisper):
-    """The same with equal forces on disks of any size."""
+    """A side like `Whisper` with equal forces on disks of any size."""
 
     type: Literal["shout"]
 
     def forces(self, edge):
-        """One for all."""
+        """Equal forces on all disks."""
         return 1e6
 
 
@@ -192,7 +192,7 @@ class Hexagonal(Packing):
 
     @property
     def brick_size(self):
-        """One diameter wide, two rows high."""
+        """Size of a brick: one diameter wide, two rows high."""
         return 2.0 * self.radius, 2.0 * np.sqrt(3.0) * self.radius
 
     def pack(self, contact_modulus):
@@ -227,7 +227,7 @@ class Storeys(Square):
 
 
 class Unsaid(Hexagonal):
-    """The same, of which nothing is said."""
+    """A packing like `Hexagonal` without optional properties."""
 
     is_lattice: ClassVar[bool] = False
 
@@ -246,7 +246,7 @@ class Drawn(Packing):
         return 20.0 * self.radius, 20.0 * self.radius
 
     def pack(self, contact_modulus):
-        """That of pattern B."""
+        """The brick of pattern B."""
         own = RandomBrick(radius=self.radius, radius_ratio=1.5, brick=self.brick_size, bricks=(1, 1), seed=self.draw)
         return own.pack(contact_modulus)
 
@@ -278,11 +278,11 @@ class Gauss(Shape):
         return self.start + 8.0 * self.width
 
     def dominant_frequency(self):
-        """That of a period of four widths."""
+        """Frequency of a period of four widths."""
         return 0.25 / self.width
 
     def highest_frequency(self):
-        """Where the bell exp(−π²w²f²) of the spectrum has fallen to 1 %."""
+        """Frequency at which the bell exp(−π²w²f²) of the spectrum has fallen to 1 %."""
         return float(np.sqrt(np.log(100.0)) / (np.pi * self.width))
 
 
@@ -294,11 +294,11 @@ class Diamond(Hole):
     half: float = quantity(..., unit="m", help="half its diagonal", gt=0.0)
 
     def contains(self, positions):
-        """Which positions lie in it."""
+        """Mask of positions that lie in the diamond."""
         return np.abs(positions - self.centre).sum(axis=1) < self.half
 
     def shifted(self, by):
-        """With its middle somewhere else."""
+        """The diamond with its middle somewhere else."""
         return self.model_copy(update={"centre": (self.centre[0] + by[0], self.centre[1] + by[1])})
 
     @property
@@ -314,7 +314,7 @@ class LateInput(OtherInput):
     type: Literal["late_input"]
 
     def support(self, edge, medium, waves, supports):
-        """As the base does, with waves that come 10 s later."""
+        """Add the rows of the base, with waves that come 10 s later."""
         super().support(edge, medium, {name: _Later(wave) for name, wave in waves.items()}, supports)
 
 
@@ -325,7 +325,7 @@ class _Later:
         self.wave = wave
 
     def velocity(self, t):
-        """Its velocity."""
+        """Velocity of the wave 10 s earlier."""
         return self.wave.velocity(t - 10.0)
 
 
@@ -338,4 +338,4 @@ class Nameless(Shape):
 
 
 class Stranger:
-    """Nothing that dembound knows."""
+    """An object of no type that dembound knows."""

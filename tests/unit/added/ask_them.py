@@ -1,4 +1,4 @@
-"""What calibration, estimates and choices make of the added types; prints it as JSON, see use_them.py."""
+"""Results of calibration, estimates and choices with the added types; prints them as JSON, see use_them.py."""
 
 import json
 import sys
@@ -80,7 +80,7 @@ def case(**changes: object) -> Any:
 
 
 def run(made: Any) -> tuple[dict[str, History], int]:
-    """What the monitors of a run record along x and y, as an estimate reads it, and its work."""
+    """Records of the monitors of a run along x and y, as an estimate reads them, and its work."""
     done = Runner().run(made)
     motions = {
         name: replace(each, values={key: values[:, :2] for key, values in each.values.items()})
@@ -105,7 +105,7 @@ def estimated(made: Any) -> dict[str, Any]:
 
 
 def of_far_sides(made: Any) -> dict[str, float]:
-    """What the sides of a case add to the velocity of its monitors, by a run with all of them out of reach."""
+    """Errors of the velocity of monitors by the sides of a case, from a run with all of them out of reach."""
     step = plan(made).time_step
     (own, _), (far, _) = (run(at_step(each, step)) for each in (made, extended(made).case))
     there = {name: far[name].at(each.time) for name, each in own.items()}
@@ -137,7 +137,7 @@ def companion(**changes: object) -> list[Any]:
 
 
 def other_draw(made: Any) -> dict[str, Any]:
-    """How the motion of another packing was found, and its share; or why not."""
+    """How the scatter between packings was found, and its share; or why not."""
     motions, _ = run(made)
     try:
         (cause,) = judge_of(made).of_other_seeds(made, motions, 2).found
@@ -147,7 +147,7 @@ def other_draw(made: Any) -> dict[str, Any]:
 
 
 def larger(made: Any) -> list[Any]:
-    """Whether disks only stand for the ground, and the radius of disks half as large that make the same one."""
+    """Whether disks only discretise the ground, and the radius of disks half as large that make the same one."""
     options = Options(plan(made), 0.01, ())
     found = options.of(0.5)
     return [0.5 in options.factors, found[0].case.packing.radius if found else None]
@@ -189,7 +189,7 @@ def twin_of(made: Any) -> str | None:
 
 
 def refusals(made: Any) -> dict[str, list[str]]:
-    """What those say that ask for a linear law."""
+    """Messages of all functions that require a linear law."""
     still = {"middle": History(np.zeros(2), np.zeros(9), {})}
     asked = {
         "calibrate": lambda: calibrate(made, "right"),

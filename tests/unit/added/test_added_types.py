@@ -1,4 +1,4 @@
-"""What another package adds works everywhere, by being registered and by nothing else."""
+"""Types of another package work everywhere, by being registered and by nothing else."""
 
 import json
 import os
@@ -22,7 +22,7 @@ REGISTERED = {
     "waves": ["Gauss", "Nameless"],
     "holes": ["Diamond", "Absent", "Stranger"],
 }
-"""Of added_types.py, where there is no `Absent`; each has its place as its name."""
+"""Types of added_types.py, in which there is no `Absent`; each is registered under its own name."""
 
 
 @pytest.fixture(scope="module")
@@ -54,20 +54,20 @@ def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
 
 @pytest.fixture(scope="module")
 def told(python) -> list[dict[str, Any]]:
-    """What both scripts print, in one process."""
+    """Output of both scripts, run in one process."""
     printed = python("-P", "-c", "import use_them; print(); import ask_them").stdout  # -P: not from the working folder
     return [json.loads(line) for line in printed.splitlines()]
 
 
 @pytest.fixture(scope="module")
 def found(told) -> dict[str, Any]:
-    """What the cases of use_them.py come to."""
+    """Results of the cases of use_them.py."""
     return told[0]
 
 
 @pytest.fixture(scope="module")
 def asked(told) -> dict[str, Any]:
-    """What ask_them.py finds: calibrations, estimates and choices."""
+    """Results of ask_them.py: calibrations, estimates and choices."""
     return told[1]
 
 

@@ -6,7 +6,7 @@ import pytest
 from dembound.bar.banded import is_stable, largest_stable_step
 
 ROUNDING = 1e-13
-"""Of the largest of 20 eigenvalues: either way of finding it rounds some 20 sums of 20 terms."""
+"""Rounding of the largest of 20 eigenvalues: either way of finding it rounds some 20 sums of 20 terms."""
 
 
 def chain(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

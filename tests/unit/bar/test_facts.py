@@ -1,4 +1,4 @@
-"""What a bar's case would come to."""
+"""Facts about a bar's case."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Where and when a bar came apart, from bonds broken by hand."""
+"""Places and times of spalls, from bonds broken by hand."""
 
 from dataclasses import replace
 
@@ -31,7 +31,7 @@ def bonds() -> Bonds:
 
 @pytest.fixture
 def tough() -> Bonds:
-    """With a fracture energy."""
+    """Bonds with a fracture energy."""
     return all_over(Rod((replace(ROD.ranges[0], fracture=Fracture(1e4)),)))
 
 

@@ -1,4 +1,4 @@
-"""What runs, checks and reports ask of bars."""
+"""Bars as a kind of body, for runs, checks and reports."""
 
 import h5py
 import pytest

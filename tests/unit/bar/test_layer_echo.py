@@ -1,4 +1,4 @@
-"""What layers return of harmonic waves, from their equations."""
+"""Reflection of harmonic waves by layers, from their equations."""
 
 import numpy as np
 import pytest

@@ -21,7 +21,7 @@ def ends(**keys) -> dict:
 
 @pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 def test_motion_without_decay_is_that_of_a_longer_bar(spalling, method: dict) -> None:
-    """Of noise in the bar, until its waves have been at the ends of the longer one and back: five steps of three nodes.
+    """Noise in the bar, until its waves have been at the ends of the longer one and back: five steps of three nodes.
 
     To the rounding of sums of some ten forces in a step. Stresses within a horizon of a layer have the layer's bonds,
     at the step of all others.

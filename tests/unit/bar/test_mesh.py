@@ -1,4 +1,4 @@
-"""What ParaView is given of a bar equals the record."""
+"""Meshes of a bar for ParaView equal the record."""
 
 import h5py
 import numpy as np

@@ -1,4 +1,4 @@
-"""What a run of a bar ends by telling."""
+"""Results of a run of a bar in words."""
 
 import pytest
 

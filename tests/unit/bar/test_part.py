@@ -1,4 +1,4 @@
-"""How a bar steps: what its method changes, what that costs, and what is reported of it."""
+"""Steps of a bar: changes by its method, their cost, and reports."""
 
 import numpy as np
 import pytest

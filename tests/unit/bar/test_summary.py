@@ -1,4 +1,4 @@
-"""What scripts read of a bar's run."""
+"""Entries of a bar's summary."""
 
 import json
 from pathlib import Path

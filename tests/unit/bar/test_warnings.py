@@ -1,4 +1,4 @@
-"""What a run of a bar will do that was probably not meant."""
+"""Warnings about probable mistakes in a bar's case, before the run."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from dembound.exact.bar import triangle_spall
 
 UNBROKEN = {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}
 EXACT = {"method": {"type": "finite_difference"}}
-"""At ν = 1 waves of any length run at their speed."""
+"""Changes with which, at ν = 1, waves of any length run at their speed."""
 LONG = {"wave.hit.rise": 1e-2, "wave.hit.fall": 1e-2, "run.duration": 2e-2}
 """The blow drawn out to waves far longer than the bar."""
 SHORT = {"type": "triangle", "amplitude": 1.0, "rise": 1e-6, "fall": 1e-6}

@@ -1,4 +1,4 @@
-"""What a run of a bar has shown that was probably not meant."""
+"""Warnings about probable mistakes in a bar's case, after the run."""
 
 import json
 import shutil
@@ -25,7 +25,7 @@ def after(case, folder: Path) -> list[str]:
 
 @pytest.fixture
 def run(spalling, tmp_path):
-    """What is warned of after a run of the spalling bar with keys changed."""
+    """Warnings after a run of the spalling bar with keys changed."""
 
     def make(changes: dict) -> list[str]:
         case = spalling({"output.pictures": False, **changes})
@@ -35,7 +35,7 @@ def run(spalling, tmp_path):
 
 
 def summary_of(*spalls: dict, duration: float = 1.0) -> dict:
-    """What warnings ask of the summary of a run with these spalls."""
+    """A summary with these spalls, with the entries that warnings use."""
     return {
         "duration": duration,
         "spalls": list(spalls),
@@ -157,7 +157,7 @@ def test_the_first_spall_tells_who_tore_the_bar(spalling, spalled_run, side, pla
 
 
 FIRM = {"method": {"type": "finite_difference"}, "boundary.right": {"type": "viscous"}}
-"""At ν = 1 the right end absorbs all, and nothing pulls but rounding."""
+"""Changes with which, at ν = 1, the right end absorbs all, and nothing pulls but rounding."""
 
 
 def test_a_bar_that_nothing_pulls_is_warned_of(spalling, tmp_path) -> None:

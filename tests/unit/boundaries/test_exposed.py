@@ -1,4 +1,4 @@
-"""Which particles make up a side."""
+"""The particles of a side."""
 
 import numpy as np
 import pytest

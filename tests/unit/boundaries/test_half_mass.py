@@ -1,4 +1,4 @@
-"""Which particles keep half their mass, and which contacts half their stiffness."""
+"""Particles with half their mass, and contacts with half their stiffness."""
 
 import numpy as np
 import pytest

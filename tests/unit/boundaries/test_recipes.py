@@ -55,7 +55,7 @@ WAVES: Mapping[str, Incident] = {"push": Ramp(1.0), "shake": Ramp(10.0)}
 
 
 def rows(table: Boundary, side: str) -> Supports:
-    """What a boundary table makes of a side of two particles, 5 and 6."""
+    """Support rows by a boundary table for a side of two particles, 5 and 6."""
     builder = SupportBuilder()
     table.support(Edge(side, np.array([5, 6]), POSITIONS, DIAMETERS, 1.5), MEDIUM, WAVES, builder)
     return builder.table()

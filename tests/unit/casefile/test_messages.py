@@ -60,7 +60,7 @@ def problems(data: dict[str, Any]) -> list[str]:
 
 PATHS = keys(FULL)[1:]
 ONE_OF_EACH = {(path[0], type(reduce(getitem, path, FULL))): path for path in PATHS}.values()
-"""Of the values of each type in a table; the others are a slow sweep."""
+"""One path to a value of each type in a table; the others are a slow sweep."""
 
 
 @pytest.mark.parametrize(

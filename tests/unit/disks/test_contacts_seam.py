@@ -110,7 +110,7 @@ def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple
 
 
 def twins_keys(lists: dict[str, ContactList], ground: DiskScene) -> list[tuple]:
-    """Of each pair that of its twins in the column."""
+    """For each pair the key of its twins in the column."""
     twin, rows = ground.seam.twin, [each.arrays.constants[each.arrays.contact_type, :2] for each in lists.values()]
     ends = (twin[both(lists, name)] for name in ("first", "second"))
     return keyed(ground, ground.seam.width, *ends, np.concatenate(rows))

@@ -1,4 +1,4 @@
-"""How much later waves enter disks than through the plane of a side."""
+"""Delay of waves that enter disks, relative to waves through the plane of a side."""
 
 from typing import Any
 
@@ -38,7 +38,7 @@ def late(tables: dict[str, Any], side: str = "bottom", motion: str = "p") -> flo
 
 @pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
 def test_p_waves_enter_a_lattice_at_centres_and_dashpots_move_the_row_outside_of_these(side: str) -> None:
-    """Of the row of whole disks half is outside of the centres: half of D/2 remains. Of half cells nothing is."""
+    """Half of the row of whole disks is outside of the centres: half of D/2 remains. For half cells nothing remains."""
     assert late(driven(side, type="velocity"), side) == pytest.approx(-D / 2, abs=1e-5)
     assert late(driven(side, type="viscous_input"), side) == pytest.approx(-D / 4, abs=1e-5)
     assert late(driven(side, type="viscous_input", half_mass=True), side) == pytest.approx(-D / 2, abs=1e-5)

@@ -116,7 +116,7 @@ def test_in_a_lattice_every_cut_bond_has_p_times_d() -> None:
 
 
 def test_half_a_hole_beside_a_mirror_has_the_pressure_on_its_opening() -> None:
-    """Of the outline only what lies within the body: the resultant is p times the opening, a diameter of 4.6 m."""
+    """Only the outline within the body counts: the resultant is p times the opening, a diameter of 4.6 m."""
     half = CIRCLE | {"centre": [0.0, 5.2]}
     scene = pressed(LATTICE, half, {"boundary.left": {"type": "symmetry"}})
     force, moment = resultants(scene)
@@ -143,7 +143,7 @@ def test_at_a_side_of_half_cells_the_wall_ends_at_their_centres() -> None:
 
 THIN = {"type": "ellipse", "centre": [6.0, 5.0], "semi_axes": [2.0, 0.1]}
 LOST = {"type": "polygon", "points": [[5.0, 5.0], [1e30, 5.0], [5.0, 1e30]]}
-"""In rounding."""
+"""A hole that is lost in rounding."""
 
 TWO = {"hole": [{"name": "h", **CIRCLE}, {"name": "g", **CIRCLE, "centre": [9.0, 5.2]}]}
 NO_WALL = 'load.p.hole: "h" has no wall near ('
@@ -174,7 +174,7 @@ def test_a_pressure_that_follows_a_wave_drives_forces_and_moments() -> None:
 
 @pytest.mark.parametrize(("x", "is_near"), [(2.7, True), (2.9, False), (9.3, True)])
 def test_a_hole_that_cuts_bonds_across_a_periodic_side_is_refused(x: float, is_near: bool) -> None:
-    """Of radius 2.3, disks of 0.5 m: less than a bond from the side, where forces would not be in balance."""
+    """Radius 2.3 m, disks of 0.5 m: less than a bond from the side, where forces would not be in balance."""
     sides = {"boundary.left": {"type": "periodic"}, "boundary.right": {"type": "periodic"}}
     scene = pressed(LATTICE, CIRCLE | {"centre": (x, 5.2)}, sides, on="bonds")
     if is_near:

@@ -1,4 +1,4 @@
-"""What runs, checks and reports ask of bonded disks."""
+"""Bonded disks as a kind of body, for runs, checks and reports."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""How well dashpots match a packing."""
+"""Matching of dashpots to a packing."""
 
 import numpy as np
 import pytest

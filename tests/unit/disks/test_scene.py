@@ -1,4 +1,4 @@
-"""From a case to arrays."""
+"""Building the scene of a case."""
 
 import numpy as np
 import pytest

@@ -112,7 +112,7 @@ def test_sizes_of_elements_round_a_narrow_column() -> None:
 
 
 def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
-    """That beside a column does; that beside a periodic body is left out of the stage."""
+    """A continuum beside a column settles; one beside a periodic body is left out of the stage."""
 
     def keys(*changes: dict) -> dict:
         return settling_keys(scene(WEIGHT, *changes))

@@ -12,7 +12,7 @@ from dembound.kinds import kind_of, with_changes
 
 
 def trials(case, **options):
-    """Those of the kind of body of a case."""
+    """The trials of the kind of body of a case."""
     return kind_of(case).trials(case, **options)
 
 

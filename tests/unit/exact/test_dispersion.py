@@ -11,7 +11,7 @@ HORIZONS = [1, 2, 3, 8]
 
 
 def lattice(horizon: int, courant: float) -> Lattice:
-    """With Δx = 1 m and c = 1 m/s, so that Δt = ν and k = θ."""
+    """A lattice with Δx = 1 m and c = 1 m/s, so that Δt = ν and k = θ."""
     return Lattice(horizon, spacing=1.0, time_step=courant, wave_speed=1.0)
 
 

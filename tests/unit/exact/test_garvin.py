@@ -55,7 +55,7 @@ def test_laplace_transform_is_the_solution_in_wave_numbers(solid: Solid, x: floa
 
 @pytest.mark.parametrize(("solid", "x", "z"), [(SOLIDS[0], 7.0, 4.0), (SOLIDS[1], 0.0, 3.0), (SOLIDS[2], 12.0, 25.0)])
 def test_interior_obeys_newtons_law(solid: Solid, x: float, z: float) -> None:
-    """And comes to the motion of the surface, by which both reflected waves are known."""
+    """It tends to the motion of the surface, by which both reflected waves are known."""
     h, step = 0.05, 0.25e-3
     times = (np.linspace(0.004, 0.15, 25)[:, None] + step * np.arange(-1, 2)).ravel()
     steps = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]

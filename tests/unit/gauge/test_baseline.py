@@ -18,7 +18,7 @@ QUIET = 1e-4
 
 
 def added(*changes, time=TIME):
-    """What changes add to a signal."""
+    """The sum of the signals of some changes."""
     total = np.zeros_like(time)
     for change in changes:
         total = change(time, total)

@@ -1,4 +1,4 @@
-"""What a gauge tells, from histories whose speed, attenuation and strengths are known."""
+"""Estimates of a gauge, from histories whose speed, attenuation and strengths are known."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ from dembound.gauge.estimates import (
 POSITION, LENGTH, SPEED, DECAY = 0.6, 0.99, 2740.0, 0.52
 BAR = POSITION, LENGTH, SPEED
 SLOPE = 0.5 * (1.0 / 40.0 + 1.0 / 80.0)
-"""What the crest of the gauge's history falls per sample, of itself, as the mean of both sides."""
+"""Relative fall of the crest of the gauge's history per sample, as the mean of both sides."""
 
 SPALL = 0.79
 FALL = 200e-6

@@ -9,7 +9,7 @@ from dembound.gauge.reading.signal import Reading, read_signal
 from dembound.gauge.reading.units import Bridge
 
 TIMES, VALUES = [-1e-3, -0.5e-3, 0.0, 0.5e-3], [0.001, -0.002, 0.003, -0.004]
-"""In s and V."""
+"""Times and values in s and V."""
 
 
 def lines(form, times=1.0, values=1.0):
@@ -18,7 +18,7 @@ def lines(form, times=1.0, values=1.0):
 
 
 def commas(*form):
-    """The same with decimal commas."""
+    """The text of a file with decimal commas."""
     return [line.replace(".", ",") for line in lines(*form)]
 
 

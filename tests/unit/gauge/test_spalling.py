@@ -1,4 +1,4 @@
-"""All that is found at once of a spalling test, whichever end of the bar is loaded."""
+"""All findings of a spalling test, whichever end of the bar is loaded."""
 
 from dataclasses import replace
 

@@ -70,7 +70,7 @@ def spike(at, level, width=2e-6):
 
 
 def found(path, changes=(), pulse=triangle, bar=BAR, given=GIVEN, scale=CREST):
-    """What is found from the pulse at the gauge, in compression, with changes and noise."""
+    """Findings from the pulse at the gauge, in compression, with changes and noise."""
     values = -pulse(TIME - 20e-6)
     for change in (*changes, noise(0.003)):
         values = change(TIME, values)

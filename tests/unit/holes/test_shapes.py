@@ -1,4 +1,4 @@
-"""What lies in a hole, shape by shape."""
+"""Positions in holes, shape by shape."""
 
 import numpy as np
 import pytest

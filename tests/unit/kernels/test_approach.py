@@ -1,4 +1,4 @@
-"""How far disks may have come nearer: never less than any two that may meet, and not much more where all move along."""
+"""Approach of disks: never less than that of any two that may meet, and not much more where all move along."""
 
 import numpy as np
 import pytest

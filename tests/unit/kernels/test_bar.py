@@ -18,7 +18,7 @@ STEP = 0.1
 SUPPORTED = np.array([0, 1, 7, 30, 59])
 ROD = Rod.uniform(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=np.inf)
 MASS = ROD.mass
-"""Of 1 inside, so that the fastest waves stay far below the limit of the step."""
+"""Masses of 1 inside, so that the fastest waves stay far below the limit of the step."""
 
 ROUNDING = 8.0 * EPS * STEPS**2
 """Each step rounds velocities and displacements, of about 1, by a few ε; those add up to STEPS²/2 of them."""
@@ -42,7 +42,7 @@ LAYOUTS = {
 
 
 def damaged(bonds: Bonds) -> Bonds:
-    """With some springs and bonds broken earlier."""
+    """The bonds with some springs and bonds broken earlier."""
     bonds.spring[[5, 33]] = 0.0
     bonds.bond[:, 26:28] = 0.0
     return bonds
@@ -147,7 +147,7 @@ def test_step_is_the_same_as_written_down_plainly(layout, held: bool, a: float) 
 
 
 def all_mixed(arrays: tables.BarBonds) -> tables.BarBonds:
-    """The same arrays with no node that is plain."""
+    """The arrays without plain nodes."""
     runs = np.array(sorted([*arrays.mixed.tolist(), *([a, b, 1] for a, b in arrays.plain)]))
     return arrays._replace(plain=arrays.plain[:0], mixed=runs, mixed_keep=np.full(len(runs), arrays.mixed_keep[0]))
 

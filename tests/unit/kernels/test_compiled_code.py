@@ -1,4 +1,4 @@
-"""Where compiled code is kept: never code of other sources than there are."""
+"""Storage of compiled code: never of other sources than the present ones."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""How far pairs may move under the elastic law, and their energy, against the conditions and springs written out."""
+"""Distances of pairs from the limits of the elastic law, and their energy, against conditions written out."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from dembound.kernels.tables import Contacts, Limits
 
 
 def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:
-    """By how much each pair (b,) breaks the conditions of the elastic law, written out one by one; 0: by none."""
+    """Amount by which each pair (b,) breaks the conditions of the elastic law, written out one by one; 0: by none."""
     excess = np.zeros(len(pairs.first))
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
         _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)

@@ -15,7 +15,7 @@ SIDES = {0: np.array([7, 8, 9, 10, 11]), 1: np.array([12, 13, 14, 15]), 2: np.ar
 OPPOSITE = np.array([1, 0, 2])
 NODE = np.array([7, 9, 11, 12, 15, 16, 20])
 SIDE = np.array([[0, 0, 0, 1, 1, 2, 2], [-1, -1, 2, 2, -1, -1, -1]])
-"""Of the particles with forces; the last one belongs to a side without being its member."""
+"""Sides of the particles with forces; the last one belongs to a side without being its member."""
 STEP = 0.1
 
 

@@ -135,7 +135,7 @@ def test_steps_with_layers(grid, noise, order: int, even: bool) -> None:
     ("periodic", "layer"), [((True, False), Around(bottom=2)), ((False, True), Around(left=1, right=2))]
 )
 def test_steps_with_layers_of_periodic_meshes(grid, noise, periodic, layer: Around) -> None:
-    """Which have memories of derivatives along them, too."""
+    """These layers have convolution variables of derivatives along them, too."""
     margin = Around(*(min(count, 1) for count in layer))
     mesh = Mesh.around((0.0, 0.0, 6.0, 4.0), (3.0, 2.0), 4, margin=margin, layer=layer, periodic=periodic)
     takes_the_same_steps(replace(grid(), mesh=mesh), noise)

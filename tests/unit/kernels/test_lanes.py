@@ -142,7 +142,7 @@ def here(code: str) -> np.ndarray:
 
 
 def elsewhere(code: str, folder: Path, **environment: str) -> np.ndarray:
-    """The same in a process of its own."""
+    """The result of the code in a separate process."""
     path = folder / "result.npy"
     subprocess.run(
         [sys.executable, "-W", "ignore", "-c", f"{SCENE}{code}np.save({str(path)!r}, result)"],

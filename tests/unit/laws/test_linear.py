@@ -30,7 +30,7 @@ def moved(law: str, factor: float) -> np.ndarray:
 
 
 def is_linear(law: str) -> bool:
-    """Whether motion is in proportion to velocities, of either sign: to rounding of a few steps."""
+    """Whether motion is proportional to velocities, of either sign: to rounding of a few steps."""
     one = moved(law, 1e-3)
     return all(
         np.allclose(moved(law, 1e-3 * factor), factor * one, rtol=0.0, atol=1e-12 * abs(factor) * np.abs(one).max())

@@ -178,7 +178,7 @@ def test_springs_ask_until_bonds_cover_their_plane_as_far_as_they_can() -> None:
 
 
 def broken_at(bonds: Bonds, plane: int, step: int) -> Bonds:
-    """With all that crosses a plane broken in a step."""
+    """The bonds with all that cross a plane broken in a step."""
     if bonds.spring[plane] > 0.0:
         bonds.spring[plane] = 0.0
         bonds.spring_broken[plane] = step

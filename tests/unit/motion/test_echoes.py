@@ -1,4 +1,4 @@
-"""When echoes come to monitors, by hand."""
+"""Times of echoes at monitors, computed by hand."""
 
 from translated import translated
 

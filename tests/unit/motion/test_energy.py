@@ -61,7 +61,7 @@ def test_a_falling_disk_turns_the_work_of_its_weight_into_motion(bar, damp: floa
 
 @pytest.mark.parametrize(("came", "counts"), [(9e-8, False), (1.1e-7, True)])
 def test_what_is_rounding_of_the_stored_energy_is_not_supplied(bar, came: float, counts: bool) -> None:
-    """Of 1 MJ that a body has stored at the start 1e-13 is 1e-7 J; it may come as motion, from outside or by loads."""
+    """With 1 MJ stored at the start 1e-13 is 1e-7 J; it may come as motion, from outside or by loads."""
     for where in range(3):
         ledger = booked(simulated(bar))
         ledger._first = 8e5, 2e5

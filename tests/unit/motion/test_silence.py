@@ -1,4 +1,4 @@
-"""When a run is over."""
+"""The end of a run by silence."""
 
 from types import SimpleNamespace
 
@@ -71,7 +71,7 @@ def test_a_monitor_that_has_not_moved_waits_for_its_waves() -> None:
 
 
 def test_monitors_have_to_be_silent_not_their_nodes() -> None:
-    """Of two nodes that move against each other the place between them rests."""
+    """The place between two nodes that move against each other rests."""
     speeds = np.column_stack([np.full(100, 1.0) + pulse(100, 5, 10), np.full(100, -1.0)])
 
     assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1) is None

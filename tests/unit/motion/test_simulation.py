@@ -23,7 +23,7 @@ STEP = 0.01
 
 
 def lone_disk(bar, supports: Supports) -> DiskScene:
-    """One disk that nothing but its supports moves."""
+    """One disk moved by its supports only."""
     scene = build(bar({"packing.size": [0.5, 0.5], "monitor": [], "motion.held": []}))
     return replace(scene, supports=supports)
 

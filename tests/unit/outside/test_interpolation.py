@@ -1,4 +1,4 @@
-"""Where points lie in a mesh, and displacements and their slopes there."""
+"""Places of points in a mesh, and displacements and their slopes there."""
 
 import numpy as np
 import pytest

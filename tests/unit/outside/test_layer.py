@@ -10,7 +10,7 @@ Q = np.linspace(0.0, 1.0, 2001)
 
 
 def mean(values: np.ndarray) -> float:
-    """Of a profile over the depth."""
+    """Mean of a profile over the depth."""
     return float(np.trapezoid(values, Q))
 
 

@@ -36,7 +36,7 @@ def test_numbers_are_those_of_the_arrays(name: str) -> None:
 
 @pytest.mark.parametrize(("name", "order"), [("three sides", 4), ("a corner", 3)])
 def test_bytes_are_those_of_the_arrays(name: str, order: int) -> None:
-    """Of a mesh with so many elements that those which fill the blocks up do not matter."""
+    """For a mesh with so many elements that those which fill the blocks up do not matter."""
     side = MESHES[name].layer
     mesh = Mesh.around(
         BOX, (0.5, 0.5), order, margin=Around(*(5 * (s > 0) for s in side)), layer=Around(*(9 * (s > 0) for s in side))

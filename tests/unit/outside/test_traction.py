@@ -48,7 +48,7 @@ def test_sides_of_the_box_and_inner_edges_are_no_surface() -> None:
 
 
 def test_the_ground_may_end_above_the_surface_of_the_mesh() -> None:
-    """Its skin is not a part of the mesh: a region with either of both has the surface."""
+    """The skin is not a part of the mesh: a region with either of both has the surface."""
     mesh, depth = ground(), {"top": 0.4}
 
     for bottom, top in ((2.3, 2.4), (1.7, 2.1), (1.0, 3.0)):

@@ -30,7 +30,7 @@ def read_figures(monkeypatch, request) -> Iterator[None]:
 
 @pytest.fixture
 def run(tmp_path) -> Path:
-    """Where copies of records are."""
+    """Folder for copies of records."""
     return tmp_path / "run.h5"
 
 

@@ -11,7 +11,7 @@ from dembound.plot.continuum import read_continuum
 from dembound.plot.scene import plot_scene
 
 LEFT, RIGHT, BOTTOM, TOP = -9.0, 21.0, -9.0, 6.0
-"""Of the scene, with a margin of one and layers of two elements of 3 m beyond 12 m × 6 m."""
+"""Sides of the scene, with a margin of one and layers of two elements of 3 m beyond 12 m × 6 m."""
 
 
 def only(kind: type, panel):

@@ -18,7 +18,7 @@ def ledger_of(run):
 
 
 def fill(file, values=1.0):
-    """All columns of the ledger have this value, J/m."""
+    """Set all columns of the ledger to this value, J/m."""
     for name in COLUMNS:
         file["energy"][name][:] = values
 

@@ -9,7 +9,7 @@ from dembound.plot.histories import plot_histories
 
 
 def names(figure):
-    """Of the monitors of its panels."""
+    """Names of the monitors of a figure's panels."""
     return [panel.get_title("left").split()[0] for panel in figure.axes]
 
 

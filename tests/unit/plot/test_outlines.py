@@ -35,7 +35,7 @@ ALONE = {"boundary": {side: {"type": "viscous"} for side in ("left", "right", "b
 SHAPES = [(name, name == "canyon") for name in HOLES] + [("floor", True)]
 """Names of holes, with whether a continuum is around the disks."""
 COARSE = [("canyon", True), ("floor", False)]
-"""Those that are also drawn with means in place of disks; the others, and every second one with disks, are slow."""
+"""Cases also drawn with means in place of disks; the others, and every second one with disks, are slow."""
 
 
 def hollow_run(path, name, in_a_box):

@@ -36,7 +36,7 @@ def pulse(place, height=1.0):
 
 
 def times_beside(panels):
-    """What stands at the right end of each panel."""
+    """Texts at the right end of each panel."""
     return [text.get_text() for panel in panels for text in panel.texts if text.xyann == (8, 0)]
 
 

@@ -70,7 +70,7 @@ addEventListener("message", (event) => { document.querySelector("#found").textCo
 
 @pytest.fixture(scope="module")
 def opened(pushed_runs, tmp_path_factory) -> tuple[dict[int, dict], str]:
-    """What a page finds out about itself at each width, and what the browser printed."""
+    """Findings of a page about itself at each width, and the output of the browser."""
     if BROWSER is None:
         pytest.skip("no chromium or chrome is on the path")
     folder = tmp_path_factory.mktemp("browser")

@@ -31,7 +31,7 @@ class Disk(io.FileIO):
 
 @pytest.fixture
 def disk(monkeypatch):
-    """All files of the module are on a `Disk`."""
+    """Put all files of the module on a `Disk`."""
     monkeypatch.setattr(module.io, "FileIO", Disk)
     Disk.left = 10**9
     return Disk

@@ -55,7 +55,7 @@ def test_a_component_that_the_reference_hardly_has_counts_in_the_vector_alone(tm
 
 
 def test_all_twins_share_one_line_for_each_run(tmp_path):
-    """That of the worst, beside columns that stand elsewhere."""
+    """The line is that of the worst twin, for columns that stand elsewhere."""
     names = ["P", "P.free_field", "Q", "Q.free_field"]
     still = np.zeros_like(TIME)
     reference = record(tmp_path / "a.h5", "a", {name: (TIME, TIME, still) for name in names}, (-5.0, 2.0))

@@ -149,7 +149,7 @@ def crowded(file, path, count, attributes=0) -> None:
 
 
 def within(seconds, path) -> str:
-    """How a file is refused, by a search that takes no more CPU time than this."""
+    """The refusal of a file, by a search that takes no more CPU time than this."""
     began = time.process_time()
     why = refusal(path)
     assert time.process_time() - began < seconds

@@ -1,4 +1,4 @@
-"""What scripts read of a run."""
+"""Entries of the summary of a run."""
 
 import json
 from dataclasses import replace

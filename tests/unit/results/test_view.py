@@ -122,7 +122,7 @@ for arguments in json.loads(sys.argv[1]):
 CRACK = 7.75, 1.25
 
 HEIGHT = 586
-"""Of the pictures, pixels: that of the scene, 1600 / 1.4 · 2.5 / 10, and 300 around it."""
+"""Height of the pictures, pixels: that of the scene, 1600 / 1.4 · 2.5 / 10, and 300 around it."""
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""What VTK reads from the one file of all snapshots equals what it reads from the file of each."""
+"""Data that VTK reads from the one file of all snapshots equals data from the file of each."""
 
 import errno
 
@@ -81,7 +81,7 @@ def test_what_stays_as_it_is_is_written_once(spalled_run, tmp_path):
 
 
 def lines(count: int, seed: int) -> meshio.Mesh:
-    """So many separate lines, with one number for each and one for each of their ends."""
+    """`count` separate lines, with one number for each and one for each of their ends."""
     rng = np.random.default_rng(seed)
     ends = np.arange(2 * count, dtype=np.int32).reshape(-1, 2)
     points, at_ends, data = rng.normal(size=(2 * count, 3)), rng.normal(size=2 * count), rng.normal(size=count)

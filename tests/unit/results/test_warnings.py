@@ -1,4 +1,4 @@
-"""What a run has shown that was probably not meant, whatever moved."""
+"""Warnings after a run, for any kind of body."""
 
 import shutil
 from pathlib import Path
@@ -18,7 +18,7 @@ KEPT = {"supplied": 1.0, "closing": 0.0, "relative_error": 0.0}
 
 @pytest.fixture
 def moved(small_run, tmp_path):
-    """What is warned of where the monitors of a case have moved at some velocities."""
+    """Warnings for monitors of a case that have moved at some velocities."""
 
     def find(case, broken=(), component: int = 0, energy: dict | None = None, **velocities: np.ndarray) -> list[str]:
         path = Path(shutil.copy(small_run, tmp_path / "run.h5"))
@@ -43,7 +43,7 @@ def two(bar, changes: dict | None = None):
 
 
 PULSE = np.where(TIME < 0.5, np.sin(2.0 * np.pi * TIME), 0.0) ** 2
-"""One that is over at half time."""
+"""A pulse that is over at half time."""
 
 
 def test_a_motion_that_goes_on_is_warned_of(bar, moved) -> None:

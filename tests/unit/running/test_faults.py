@@ -33,7 +33,7 @@ OFTEN = {"run.duration": 0.02, "run.checkpoint": 1e-9, "output.snapshots": 3, "o
 
 
 def pulled(name: str = "bar", **changes: object) -> Case:
-    """That bar, with keys changed: table__key for table.key."""
+    """The pulled bar, with keys changed: table__key for table.key."""
     return small(PULLED, name, OFTEN | {key.replace("__", "."): value for key, value in changes.items()})
 
 
@@ -64,7 +64,7 @@ def folder(finished, tmp_path) -> Path:
 
 @contextmanager
 def largest_file(size: int):
-    """No file can become larger than so many bytes: further writes fail, as on a full disk."""
+    """Limit the size of files to `size` bytes: further writes fail, as on a full disk."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
     try:

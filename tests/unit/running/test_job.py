@@ -1,4 +1,4 @@
-"""One case from tables to a folder of results."""
+"""Runs of one case from tables to a folder of results."""
 
 import json
 import time
@@ -20,7 +20,7 @@ from dembound.running import SECTIONS, Progress, plan, preflight, run_case, warn
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
 BLOW_UP = {"boundary.left": GRIP, "run.duration": 0.05}
-"""With the fixture `unstable`: long enough that the motion passes every bound."""
+"""Changes that, with the fixture `unstable`, run so long that the motion passes every bound."""
 
 HANGING = {
     "material.damp": 0.0,

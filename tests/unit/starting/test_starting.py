@@ -15,7 +15,7 @@ from dembound.running import plan
 from dembound.starting import DEFAULT, names, starting_point, titles
 
 SETTLES = {"excavation"}
-"""Those that come to rest before they run, which takes seconds."""
+"""Starting points that come to rest before they run, which takes seconds."""
 
 
 def test_the_default_comes_first_and_all_have_titles() -> None:

@@ -1,4 +1,4 @@
-"""All factors of a case: which there are, and that each is the one that is found alone."""
+"""All factors of a case, each equal to the one found by its own calibration."""
 
 import pytest
 

@@ -62,7 +62,7 @@ def test_of_contacts_that_open_energy_only_falls() -> None:
 
 
 def test_noise_does_not_turn_a_free_body() -> None:
-    """What its growing displacements are rounded by would grow as energy: by 3e-9 in 100,000 steps of twelve disks."""
+    """Rounding of growing displacements would grow as energy: by 3e-9 in 100,000 steps of twelve disks."""
     free = with_changes(loads(ROW.split("[boundary.right]")[0] + "[run]\nduration = 1.0\n"), {"motion.held": []})
     trial = kind_of(free).trials(free)[0][0]
     scene, velocity = trial.scene, trial.noise()

@@ -1,4 +1,4 @@
-"""What every wave promises, checked on each type; and the values only one type has."""
+"""Properties common to all waves, checked on each type; and values of single types."""
 
 import math
 

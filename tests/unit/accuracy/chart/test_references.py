@@ -1,4 +1,4 @@
-"""Which exact solutions cases have, and for how long they are valid."""
+"""Exact solutions of cases, and the times for which they are valid."""
 
 import math
 from dataclasses import replace
@@ -17,8 +17,8 @@ from dembound.kinds import load, with_changes
 from dembound.shipped import folder
 
 ECHO = (75.0 * (1.0 + 3**0.5) - 20.0) / (1000.0 / 2**0.5) + (math.hypot(0.5, 150.5) - 20.0) / 1000.0
-"""When (s) the SV wave of `cases/oblique.toml` has met the wall of the hole, and the P wave that leaves there has come
-back from the surface at the monitor below it, on the disk's place half a metre beside the axis."""
+"""Time (s) when the SV wave of `cases/oblique.toml` has met the wall of the hole, and the P wave that leaves there
+has come back from the surface at the monitor below it, on the disk's place half a metre beside the axis."""
 
 EVEN = {"boundary.left": {"type": "viscous_input", "wave_p": "pulse"}}
 

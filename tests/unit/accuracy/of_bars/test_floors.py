@@ -1,4 +1,4 @@
-"""What errors of choices for a bar are at least, by those of others."""
+"""Lower bounds of the errors of choices for a bar, from errors of others."""
 
 from dataclasses import replace
 from typing import Any

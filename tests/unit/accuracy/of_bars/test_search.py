@@ -247,7 +247,7 @@ def test_bars_of_which_nothing_is_known_are_refused(case: Case, line: str) -> No
 
 
 def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
-    """Of a pulse nothing remains once it has left; a bar between free ends rings on."""
+    """Nothing remains of a pulse once it has left; a bar between free ends rings on."""
     case = with_changes(scene("viscous end, β = 0.7"), {"run.duration": 0.008})
     choice = advised(case, 0.01, ["bar"])
     assert choice.holds

@@ -1,4 +1,4 @@
-"""What disks at other places do to what monitors record, beside the exact plane wave in a bar."""
+"""Errors by disks at other places than the monitors', compared with the exact plane wave in a bar."""
 
 from dataclasses import replace
 
@@ -152,7 +152,7 @@ GRAVEL = PUSHED | {
 
 
 def test_where_contacts_slide_the_time_step_is_found_with_half_of_it() -> None:
-    """Its error is 3.8 times that of the formula, which is that of elastic contacts."""
+    """The error of the time step is 3.8 times that of the formula, which holds for elastic contacts."""
     case = small(GRAVEL)
     assert isinstance(case, DiskCase)
     step = plan(case).time_step

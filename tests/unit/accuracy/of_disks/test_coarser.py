@@ -116,7 +116,7 @@ def test_disks_are_small_enough_for_holes_and_the_scene():
 
 
 def test_cells_of_a_side_that_lets_waves_in_are_none_of_the_sides_that_may_move():
-    """What they return is known by a formula, and when waves enter is no error."""
+    """Their reflection is known by a formula, and the time when waves enter is no error."""
     column = {"type": "free_field"}
     waves = {"boundary": {"left": column, "right": column, "bottom": {"type": "viscous_input", "wave_s": "pulse"}}}
     case = small(GROUND | waves, changes={"hole": [], "load": []})

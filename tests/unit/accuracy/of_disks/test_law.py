@@ -116,7 +116,7 @@ def test_without_the_stress_at_rest_an_elastic_body_moves_alike() -> None:
 
 
 def test_the_law_remains_where_no_companion_can_run() -> None:
-    """Of disks of 1 m none is left between a hole of 1.2 m and others, that a pressure could push."""
+    """Between a hole of 1.2 m and others no disk of 1 m is left that a pressure could push."""
     blast = {"name": "blast", "pressure": 1e5, "hole": "h", "wave": "push"}
     hole = {"name": "h", "type": "circle", "centre": [10.0, 6.0], "radius": 0.6}
     tables = {key: value for key, value in CONFINED.items() if key != "static"} | {"load": [blast], "hole": [hole]}
@@ -154,7 +154,7 @@ def _recorded(gauges: Motions) -> dict[str, History]:
 
 
 def test_the_stress_at_rest_that_turns_with_the_disks_is_counted() -> None:
-    """Without the elastic start a law whose contacts follow the motion differs by that, and is not below a third."""
+    """Without the elastic start a law with updated geometry differs by that stress, and is not below a third."""
     twin = own_twin()
     fixed = {"run.time_step": 0.9 * plan(confined()).time_step}
     full = confined({**fixed, "material.elastic_start": False})

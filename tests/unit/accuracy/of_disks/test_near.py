@@ -31,7 +31,7 @@ WIDE = 0.5
 """Half a side of the region that the force acts on, m."""
 
 SPEED = 500.0
-"""Of S waves on a lattice whose bonds alone carry shear, m/s."""
+"""Speed of S waves on a lattice whose bonds alone carry shear, m/s."""
 
 
 def scene(radius: float) -> DiskScene:
@@ -70,7 +70,7 @@ def test_motion_across_the_ray_has_none_as_its_waves_are_shear() -> None:
 
 
 def test_half_of_motion_at_45_degrees_is_along_the_ray() -> None:
-    """Of v along x the ray's part is v cos 45°, of which cos 45° is along x."""
+    """The part along the ray of v along x is v cos 45°, and cos 45° of that is along x."""
     own = recorded((2.0 + 1.2, 1.0 + 1.2), (1.0, 0.0))
     expected = 0.5 * near(0.5, 1.2 * 2.0**0.5)
     assert errors_near_loads(scene(0.25), own)["velocity"] == pytest.approx(expected, rel=1e-3)

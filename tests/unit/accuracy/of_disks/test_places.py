@@ -58,7 +58,7 @@ def test_a_patch_has_no_disks_that_a_hole_has_taken() -> None:
 
 
 def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
-    """Of 1 at (2.5, 1) and 3 at (6.5, 1): (5.5, 1); a pressure counts from the middle of its hole."""
+    """The middle of 1 at (2.5, 1) and 3 at (6.5, 1) is (5.5, 1); a pressure counts from the middle of its hole."""
     loads = [
         {"name": "a", "force": [1e5, 0.0], "region": [2.0, 0.5, 3.0, 1.5], "wave": "push"},
         {"name": "b", "force": [0.0, -3e5], "region": [6.0, 0.5, 7.0, 1.5], "wave": "push"},

@@ -33,7 +33,7 @@ class Own(Boundary):
     rising: float = 0.0
 
     def support(self, edge, medium, waves, supports):
-        """Both."""
+        """Add dampers and springs."""
         each = np.ones(len(edge.nodes)) if self.per_disk else edge.widths
         each = each * (1.0 + self.rising * np.linspace(-0.5, 0.5, len(edge.nodes)))
         for component in (0, 1):
@@ -42,7 +42,7 @@ class Own(Boundary):
 
 
 class Kept(Own):
-    """The same, of no ground beyond."""
+    """A side like `Own` that stands for no ground beyond."""
 
     is_artificial: ClassVar[bool] = False
 

@@ -1,4 +1,4 @@
-"""What the seed of a packing adds: how the run of one differs from the mean of several, at the times asked for."""
+"""Scatter between packings: the difference of one run from the mean of several, at the requested times."""
 
 import numpy as np
 import pytest

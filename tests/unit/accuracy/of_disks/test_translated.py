@@ -1,4 +1,4 @@
-"""What is derived from places of a case, without a run, is the same for a case that is moved as a whole."""
+"""Quantities derived from places of a case, without a run, do not change if the case is moved as a whole."""
 
 from dataclasses import replace
 

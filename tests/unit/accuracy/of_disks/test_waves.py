@@ -1,4 +1,4 @@
-"""How late plane waves come on disks: closed forms for the square lattice."""
+"""Delays of plane waves on disks: closed forms for the square lattice."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""How long the sides of a scene are, and what they are when particles of them are taken away."""
+"""Lengths of the sides of a scene, also with particles taken away."""
 
 import numpy as np
 import pytest

@@ -26,7 +26,7 @@ def line(*points: tuple[float, float], **changes: Any) -> str:
 
 
 def slope(height: float, end: float = 31.0, last: float | None = None) -> list[tuple[float, float]]:
-    """From (10, 20) m down to a floor at this height, up to x = `end`, where it may have another height."""
+    """Corners from (10, 20) m down to a floor at this height, up to x = `end`, where it may have another height."""
     return [(10.0, 21.0), (18.0, height), (end, height if last is None else last), (end, 21.0)]
 
 

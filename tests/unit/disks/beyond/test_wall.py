@@ -68,7 +68,7 @@ class Tied:
 
 
 def test_a_uniform_gradient_leaves_every_particle_in_equilibrium(ground) -> None:
-    """As in the infinite tiling, whose bonds the ties replace."""
+    """Equilibrium as in the infinite tiling, whose bonds the ties replace."""
     tied = Tied(ground)
     network = Network.of_assembly(ground.brick, ground.stiffness, tied.body)
     motions = network.motion_matrix()

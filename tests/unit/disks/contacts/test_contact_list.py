@@ -49,7 +49,7 @@ def ordered(i: int, j: int, image: np.ndarray) -> Key:
 
 
 def keys(contacts: ContactList) -> list[Key]:
-    """All listed pairs, their images told from the vectors they started with."""
+    """All listed pairs, with images recognised by the vectors they started with."""
     pairs, places = contacts.arrays, contacts.assembly.positions
     beyond = pairs.constants[pairs.contact_type, :2] - (places[pairs.second] - places[pairs.first])
     images = np.rint(beyond / contacts.assembly.size).astype(int)

@@ -103,7 +103,7 @@ def test_a_stiff_skin_leaves_nodes_half_their_mass() -> None:
 
 
 def test_bricks_that_end_elsewhere_are_the_same_packing(dense: PackedMaterial) -> None:
-    """The same disks and contacts, with numbers of bricks of their own."""
+    """The disks and contacts are the same, with another numbering of bricks."""
     height = 1.7
     cut = cut_at(dense.brick, height)
 

@@ -1,4 +1,4 @@
-"""Which scenes have rows that move identically."""
+"""Scenes with and without rows that move identically."""
 
 from dataclasses import replace
 
@@ -111,7 +111,7 @@ def test_a_row_that_is_not_one_of_the_scene_is_refused(scene, change) -> None:
 
 
 def reversed_arms(rows):
-    """The same contacts with moments of the other sign."""
+    """The contacts with moments of opposite sign."""
     constants = rows.constants.copy()
     constants[:, 5:7] *= -1.0
     return rows._replace(constants=constants)

@@ -1,4 +1,4 @@
-"""What reaches a side: kinds and angles."""
+"""Waves that reach a side: kinds and angles."""
 
 import math
 

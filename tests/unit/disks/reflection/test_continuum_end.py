@@ -37,7 +37,7 @@ def test_of_a_lattice_it_sends_back_what_waves_of_rows_of_disks_say(side, kind, 
 
 @pytest.mark.parametrize(("name", "element"), [("left", 2.0), ("right", 12.0), ("bottom", 12.0), ("top", 2.0)])
 def test_without_absorption_all_comes_back(name, element) -> None:
-    """Of P and S waves of a random packing, at all sides: the outer edge is at rest, and ties take no energy.
+    """For P and S waves of a random packing, at all sides: the outer edge is at rest, and ties take no energy.
 
     Elements are a half and three times as long as bricks: two along a brick, and three bricks along an element.
     """

@@ -1,4 +1,4 @@
-"""What sides along a wave take from it: axes and sides, the undisturbed ground, scenes without such sides."""
+"""Errors by sides along a wave: axes and sides, the undisturbed ground, scenes without such sides."""
 
 import numpy as np
 import pytest

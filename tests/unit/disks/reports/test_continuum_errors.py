@@ -1,4 +1,4 @@
-"""What a continuum adds to the motion beside it, by formula."""
+"""Errors of the motion by a continuum, by formula."""
 
 import math
 
@@ -49,7 +49,7 @@ def test_elements_return_half_of_the_shortest_waves_and_less_of_longer_ones() ->
 
 
 def test_ties_return_more_of_waves_that_have_come_as_far_and_meet_them_at_an_angle() -> None:
-    """At r right of a force amid sides at 10 m, whose images are 20 − r, 20 + r, and twice √(20² + r²) away."""
+    """At r right of a force between sides at 10 m, whose images are 20 − r, 20 + r, and twice √(20² + r²) away."""
     frequency = 20.0
     made = scene(frequency, outside={"element": 2.0})
     k = 2.0 * math.pi * frequency / SPEED

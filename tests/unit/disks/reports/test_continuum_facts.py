@@ -20,7 +20,7 @@ RANDOM = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1
 
 @pytest.fixture
 def case(bar):
-    """With c_p = 1000 m/s, c_s = 707 m/s."""
+    """A case with c_p = 1000 m/s, c_s = 707 m/s."""
     return bar(LAMB | {"material.fric": 0.5, "run.duration": 10.0})
 
 
@@ -56,7 +56,7 @@ def test_reflections_are_those_of_the_profile(case) -> None:
 
 
 def test_ties_return_what_a_half_bond_does(case) -> None:
-    """Of one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.1/8√2), and 40 k (kD)²/24."""
+    """For one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.1/8√2), and 40 k (kD)²/24."""
     burst = {"pulse": {"type": "sine_burst", "amplitude": 1.0, "frequency": 8.838835, "cycles": 40}}
     scene = build(with_changes(case, {"wave": burst}))
     k = 2.0 * np.pi / 80.0

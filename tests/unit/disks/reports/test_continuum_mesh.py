@@ -1,4 +1,4 @@
-"""What ParaView is given of a continuum equals the record, and has the colours of the disks."""
+"""Meshes of a continuum for ParaView equal the record, and have the colours of the disks."""
 
 import re
 import sys
@@ -56,7 +56,7 @@ def test_vtk_reads_one_quadrilateral_per_cell(surrounded_run, exported) -> None:
 
 @pytest.mark.parametrize(("axis", "columns"), [(0, 1), (1, 3)])
 def test_the_last_cells_of_a_periodic_continuum_reach_its_first_nodes(axis: int, columns: int) -> None:
-    """These are repeated a period on, with all that they have, so that no gap is left."""
+    """The first nodes are repeated a period on, with all their data, so that no gap is left."""
     along = (columns, 4) if axis == 0 else (4, columns)
     layer = Around(bottom=2) if axis == 0 else Around(left=2)
     mesh = Mesh.uniform(

@@ -1,4 +1,4 @@
-"""What a case of disks would come to."""
+"""Facts about a case of disks."""
 
 import numpy as np
 import pytest

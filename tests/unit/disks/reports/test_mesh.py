@@ -1,4 +1,4 @@
-"""What ParaView is given of disks equals the record."""
+"""Meshes of disks for ParaView equal the record."""
 
 import h5py
 import meshio

@@ -1,4 +1,4 @@
-"""What a run of disks ends by telling."""
+"""Results of a run of disks in words."""
 
 from dembound.disks.reports.outcome import disk_outcome
 

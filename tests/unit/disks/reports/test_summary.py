@@ -1,4 +1,4 @@
-"""What scripts read of disks and their run."""
+"""Entries of the summary of disks and their run."""
 
 import json
 

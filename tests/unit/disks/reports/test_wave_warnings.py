@@ -41,7 +41,7 @@ def strong(amplitude: float) -> dict:
 
 
 def shortest(count: float) -> dict:
-    """So many disks in the shortest wavelength."""
+    """A wave with `count` disks in the shortest wavelength."""
     return of_wave(period=count * 0.5 * HANN_FADE / 500.0)
 
 

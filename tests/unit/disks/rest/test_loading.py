@@ -1,4 +1,4 @@
-"""How loads are put on: where the elastic way ends, that nothing is out of balance there, and when all loads act."""
+"""Loading in a static stage: the end of the elastic path, balance there, and the step when all loads act."""
 
 from types import SimpleNamespace
 

@@ -34,7 +34,7 @@ def turned(scene: DiskScene, angle: float) -> np.ndarray:
 
 
 def torque(scene: DiskScene, force: np.ndarray, displacement: np.ndarray) -> float:
-    """Of all forces about a point outside the body."""
+    """Torque of all forces about a point outside the body."""
     x, y = scene.positions.T + displacement[:2] + [[7.0], [-5.0]]
     return float(np.sum(x * force[1] - y * force[0]) + np.sum(force[2]))
 

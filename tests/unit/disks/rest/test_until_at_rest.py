@@ -1,4 +1,4 @@
-"""What a static stage says that cannot come to rest, and what its force ratio is made of."""
+"""Messages of a static stage that cannot come to rest, and the composition of its force ratio."""
 
 import numpy as np
 import pytest

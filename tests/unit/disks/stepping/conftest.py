@@ -1,4 +1,4 @@
-"""What the tests of disks in motion share."""
+"""Fixtures for tests of disks in motion."""
 
 import pytest
 from disk_systems import BODY, DENSE

@@ -126,7 +126,7 @@ def resultants(body: DiskScene, force: np.ndarray) -> np.ndarray:
 
 
 def parts_of(body: DiskScene) -> tuple[DiskPart, ...]:
-    """Its parts as built."""
+    """The parts of a body as built."""
     return DiskSystem(body, STEP).parts
 
 
@@ -139,7 +139,7 @@ def isolate(parts: tuple[DiskPart, ...], particles: list[int]) -> None:
 
 
 def test_on_a_box_in_the_ground_forces_turn_at_all_four_sides(scene) -> None:
-    """Where the column does not end at the level of the box: its lower and upper side have the disks with ties there.
+    """The column does not end at the level of the box, whose lower and upper side have the disks with ties there.
 
     A rigid rotation of the box relative to its column turns all forces by its angle, so that a pressure from all sides,
     through the ground or as a load, has no torque on it.

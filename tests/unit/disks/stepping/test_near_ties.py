@@ -1,4 +1,4 @@
-"""What leaves the elastic range near the ties to a continuum is noted, with its time, place and side."""
+"""Contacts that leave the elastic range near the ties to a continuum are noted, with time, place and side."""
 
 import numpy as np
 import pytest
@@ -41,7 +41,7 @@ class Watched:
         return int(self.pairs.live[found])
 
     def look(self, step: int) -> dict[str, dict]:
-        """What has been found near each side once this step is done."""
+        """The findings near each side once this step is done."""
         self.run.state.step = step
         self.watch.look(self.run.state, self.pairs)
         found = {side: self.watch.describe(side, STEP) for side in SIDES}
@@ -49,7 +49,7 @@ class Watched:
 
 
 def test_near_are_disks_within_two_diameters_of_a_tied_one(scene) -> None:
-    """To the side of the nearest of them; in a corner one disk is tied by both sides and belongs to the first."""
+    """They belong to the side of the nearest tied disk; in a corner a disk tied by both sides is of the first."""
     x, y = scene.assembly.positions.T
     near = sides_near(scene)
     expected = np.select([x < 3.0, x > 9.0, y < 3.0], [0, 1, 2], -1)
@@ -103,7 +103,7 @@ def test_a_contact_that_is_open_without_slip_is_found(scene, way, opens) -> None
 
 
 def test_pairs_are_followed_as_lists_are_renewed(scene) -> None:
-    """Those that are no longer listed are far apart."""
+    """Pairs that are no longer listed are far apart."""
     run = Watched(scene)
     near = run.between((2.5, 4.5), (3.5, 4.5))
     assert run.look(10) == {}

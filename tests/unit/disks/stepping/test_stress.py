@@ -16,7 +16,7 @@ RANDOM = {"pattern": "B", "size": [5.0, 5.0], "radius": 0.25, "radius_ratio": 1.
 
 
 def elastic_stress(scene: DiskScene, displacement: np.ndarray) -> np.ndarray:
-    """Of the pairs of the elastic law, which have no forces of their own."""
+    """Stress from the pairs of the elastic law, which store no forces."""
     return particle_stress(
         scene, plain_contacts(scene.ground, scene.assembly, scene.layout.slot), displacement, REFERENCE
     )

@@ -9,7 +9,7 @@ from dembound.studies.sweep.statistics import statistic, statistics
 
 
 def test_the_interval_is_students() -> None:
-    """Of 2, 4, 4, 4, 5, 5, 7, 9 the squares of differences add to 32; t(0.975) of 7 degrees is 2.364624 (tables)."""
+    """The squared deviations of 2, 4, 4, 4, 5, 5, 7, 9 add to 32; t(0.975) of 7 degrees is 2.364624 (tables)."""
     found = statistic({}, "x", [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0])
     assert found.count == 8
     assert found.mean == 5.0
