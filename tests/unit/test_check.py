@@ -37,7 +37,7 @@ def test_a_run_until_silence_is_announced_with_its_times(bar) -> None:
     assert steps == "100 for 0.01 s, or until all monitors are below 2 % of their peaks for 0.005 s, after 0.0147 s"
 
 
-def test_a_bar_is_told_of_as_a_bar(spalling) -> None:
+def test_a_bar_is_reported_as_a_bar(spalling) -> None:
     facts, warnings = check(spalling())
     planned = plan(spalling())
 
@@ -54,11 +54,11 @@ def test_the_estimate_says_what_it_is_without(bar) -> None:
         (law, " the additional time of linearpbond once it begins,"),
         ({**law, "material.elastic_start": False}, ""),
     ):
-        told = check(bar(changes))[0]["estimated time"]
-        assert told.endswith(f" with 1 thread, without building,{without} pictures")
+        reported = check(bar(changes))[0]["estimated time"]
+        assert reported.endswith(f" with 1 thread, without building,{without} pictures")
 
 
-def test_times_are_told_as_one_would_say_them() -> None:
+def test_times_are_reported_as_one_would_say_them() -> None:
     times = (0.026, 8.4, 42.0, 89.0, 130.0, 910.0, 9000.0, 90000.0, 259200.0)
     assert [duration_in_words(seconds) for seconds in times] == [
         *("less than 1 s", "about 8 s", "about 40 s", "about 90 s"),

@@ -60,7 +60,7 @@ def test_it_is_seen_at_a_late_look_too(rock):
 
 @pytest.mark.parametrize("strength", [10e6, 1e6])
 @RUNS
-def test_breakable_bar_stops_before_a_break_is_told(begin, share, wave, strength):
+def test_breakable_bar_stops_before_a_break_is_reported(begin, share, wave, strength):
     simulation = begin(share, wave, strength=strength)
     breaks: list[int] = []
     with pytest.raises(RunError, match="at t = "):

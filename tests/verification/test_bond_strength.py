@@ -92,7 +92,7 @@ def check_crack(simulation: Simulation, *, shear: bool) -> None:
 
 @pytest.mark.parametrize(("motion", "shear"), [((1.0, 0.4, 0.0), False), ((0.4, 1.0, 0.0), True)])
 def test_the_strength_reached_first_decides(lab, motion, shear):
-    # at 2/3 of the other one's way; the later one is never told
+    # at 2/3 of the other one's way; the later one is never reported
     strength = {"pb_ten": stress(motion[0]), "pb_coh": cohesion(*motion[:2]), "pb_fa": FRICTION_ANGLE}
     strength["pb_ten" if shear else "pb_coh"] *= 1.5
     check_crack(gripped(lab, *motion, **strength), shear=shear)

@@ -42,7 +42,7 @@ def returned(scene: DiskScene) -> tuple[float, float]:
 
 
 def test_it_is_what_coupled_waves_send_back(lab) -> None:
-    """Reflection of copies, and of ties and shorter waves, add up to the total: the latter is that of the other pulse."""
+    """Reflections of copies, and of ties and shorter waves, add up; the latter are those of the other pulse."""
     seed = 1
     bragg = coupling(column(lab, seed, 0.1).ground, 1, 1).frequency
     (strong, expected), (weak, nothing) = (returned(column(lab, seed, times / bragg)) for times in (1.42, 2.0))

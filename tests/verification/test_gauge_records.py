@@ -32,7 +32,7 @@ def test_a_weak_pulse_gives_speed_and_attenuation(record, tmp_path):
     # a sample of 723 in 2L/c; and its height to σ/√(Σ g²)/a, 4 % of the last one. 0.5 % and 5 % are three times that
     assert found.speed.value == pytest.approx(SPEED, rel=0.005)
     assert found.attenuation.value == pytest.approx(DECAY, rel=0.05)
-    # and the errors are those that are told, but for the share of samples on a crest in records without noise
+    # and the errors are those reported, but for the share of samples on a crest in records without noise
     assert abs(found.speed.value - SPEED) < 4.0 * found.speed.error + 2e-4 * SPEED
     assert not found.warnings
 
@@ -44,7 +44,7 @@ def test_a_strong_pulse_gives_the_strength(record, tmp_path):
     strength = found.strength.nominal
     # a crest of 1 Pa is no strength
     if warnings := [said for said in found.warnings if "Pa, where soils, rocks and metals have" not in said]:
-        assert record.name == "noise of 3 %"  # it raises a largest value: that is told, and how much
+        assert record.name == "noise of 3 %"  # it raises a largest value: that is reported, with its size
         assert "% of the wave and makes the strength too large" in warnings[0]
     else:
         assert strength == pytest.approx(exact_nominal(), rel=0.03)
@@ -98,7 +98,7 @@ def soft(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("change", "level"), [(lost, 0.0), (another_impact, 0.005), (soft, 0.0)], ids=list("abc"))
-def test_what_one_pulse_to_and_fro_does_not_explain_is_told(change, level, tmp_path):
+def test_what_one_pulse_to_and_fro_does_not_explain_is_reported(change, level, tmp_path):
     """And the error then holds the truth: without this it was 3 to 5 errors away, as the line through the peaks bends.
 
     Two errors are the usual bound; the error itself is the largest difference of two parts of the passages.
@@ -126,7 +126,7 @@ def test_what_rests_on_a_doubtful_speed_is_named(tmp_path):
         (1100e-6, r"1 found .* it ends at 0.001099 s, the second return of the pulse is due at 0.00128\d s"),
     ],
 )
-def test_a_record_that_is_too_short_is_told_so(end, reason, tmp_path):
+def test_a_record_that_is_too_short_is_reported_so(end, reason, tmp_path):
     """The wave has its crest at the gauge at 279 µs, comes back 285 µs later, and again 723 µs later."""
     record = Record("short", (noise(0.005),), sampling={"samples": round(end / 1e-6)})
     with pytest.raises(CaseError, match=reason):
@@ -135,7 +135,7 @@ def test_a_record_that_is_too_short_is_told_so(end, reason, tmp_path):
 
 @pytest.mark.parametrize("width", [1, 4])
 def test_spikes_are_no_waves(width, tmp_path):
-    """Beside waves they are told as such; alone they may be waves that are sampled too coarsely."""
+    """Beside waves they are reported as such; alone they may be waves that are sampled too coarsely."""
 
     def spikes(time, values):
         values = values.copy()

@@ -63,7 +63,7 @@ def test_stress_and_rate_are_those_of_the_plateau():
     )
 
 
-def test_a_specimen_that_is_never_in_equilibrium_is_told():
+def test_a_specimen_that_is_never_in_equilibrium_is_reported():
     # the transmitted wave of a pulse of one transit comes after all of the incident one: F_1 and F_2 take turns
     found = found_of(signals(lambda time: ramp(time, 2e-6, 4e-6)))
     assert found.equilibrium is None
@@ -101,7 +101,7 @@ def speed_of(modulus: float, density: float) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize(("modulus", "density"), [PLASTIC, ROCK])
-def test_what_inertia_adds_to_a_slope_is_told(modulus, density):
+def test_what_inertia_adds_to_a_slope_is_reported(modulus, density):
     """Under a rise of 10 µs, 4 transits of the hardest, 1.7 %, and all of the error; the rest is half a sample."""
     faces, found = measured(signals(lambda at: ramp(at, 10e-6), specimen=speed_of(modulus, density)))
     error = slope_error(faces, SETUP, EQUILIBRIUM, found)
@@ -146,7 +146,7 @@ def test_windows_may_be_given_and_move_their_pulse():
         at_faces(given, SETUP, Windows(incident=(1.3e-3, 1.5e-3)))
 
 
-def test_a_record_that_is_too_short_is_told_by_the_pulses_that_it_lacks():
+def test_a_record_that_is_too_short_is_reported_by_the_pulses_that_it_lacks():
     """At the gauges the incident pulse begins at 100 µs, the reflected at 500, the transmitted at 460."""
     given, count = signals(), round(350e-6 / STEP)
     short = given._replace(**{name: getattr(given, name)[:count] for name in ("time", "incident", "transmitted")})
@@ -172,7 +172,7 @@ def doubts(given, setup=SETUP):
     return list(doubts_of_pulses(given, faces, setup, Windows(), found))
 
 
-def test_pulses_that_do_not_fit_each_other_are_told():
+def test_pulses_that_do_not_fit_each_other_are_reported():
     given = signals(lambda at: ramp(at, 20e-6, 320e-6))
     assert not doubts(given)
     # of a gain of 1.05 the faces differ by 0.05 of their mean, 1.025

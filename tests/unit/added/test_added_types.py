@@ -53,22 +53,22 @@ def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
 
 
 @pytest.fixture(scope="module")
-def told(python) -> list[dict[str, Any]]:
+def output(python) -> list[dict[str, Any]]:
     """Output of both scripts, run in one process."""
     printed = python("-P", "-c", "import use_them; print(); import ask_them").stdout  # -P: not from the working folder
     return [json.loads(line) for line in printed.splitlines()]
 
 
 @pytest.fixture(scope="module")
-def found(told) -> dict[str, Any]:
+def found(output) -> dict[str, Any]:
     """Results of the cases of use_them.py."""
-    return told[0]
+    return output[0]
 
 
 @pytest.fixture(scope="module")
-def asked(told) -> dict[str, Any]:
+def asked(output) -> dict[str, Any]:
     """Results of ask_them.py: calibrations, estimates and choices."""
-    return told[1]
+    return output[1]
 
 
 def test_a_law_without_moments_closes_its_books(found) -> None:

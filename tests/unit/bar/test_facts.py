@@ -37,7 +37,7 @@ def test_facts_are_those_of_the_bar(spalling) -> None:
     assert facts.items() >= expected.items()
 
 
-def test_what_a_bar_lacks_is_not_told(spalling) -> None:
+def test_what_a_bar_lacks_is_not_reported(spalling) -> None:
     bar = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}
     facts = facts_of(spalling({"bar": bar, "monitor": [], "load": []}))
 
@@ -45,7 +45,7 @@ def test_what_a_bar_lacks_is_not_told(spalling) -> None:
     assert not {"attenuation", "load hit", "monitor gauge", "cracks", "strain rates"} & set(facts)
 
 
-def test_a_layer_is_told_with_its_length_and_what_it_returns(spalling) -> None:
+def test_a_layer_is_reported_with_its_length_and_what_it_returns(spalling) -> None:
     method = {"type": "finite_difference"}
     case = spalling({"boundary.right": {"type": "matched_layer", "nodes": 80}, "method": method, "run.courant": 0.5})
     layer, echo = facts_of(case)["right end"].split("; ")
@@ -55,7 +55,7 @@ def test_a_layer_is_told_with_its_length_and_what_it_returns(spalling) -> None:
     assert 1e-9 < float(echo.split()[3]) < 1e-4
 
 
-def test_the_largest_pressure_is_told_whatever_a_wave_reaches(spalling) -> None:
+def test_the_largest_pressure_is_reported_whatever_a_wave_reaches(spalling) -> None:
     load = {"name": "hit", "pressure": -1.0, "side": "right", "wave": "hit"}
     facts = facts_of(spalling({"load": [load], "wave.hit.amplitude": 9e6}))
 

@@ -17,17 +17,17 @@ def outcome(spalls: list[dict], note: str | None = None, **more) -> list[str]:
     return bar_outcome(summary | more)
 
 
-def test_spalls_are_told_with_their_places_and_the_note_on_them() -> None:
+def test_spalls_are_reported_with_their_places_and_the_note_on_them() -> None:
     spalls = [{"start": place, "time": 4.393e-4} for place in ([0.906, 0.909], [1.0, 1.0])]
-    told = outcome(spalls, "they multiply")
-    assert told == ["spall at 0.906–0.909 m, 0.4393 ms", "spall at 1 m, 0.4393 ms", "they multiply"]
+    reported = outcome(spalls, "they multiply")
+    assert reported == ["spall at 0.906–0.909 m, 0.4393 ms", "spall at 1 m, 0.4393 ms", "they multiply"]
 
 
-@pytest.mark.parametrize(("count", "told", "last"), [(3, 3, "spall at"), (4, 4, "and 1 more"), (12, 4, "and 9 more")])
-def test_of_many_spalls_the_first_are_told(count: int, told: int, last: str) -> None:
+@pytest.mark.parametrize(("count", "lines", "last"), [(3, 3, "spall at"), (4, 4, "and 1 more"), (12, 4, "and 9 more")])
+def test_of_many_spalls_the_first_are_reported(count: int, lines: int, last: str) -> None:
     facts = outcome([{"start": [0.1 * n, 0.1 * n], "time": 1e-3} for n in range(count)])
     assert facts[:3] == [f"spall at {place} m, 1.0000 ms" for place in ("0", "0.1", "0.2")]
-    assert len(facts) == told
+    assert len(facts) == lines
     assert facts[-1].startswith(last)
 
 

@@ -57,18 +57,18 @@ def test_stresses_under_uniform_strain_and_energies_of_springs_and_bonds(simulat
     assert 0.0 < both[0] == pytest.approx(12.5 - bonds, rel=1e-9)
 
 
-def test_a_run_may_be_cut_anywhere_and_every_break_is_told_once(simulation, method: dict) -> None:
+def test_a_run_may_be_cut_anywhere_and_every_break_is_reported_once(simulation, method: dict) -> None:
     whole, run = (simulation(probes=(20, 35), method=method) for _ in range(2))
-    records, told = [], []
+    records, reported = [], []
     record = whole.advance(5)
     alive = {"peridynamics": 40 + 39 + 38}.get(method["type"], 40)
     assert part_of(whole).bond_updates == 5 * alive  # what pulls
     record = np.concatenate([record, whole.advance(65)])
     for steps in (1, 9, 30, *30 * [1]):  # whatever step it is that ends a block
         records.append(run.advance(steps))
-        told.append(run.system.take_cracks(run.state.step))
-        assert run.state.step - steps <= told[-1].step.min(initial=run.state.step - steps)
-        assert told[-1].step.max(initial=0) < run.state.step
+        reported.append(run.system.take_cracks(run.state.step))
+        assert run.state.step - steps <= reported[-1].step.min(initial=run.state.step - steps)
+        assert reported[-1].step.max(initial=0) < run.state.step
     assert np.array_equal(np.concatenate(records), record)
     assert np.array_equal(run.state.displacement, whole.state.displacement)
     assert whole.state.laws == run.state.laws
@@ -76,14 +76,14 @@ def test_a_run_may_be_cut_anywhere_and_every_break_is_told_once(simulation, meth
     assert len(run.system.take_cracks(run.state.step).step) == 0
     steps, pairs = part_of(whole).bonds.breaks(0)
     assert len(steps) > 0
-    assert np.array_equal(np.concatenate([cracks.step for cracks in told]), steps)
-    assert np.array_equal(np.concatenate([cracks.pair for cracks in told]), pairs)
-    for cracks in told:
+    assert np.array_equal(np.concatenate([cracks.step for cracks in reported]), steps)
+    assert np.array_equal(np.concatenate([cracks.pair for cracks in reported]), pairs)
+    for cracks in reported:
         np.testing.assert_allclose(cracks.position[:, 0], 0.025 * cracks.pair.mean(axis=1), rtol=8 * EPS)
         assert not cracks.shear.any()
 
 
-def test_laws_are_told_with_the_step_of_the_change(simulation) -> None:
+def test_laws_are_reported_with_the_step_of_the_change(simulation) -> None:
     for kind, name in (("switch", "peridynamics, m = 3"), ("patch", "finite differences and peridynamics, m = 3")):
         run = simulation(method=METHODS[kind])
         run.advance(70)

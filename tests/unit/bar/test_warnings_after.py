@@ -175,7 +175,7 @@ def test_a_bar_that_nothing_pulls_is_warned_of(spalling, tmp_path) -> None:
 
 
 @pytest.mark.parametrize("changes", [{"run.duration": 5e-4}, blow(5.0, 3)], ids=["too short", "too weak"])
-def test_what_was_known_before_the_run_is_not_told_again(run, changes: dict) -> None:
+def test_what_was_known_before_the_run_is_not_reported_again(run, changes: dict) -> None:
     assert run({"method": {"type": "finite_difference"}, **changes}) == []
 
 

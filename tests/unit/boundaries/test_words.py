@@ -3,7 +3,7 @@
 from dembound.boundaries.words import side_in_words
 
 
-def test_a_side_is_told_with_its_numbers() -> None:
+def test_a_side_is_reported_with_its_numbers() -> None:
     assert side_in_words({"type": "free", "particles": 3}) == "free"
     assert side_in_words({"type": "viscous", "beta_p": 0.9, "beta_s": 1.0, "half_mass": True}) == (
         "viscous, β_P = 0.9, β_S = 1, half mass"

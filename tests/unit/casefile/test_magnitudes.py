@@ -126,7 +126,7 @@ def test_a_stress_far_from_the_strength() -> None:
     assert against(1.2e12) == ["load.b: its pressure is 1.2e+06 MPa, 1,200,000 times s, 1 MPa: Pa and MPa?"]
 
 
-def test_stresses_are_told_in_mpa_unless_they_are_tiny() -> None:
+def test_stresses_are_reported_in_mpa_unless_they_are_tiny() -> None:
     assert [stress_in_words(stress) for stress in (8e6, -1.23456e9, 1e4, 9999.0, -1.0, 0.0)] == [
         *("8 MPa", "-1235 MPa", "0.01 MPa", "9999 Pa", "-1 Pa", "0 Pa")
     ]

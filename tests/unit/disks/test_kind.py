@@ -21,7 +21,7 @@ NICHE = {"name": "niche", "type": "rectangle", "corners": [1.0, 0.5, 2.0, 1.1], 
 """Two disks of the upper row."""
 
 
-def test_the_stage_before_an_excavation_is_told_of_the_disks_that_are_left(bar) -> None:
+def test_the_stage_before_an_excavation_is_reported_for_the_disks_that_are_left(bar) -> None:
     weak = {"material.law": "linearpbond", "material.pb_ten": 0.3 * 19 * 625.0 * 9.81 / 0.5}
     held = {"boundary.right": {"type": "fixed"}, "static.boundary.right": {"type": "fixed"}}
     case = bar({**HANGING, **held, **weak, "hole": [NICHE]})

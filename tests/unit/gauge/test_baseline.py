@@ -40,7 +40,7 @@ def test_what_is_added_is_found(changes, names):
     np.testing.assert_allclose(found.values, exact, atol=10.0 * QUIET)
 
 
-def test_mains_are_told_apart_in_long_records():
+def test_mains_are_distinguished_in_long_records():
     frequency = 60.0
     exact = added(offset(0.1), hum(0.05, frequency), hum(0.02, 3.0 * frequency), time=LONG_TIME)
     found = find_baseline(LONG_TIME, LONG_VALUES + exact + added(noise(0.01), time=LONG_TIME))

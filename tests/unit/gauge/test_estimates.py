@@ -87,7 +87,7 @@ def test_the_incident_pulse_is_what_comes_before_its_front_is_back(felt):
     assert pulse[alone <= back].tolist() == stress[time <= back].tolist()
     assert not pulse[alone < arrival].any()
     assert pulse.min() == stress.min()
-    alone, pulse = incident_pulse(time, stress, *BAR, end=300e-6)  # or up to an end that is told
+    alone, pulse = incident_pulse(time, stress, *BAR, end=300e-6)  # or up to an end that is given
     assert len(pulse) == np.count_nonzero(time <= 300e-6)
     assert alone[-1] == time[len(alone) - 1]
 
@@ -95,7 +95,7 @@ def test_the_incident_pulse_is_what_comes_before_its_front_is_back(felt):
 NOT_ENDED = "--pulse-end: give it, the pulse has not ended when its reflection is back at the gauge; or bending follows"
 
 
-def test_pulses_that_cannot_be_told_are_refused(felt):
+def test_pulses_that_cannot_be_found_are_refused(felt):
     time, stress = felt(rise=100e-6, fall=300e-6)
     with pytest.raises(CaseError, match=NOT_ENDED):
         incident_pulse(time, stress, *BAR)

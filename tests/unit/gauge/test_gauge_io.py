@@ -40,7 +40,7 @@ def record(felt, tmp_path):
     return path
 
 
-def test_a_record_knows_its_bar_unless_told_otherwise(record, felt):
+def test_a_record_knows_its_bar_unless_given_otherwise(record, felt):
     gauge = read_gauge(record, "near")
     np.testing.assert_array_equal(gauge.stress, 1e6 * felt()[1])
     assert (gauge.position, gauge.length, gauge.density) == (0.6, 0.99, 2620.0)
@@ -144,7 +144,7 @@ def test_what_does_not_move_with_the_free_end_is_refused(record, text, tmp_path)
     assert refused(text, "end") == "--free-end: is end, must be a text file of time (s) and velocity (m/s)"
     (tmp_path / "end.txt").write_text("0 1\n1 2\n")
     assert "contains 2 samples, must contain three or more" in refused(text, str(tmp_path / "end.txt"))
-    for loaded, told in (
+    for loaded, reported in (
         ("both", "both ends"),
         ("none", "neither end"),
         (None, "an end that the record does not name"),
@@ -153,7 +153,7 @@ def test_what_does_not_move_with_the_free_end_is_refused(record, text, tmp_path)
             file.attrs.pop("loaded", None)
             if loaded:
                 file.attrs["loaded"] = loaded
-        line = f"{record}: has a bar loaded at {told}, must be loaded at the left or the right"
+        line = f"{record}: has a bar loaded at {reported}, must be loaded at the left or the right"
         assert refused(record, "far") == line
         with pytest.raises(CaseError) as caught:
             read_gauge(record, "far")

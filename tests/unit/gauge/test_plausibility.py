@@ -75,7 +75,7 @@ def test_first_passages_give_the_speed():
     assert first_return(TIME, -values, 0.4, 1.0) is None
 
 
-def test_speeds_agree_within_ten_of_their_errors_and_large_ones_are_told():
+def test_speeds_agree_within_ten_of_their_errors_and_large_ones_are_reported():
     first = Estimate(1000.0, 2.0, 2)
     assert not list(contradicting_speeds(Estimate(1019.0, 0.0, 3), first))
     assert "2.1 % apart, must be within 2 %" in next(contradicting_speeds(Estimate(1021.0, 0.0, 3), first))

@@ -1,4 +1,4 @@
-"""Waves moved along a bar, and told apart by two gauges."""
+"""Waves moved along a bar, and distinguished by two gauges."""
 
 import numpy as np
 import pytest

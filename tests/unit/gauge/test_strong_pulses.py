@@ -118,7 +118,7 @@ def test_what_is_right_is_not_warned_of(changes, pulse, given, tmp_path):
         ((spike(60e-6, 0.25, 1e-6),), bell, "a spike or a burst of noise"),
     ],
 )
-def test_a_fault_of_the_record_is_told(changes, pulse, words, tmp_path):
+def test_a_fault_of_the_record_is_reported(changes, pulse, words, tmp_path):
     assert any(words in said for said in found(tmp_path / "strong.txt", changes, pulse).warnings)
 
 
@@ -135,7 +135,7 @@ def test_a_fault_of_the_record_is_told(changes, pulse, words, tmp_path):
         ((), BAR, {}, 30.0, ["the nominal strength is 15.7", "the attenuated strength is 15.7"]),
     ],
 )
-def test_an_option_that_cannot_be_is_told(changes, bar, given, scale, words, tmp_path):
+def test_an_option_that_cannot_be_is_reported(changes, bar, given, scale, words, tmp_path):
     warnings = found(tmp_path / "strong.txt", changes, bar=bar, given=GIVEN | given, scale=scale).warnings
     assert len(warnings) == len(words), warnings
     assert all(word in said for word, said in zip(words, warnings, strict=True))
@@ -167,7 +167,7 @@ def test_a_spall_is_compared_with_the_first_crack_of_results(spall, count):
 
 
 @pytest.mark.parametrize(("apart", "count"), [(0.96, 0), (1.04, 0), (0.94, 1), (1.06, 1)])
-def test_a_modulus_some_way_from_density_and_speed_is_told(apart, count):
+def test_a_modulus_some_way_from_density_and_speed_is_reported(apart, count):
     modulus = apart * DENSITY * SPEED**2
     assert len(list(differing_modulus(modulus, DENSITY, SPEED))) == count
     assert not list(differing_modulus(modulus, None, SPEED))

@@ -234,7 +234,7 @@ def test_damage_of_finite_differences() -> None:
     assert bonds.damage(6)[[0, 1, 2]].tolist() == pytest.approx([1.0, 1.0 / 3.0, 0.0], abs=4 * EPS)
 
 
-def test_breaks_are_told_in_the_order_of_their_steps() -> None:
+def test_breaks_are_reported_in_the_order_of_their_steps() -> None:
     bonds = zoned(3, (10, 31))
     bonds.bond_broken[2, 15], bonds.bond_broken[0, 12] = 7, 3
     bonds.spring_broken[2] = 5

@@ -188,7 +188,7 @@ def test_a_speed_ends_the_run_before_its_energy_is_no_number(spalling) -> None:
         simulation.advance(1)
 
 
-def test_local_damping_is_the_materials_unless_told_otherwise(bar) -> None:
+def test_local_damping_is_the_materials_unless_given_otherwise(bar) -> None:
     body = {"packing.size": [0.5, 0.5], "monitor": [], "motion.held": [], "boundary": {}, "wave": {}}
     scene = build(bar({**body, "material.damp": 0.5}))
     load = MASS * np.array([[1.0], [0.0], [0.0]])

@@ -25,7 +25,7 @@ def test_same_seed_same_bits_another_seed_another_brick(random_brick, recipe):
     assert not np.array_equal(other.positions[:50], random_brick.positions[:50])
 
 
-def test_the_brick_has_the_stress_asked_for_and_a_state_that_is_told(dense_brick, recipe):
+def test_the_brick_has_the_stress_asked_for_and_a_state_that_is_reported(dense_brick, recipe):
     forces = pair_forces(dense_brick)
     area = np.prod(dense_brick.size)
     stress = -np.einsum("ba,bc->ac", forces, dense_brick.vectors) / area

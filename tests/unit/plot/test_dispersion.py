@@ -45,7 +45,7 @@ def test_simulated_points_stand_at_their_frequencies_and_phase_velocities():
     np.testing.assert_allclose(speeds.get_ydata(), 0.96, rtol=1e-14)
 
 
-def test_lattices_are_told_apart_in_words_and_below_each_other():
+def test_lattices_are_distinguished_in_words_and_below_each_other():
     assert name(COARSE) == "horizon 3, Δx = 10 mm, Δt = 1 µs"
     assert name(UNSTABLE) == "horizon 1, Δx = 5 mm, Δt = 3 µs, unstable"
     assert name(Lattice(2, 0.01, 0.0, 2500.0, (0.25, 0.75))) == "horizon 2 (0.25/0.75), Δx = 10 mm, exact in time"

@@ -50,7 +50,7 @@ def test_a_legend_has_as_many_columns_as_the_figure_is_wide_enough_for(letters, 
     assert letters == 90 or legend.get_window_extent().width <= figure.bbox.width
 
 
-def test_times_of_less_than_a_tenth_of_a_second_are_told_in_milliseconds_and_decades_as_powers():
+def test_times_of_less_than_a_tenth_of_a_second_are_reported_in_milliseconds_and_decades_as_powers():
     assert [decade(value) for value in (1.0, 1e-3, 1e12)] == ["10⁰", "10⁻³", "10¹²"]
     assert [time_unit(last).label for last in (0.0, 0.0999, 0.1, 20.0)] == ["time (ms)"] * 2 + ["time (s)"] * 2
     assert [0.05 / time_unit(last).seconds for last in (0.05, 0.5)] == [50.0, 0.05]

@@ -88,8 +88,8 @@ def opened(pushed_runs, tmp_path_factory) -> tuple[dict[int, dict], str]:
     ended = subprocess.run(
         [BROWSER, *options, profile, *patience], capture_output=True, text=True, timeout=120, check=True
     )
-    (told,) = re.findall(r'<pre id="found">(.*?)</pre>', ended.stdout, flags=re.DOTALL)
-    found = [json.loads(line) for line in unescape(told).splitlines()]
+    (output,) = re.findall(r'<pre id="found">(.*?)</pre>', ended.stdout, flags=re.DOTALL)
+    found = [json.loads(line) for line in unescape(output).splitlines()]
     return {each["width"]: each for each in found}, ended.stderr
 
 

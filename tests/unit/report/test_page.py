@@ -272,8 +272,8 @@ def test_charts_have_three_numbers_at_any_size():
     low = rng.choice([-1.0, 0.0, 1.0, 1e3], 2000) * rng.uniform(0.0, 1.0, 2000)
     ends = [[float(a), float(a + b)] for a, b in zip(low, 10.0 ** rng.uniform(-6.0, 4.0, 2000), strict=True)]
     asked = f"{function}console.log(JSON.stringify({json.dumps(ends)}.map((e) => ticks(e[0], e[1], 2.25))))"
-    told = subprocess.run(["node", "-e", asked], capture_output=True, text=True, check=True).stdout
-    for (first, last), numbers in zip(ends, json.loads(told), strict=True):
+    output = subprocess.run(["node", "-e", asked], capture_output=True, text=True, check=True).stdout
+    for (first, last), numbers in zip(ends, json.loads(output), strict=True):
         slack = 1e-6 * (last - first)
         assert 3 <= len(numbers) <= 8
         assert first - slack <= numbers[0]

@@ -34,7 +34,7 @@ def test_the_dataset_is_named_whose_checksum_does_not_fit(small_run, tmp_path):
     assert refused(tmp_path, content) == f"is damaged in {VELOCITY} (its checksum does not fit)"
 
 
-def test_damaged_groups_are_told_from_damaged_numbers(small_run, tmp_path):
+def test_damaged_groups_are_distinguished_from_damaged_numbers(small_run, tmp_path):
     with h5py.File(small_run) as file:
         place = h5py.h5o.get_info(file["snapshots/0001"].id).addr
     content = with_byte_changed(small_run.read_bytes(), place + 8)

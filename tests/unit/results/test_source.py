@@ -67,7 +67,7 @@ def test_a_wave_file_that_has_changed_since_the_run_began_is_named(tmp_path) -> 
     wave.write_text("0 0\n1e-5 2\n2e-5 0\n")
     (said,) = changes_since(folder)
     assert said.startswith(f"{wave}: has changed since the run began; its values as they were go on")
-    case.write_text(case.read_text().replace("records/hit.txt", "other.txt"))  # both are told
+    case.write_text(case.read_text().replace("records/hit.txt", "other.txt"))  # both are reported
     assert len(changes_since(folder)) == 2
     os.remove(wave)
     assert len(changes_since(folder)) == 1

@@ -34,11 +34,11 @@ def test_an_infinite_step_limit_is_null(bar, tmp_path) -> None:
 
 
 def test_energies_are_those_of_the_last_entry_and_the_rate_that_of_stepping_alone(bar, tmp_path) -> None:
-    told = summary_of(plan(bar()), tmp_path / "run.h5", 60, 6)
-    assert told["seconds"] == SECONDS
-    assert told["wall_time"] == 2.75
-    assert told["particle_steps_per_second"] == 40 * 60 / 2.0
-    found = told["energy"]
+    summary = summary_of(plan(bar()), tmp_path / "run.h5", 60, 6)
+    assert summary["seconds"] == SECONDS
+    assert summary["wall_time"] == 2.75
+    assert summary["particle_steps_per_second"] == 40 * 60 / 2.0
+    found = summary["energy"]
     assert found["time"] == pytest.approx(50 / 60 * 60 * plan(bar()).time_step, rel=1e-12)
     stored = found["kinetic"] + found["contact"] + found["bond"] + found["stepping"]
     # 60 steps of sums of 40 particles, each rounded, beside the work of the whole

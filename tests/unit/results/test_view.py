@@ -1,4 +1,4 @@
-"""Disks are shown in their true size and place, and a machine that cannot draw is told so."""
+"""Disks are shown in their true size and place, and a machine that cannot draw gets a message."""
 
 import json
 import subprocess

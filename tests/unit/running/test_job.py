@@ -175,7 +175,7 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
 
 
 class Heard(Progress):
-    """Writes down what it is told."""
+    """Writes down all reports."""
 
     def __init__(self) -> None:
         self.static: list[tuple[int, float]] = []
@@ -192,7 +192,7 @@ class Heard(Progress):
         self.blocks.append((run.state.step, steps))
 
 
-def test_warnings_are_told_before_and_after_the_run_and_kept_and_progress_after_every_block(bar, tmp_path) -> None:
+def test_warnings_are_reported_before_and_after_the_run_and_kept_and_progress_after_every_block(bar, tmp_path) -> None:
     heard = Heard()
     burst = {"type": "sine_burst", "amplitude": 0.5, "frequency": 100.0, "cycles": 4}
     folder = run_case(bar({"wave.pulse": burst, "run.duration": 0.03}), tmp_path, heard)

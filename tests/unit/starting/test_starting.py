@@ -48,13 +48,13 @@ def test_it_is_checked_without_a_warning_starts_and_takes_less_than_a_minute(nam
         simulation.run(5)
         assert simulation.state.step == 5
 
-    told = loads(re.sub(r"^# (?=\w+ = |\[)", "", text, flags=re.MULTILINE))  # with keys that were commented out
-    assert told.text != case.text
-    assert all(told.side(side) == case.side(side) for side in SIDES)
+    edited = loads(re.sub(r"^# (?=\w+ = |\[)", "", text, flags=re.MULTILINE))  # with keys that were commented out
+    assert edited.text != case.text
+    assert all(edited.side(side) == case.side(side) for side in SIDES)
     own = {"bar", "boundary"}  # a bar's section is None where it is left out
-    assert all(told.tables[key] == case.tables[key] for key in case.tables.keys() - own)
+    assert all(edited.tables[key] == case.tables[key] for key in case.tables.keys() - own)
     if isinstance(case, BarCase):
-        assert (told.bar.area, told.bar.attenuation) == (case.bar.area, case.bar.attenuation)
+        assert (edited.bar.area, edited.bar.attenuation) == (case.bar.area, case.bar.attenuation)
 
 
 def test_the_rock_bar_first_spalls_where_and_when_a_triangle_makes_it() -> None:

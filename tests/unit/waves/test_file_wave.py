@@ -62,7 +62,7 @@ def test_frequencies_do_not_suffer_from_a_long_line(tmp_path: Path) -> None:
     wave = record(tmp_path, "\n".join(f"{a!r} {b!r}" for a, b in zip(t.tolist(), ricker.tolist(), strict=True)))
 
     # of Ricker's wavelet |V| ~ x² exp(1 − x²), x = F/f, falls below 1 % at 2.764, and f·|V| is largest at x² = 3/2.
-    # Bins are 1/8 Hz, and of |V| 1e-8 is lost at either end; the samples' step is told by most of them, not by the last
+    # Bins are 1/8 Hz, and of |V| 1e-8 is lost at either end; the step is given by most samples, not by the last
     assert wave.dominant_frequency() == pytest.approx(np.sqrt(1.5) * frequency, abs=0.125)
     assert wave.highest_frequency() == pytest.approx(2.764 * frequency, abs=0.125)
 

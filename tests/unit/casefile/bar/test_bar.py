@@ -192,7 +192,7 @@ def test_no_load_pushes_an_end_whose_motion_is_prescribed() -> None:
         assert loads(changed("nodes = 3", 'side = "right"', text)).load[0].side == "right"
 
 
-def test_tables_of_disks_are_told_apart_from_unknown_ones() -> None:
+def test_tables_of_disks_are_distinguished_from_unknown_ones() -> None:
     for table in ("[packing]", "[[hole]]"):
         (line,) = problems_of(f"{GOOD}{table}\n")
         assert line == (

@@ -66,7 +66,7 @@ def test_a_hole_beside_the_scene_is_refused() -> None:
             "hole[1, tunnel]: lies outside the scene, [0, 0] to [10, 5] (m)"
         ]
     assert problems(hole('type = "circle"\ncentre = [10.9, 2.5]\nradius = 1.0')) == []  # it may reach beyond
-    # a scene of many bricks is told in round numbers
+    # a scene of many bricks is reported in round numbers
     odd = BODY.replace("size = [10.0, 5.0]", "bricks = [3, 1]").replace("0.25", "0.05")
     assert problems_of(odd + hole())[0].endswith("lies outside the scene, [0, 0] to [0.3, 0.1] (m)")
 

@@ -96,7 +96,7 @@ def test_a_steady_load_is_held_by_any_support_along_it() -> None:
     for tables in ("", side("bottom", "free"), side("left", "roller"), UPRIGHT_PERIODIC):
         assert problems("[static]\n", tables, GRAVITY) == [line]
     assert problems(STRESS, TAP) == []  # what comes and goes needs no hold
-    # a held axis is told of once
+    # a held axis is reported once
     assert problems(STRESS, GRAVITY, '[motion]\nheld = ["y"]\n') == [
         "load[1, gravity].acceleration: acts along y, which motion.held holds for every particle"
     ]

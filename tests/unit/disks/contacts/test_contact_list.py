@@ -139,7 +139,7 @@ def test_the_constants_do_not_grow_from_search_to_search(contacts: ContactList) 
         assert len(contacts.arrays.constants) == own + len(np.unique(contacts.arrays.contact_type[others]))
 
 
-def test_cracks_are_told_once_and_in_the_order_they_happened(scene) -> None:
+def test_cracks_are_reported_once_and_in_the_order_they_happened(scene) -> None:
     contacts = list_of(scene())
     pairs, moved = contacts.arrays, {step: shaken(contacts, 0.01, step) for step in (7, 9, 12)}
     chosen = np.flatnonzero(pairs.state == INTACT)[[40, 3, 20]]

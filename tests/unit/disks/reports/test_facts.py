@@ -94,7 +94,7 @@ SLIP = "contacts slip at 0.5 of their normal force"
         ({"contact_share": 1.0, "fric": 0.5}, UNTIL, f"no bonds; {SLIP}", "0"),
     ],
 )
-def test_the_law_is_told_with_its_strength_and_its_stiffness_in_tension(bar, material, law, strength, share) -> None:
+def test_the_law_is_reported_with_strength_and_stiffness_in_tension(bar, material, law, strength, share) -> None:
     case = bar({f"material.{key}": value for key, value in {"law": "linearpbond", **material}.items()})
     facts = facts_of(case)
 
@@ -129,7 +129,7 @@ def test_a_locked_in_stress_stands_beside_the_strength(bar, strength: dict, more
     assert "locked-in stress" not in facts_of(bar(without))
 
 
-def test_loads_and_the_static_stage_are_told(bar) -> None:
+def test_loads_and_the_static_stage_are_reported(bar) -> None:
     weight = {"name": "weight", "acceleration": [10.0, 0.0]}
     tap = {"name": "tap", "force": [1e6, 0.0], "region": [0.0, 0.0, 1.0, 1.0], "wave": "pulse"}
     static = {"stress": [-1e6, -2e6, 0.0], "boundary": {"left": {"type": "fixed"}}}
@@ -144,7 +144,7 @@ def test_loads_and_the_static_stage_are_told(bar) -> None:
     assert Disks().not_estimated(case) == ["the static stage"]
 
 
-def test_holes_are_told_with_what_they_leave(bar) -> None:
+def test_holes_are_reported_with_what_they_leave(bar) -> None:
     niche = {"name": "niche", "type": "rectangle", "corners": [6.0, 0.5, 8.0, 1.1]}
     gap = {"name": "gap", "type": "rectangle", "corners": [8.9, 0.5, 9.4, 1.1], "stage": "after"}
     facts = facts_of(bar({"static": {"stress": [0.0, 0.0, 0.0]}, "monitor": [], "hole": [niche, gap]}))

@@ -44,7 +44,7 @@ def test_facts_of_the_waves() -> None:
         ({"incident.point": [1.0, -2.0]}, ("at (1, -2) m",), ""),
     ],
 )
-def test_other_waves_are_told(changes, wave: tuple[str, ...], reflected: str) -> None:
+def test_other_waves_are_reported(changes, wave: tuple[str, ...], reflected: str) -> None:
     facts = dict(incident_facts(build(small(CASE, changes=changes))))
     assert all(words in facts["incident wave"] for words in wave)
     assert reflected in facts["reflected waves"]

@@ -3,7 +3,7 @@
 from dembound.disks.reports.outcome import disk_outcome
 
 
-def test_only_what_applies_is_told() -> None:
+def test_only_what_applies_is_reported() -> None:
     elastic = {"static": None, "has_history": False, "laws": [{"law": "elastic", "from": 0.0}]}
     elastic |= {"reduced": [], "not_reduced": [], "load_factor": None}
     quiet = {"has_history": True, "cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}

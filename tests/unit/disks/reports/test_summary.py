@@ -33,7 +33,7 @@ def test_a_side_is_described_by_its_particles_and_its_keys(bar) -> None:
     assert (found["distance_min"], found["distance_max"]) == pytest.approx((9.75, np.hypot(9.75, 0.5)))
 
 
-def test_the_static_stage_is_told(bar) -> None:
+def test_the_static_stage_is_reported(bar) -> None:
     weight = {"name": "weight", "acceleration": [9.81, 0.0]}
     case = bar({"load": [weight], "static": {"ratio": 1e-6, "boundary": {"left": {"type": "fixed"}}}})
     scene = build(case)

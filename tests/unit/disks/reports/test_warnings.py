@@ -106,12 +106,12 @@ def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
         assert [line for line in lines if line.startswith("hole")] == said
 
 
-@pytest.mark.parametrize(("share", "told"), [(0.85, True), (1.0, False)])
-def test_a_speed_of_s_waves_that_the_packing_lacks_is_warned_of(share: float, told: bool) -> None:
+@pytest.mark.parametrize(("share", "reported"), [(0.85, True), (1.0, False)])
+def test_a_speed_of_s_waves_that_the_packing_lacks_is_warned_of(share: float, reported: bool) -> None:
     """A square lattice of p_wave_speed 1000 m/s with springs of a quarter in shear has S waves of 500 m/s."""
     material = {"density": 2500.0, "p_wave_speed": 1000.0, "s_wave_speed": share * 500.0}
     ground = {"packing": {"pattern": "A", "size": [20.0, 10.0], "radius": 0.5}, "material": material}
     lines = list(_s_speed_of_the_packing(build(small({**ground, "run": {"duration": 0.01}}))))
-    assert [line[:80] for line in lines] == told * [
+    assert [line[:80] for line in lines] == reported * [
         "material.s_wave_speed: is 425 m/s, S waves along x run at 500 m/s in this packing"[:80]
     ]

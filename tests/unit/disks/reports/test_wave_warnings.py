@@ -200,7 +200,7 @@ HOLDS_Y = {"motion.held": ["y", "rotation"]}
     ],
     ids=str,
 )
-def test_disks_that_do_not_turn_are_told_of_where_the_body_shears(bar, changes: dict, axis: str | None) -> None:
+def test_disks_that_do_not_turn_are_warned_of_where_the_body_shears(bar, changes: dict, axis: str | None) -> None:
     # on this lattice S waves have c_p/√2 = 707 m/s with rotations held, and 500 m/s without
     found = [line for line in warned(bar(SLOW | changes)) if line.startswith("motion.held")]
     speeds = "run at 707.1 m/s, beside P waves of 1000 m/s; where disks turn they have 500 m/s, 29 % less"

@@ -1,4 +1,4 @@
-"""Mean stress of blocks where it is known by hand, which blocks there are, and what is told of their differences."""
+"""Mean stress of blocks where it is known by hand, which blocks there are, and the reports on their differences."""
 
 import numpy as np
 import pytest
@@ -85,7 +85,7 @@ def test_blocks_move_and_grow_with_the_sides(body) -> None:
         assert now.low[axis] == pytest.approx(begin, rel=1e-12)
 
 
-def test_the_worst_block_is_told_with_its_place_and_holes_apart(body) -> None:
+def test_the_worst_block_is_reported_with_its_place_and_holes_apart(body) -> None:
     hole = {"name": "hole", "type": "circle", "centre": [4.0, 4.0], "radius": 1.0}
     scene = body(24.0, 14.0, hole=[hole])
     asked = np.array([-3.0, -5.0, 0.0]) * 1e6

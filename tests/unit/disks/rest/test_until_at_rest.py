@@ -65,9 +65,9 @@ def test_a_stalled_stage_names_who_lacks_most_and_how_many_lack_half(bar) -> Non
     # of two that are equally bad the first is named; they have moved by far less than a centimetre
     first, second = sorted((node[1.75, 1.25], node[0.25, 1.25]))
     third = f"particle {first} at ({body.positions[first, 0]:.2f}, 1.25) m: ({unbalanced[first, 0]:.3g}, 0) N"
-    told = str(caught.value).splitlines()
-    assert told[0].endswith("; broken bonds: 0")
-    assert told[1:] == [
+    reported = str(caught.value).splitlines()
+    assert reported[0].endswith("; broken bonds: 0")
+    assert reported[1:] == [
         f"unbalanced force on particle {node[1.75, 1.75]} at (1.75, 1.75) m: (4, 0) N",
         f"unbalanced force on particle {node[1.75, 0.75]} at (1.75, 0.75) m: (3, 0) N",
         f"unbalanced force on {third}",
