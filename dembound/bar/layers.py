@@ -195,15 +195,15 @@ class LayerTie(Tie):
         """The arrays for the kernels."""
         return self._bundle._replace(line=np.searchsorted(supported, self._bundle.inner))
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """Motion of the layers' nodes, and forces of their bonds."""
         arrays = self._bundle
         return {name: getattr(arrays, name) for name in ("velocity", "displacement", "force", "through")}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        for name, values in self.memory().items():
-            values[...] = memory[name]
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        for name, values in self.saved_arrays().items():
+            values[...] = saved[name]
 
 
 def _laid_out(layers: Sequence[EndLayer], count: int, step: float) -> BarLayers:

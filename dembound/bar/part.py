@@ -137,20 +137,20 @@ class BarPart(Part):
         bar.stresses(displacement[0], self._arrays, stress)
         return stress
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """Springs, bonds and zones, the method in use, and the counters."""
         return {
             "law": np.array(self.law_name),
             "bond_updates": np.array(self.bond_updates),
             "unstable": np.array(self._unstable),
             "reported": np.array(self._reported),
-            **self.bonds.memory(),
+            **self.bonds.saved_arrays(),
         }
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        self.law_name = str(memory["law"])
-        self.bond_updates, self._reported = int(memory["bond_updates"]), int(memory["reported"])
-        self._unstable = bool(memory["unstable"])
-        self.bonds.recall(memory)
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self.law_name = str(saved["law"])
+        self.bond_updates, self._reported = int(saved["bond_updates"]), int(saved["reported"])
+        self._unstable = bool(saved["unstable"])
+        self.bonds.restore(saved)
         self._arrays = self._lay()

@@ -217,17 +217,17 @@ class Bonds:
         first = self.opening["first"]
         return self.opening["began"], np.stack([first, first + np.maximum(self.opening["row"] + 1, 1)], axis=1)
 
-    def memory(self) -> dict[str, np.ndarray]:
+    def saved_arrays(self) -> dict[str, np.ndarray]:
         """All arrays that change during a run, by name."""
         kept = {name: getattr(self, name) for name in _EVOLVING}
-        return kept | self.opening.memory() | {"zones": np.array(self.zones, dtype=np.int64).reshape(-1, 2)}
+        return kept | self.opening.saved_arrays() | {"zones": np.array(self.zones, dtype=np.int64).reshape(-1, 2)}
 
-    def recall(self, memory: Mapping[str, np.ndarray]) -> None:
-        """Restore the arrays returned by `memory` for the same bar."""
+    def restore(self, saved: Mapping[str, np.ndarray]) -> None:
+        """Restore the arrays returned by `saved_arrays` for the same bar."""
         for name in _EVOLVING:
-            getattr(self, name)[...] = memory[name]
-        self.opening.recall(memory)
-        self.zones = [(int(first), int(last)) for first, last in memory["zones"]]
+            getattr(self, name)[...] = saved[name]
+        self.opening.restore(saved)
+        self.zones = [(int(first), int(last)) for first, last in saved["zones"]]
 
     def arrays(self, supported: np.ndarray, step: float, through: np.ndarray | None = None) -> BarBonds:
         """All arrays for the kernels; supported (k,) are nodes that the support table moves; step Δt in s.

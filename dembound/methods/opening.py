@@ -78,16 +78,16 @@ class Opening:
         springs[first[row < 0]] = values[row < 0]
         bonds[row[row >= 0], first[row >= 0]] = values[row >= 0]
 
-    def memory(self) -> dict[str, np.ndarray]:
+    def saved_arrays(self) -> dict[str, np.ndarray]:
         """All arrays that change during a run, by name."""
         return {f"opening_{name}": self[name] for name in COLUMNS} | {"opening_below": self.bundle.below}
 
-    def recall(self, memory: Mapping[str, np.ndarray]) -> None:
-        """Restore the arrays returned by `memory` for the same bar."""
-        self.bundle.listed[0] = len(memory["opening_row"])
+    def restore(self, saved: Mapping[str, np.ndarray]) -> None:
+        """Restore the arrays returned by `saved_arrays` for the same bar."""
+        self.bundle.listed[0] = len(saved["opening_row"])
         for name in COLUMNS:
-            self[name][:] = memory[f"opening_{name}"]
-        self.bundle.below[...] = memory["opening_below"]
+            self[name][:] = saved[f"opening_{name}"]
+        self.bundle.below[...] = saved["opening_below"]
 
 
 def _law(part: Range) -> list[float]:

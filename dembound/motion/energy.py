@@ -208,7 +208,7 @@ class Ledger(Tracker):
         """Energies of every side, (k, s, 3), in the order of `SideEntry`."""
         return np.array(self.sides).reshape(len(self.sides), len(self.side_names), 3)
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """Entries, the supplied energies, and an entry that has begun."""
         begun = self._begun or _Begun(np.zeros((3, 0)), np.zeros((3, 0)), 0.0, 0)
         return {
@@ -225,15 +225,15 @@ class Ledger(Tracker):
             "laws": np.array(begun.laws),
         }
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        self.due = int(memory["due"])
-        self.entries = [Entry(*row) for row in memory["entries"].tolist()]
-        self.sides = list(memory["sides"])
-        self._first = tuple(memory["first"].tolist())
-        self._came, self._most = float(memory["came"]), tuple(memory["most"].tolist())
-        begun = _Begun(memory["u"].copy(), memory["before"].copy(), float(memory["balancing"]), int(memory["laws"]))
-        self._begun = begun if memory["has_begun"] else None
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self.due = int(saved["due"])
+        self.entries = [Entry(*row) for row in saved["entries"].tolist()]
+        self.sides = list(saved["sides"])
+        self._first = tuple(saved["first"].tolist())
+        self._came, self._most = float(saved["came"]), tuple(saved["most"].tolist())
+        begun = _Begun(saved["u"].copy(), saved["before"].copy(), float(saved["balancing"]), int(saved["laws"]))
+        self._begun = begun if saved["has_begun"] else None
         self._drop_end()
 
     @property

@@ -42,12 +42,12 @@ class Part(ABC):
         """The bonds that broke since this was last called; steps : number of steps done."""
 
     @abstractmethod
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name."""
 
     @abstractmethod
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
 
     def blown_up(self, velocity: np.ndarray) -> int | None:
         """The node of an instability that adds energy, if the part can detect it; velocity (3, slots) m/s."""
@@ -77,12 +77,12 @@ class Tie(ABC):
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """Arrays of the part for the kernels; supported (s,) are all nodes of the support table, ascending."""
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name; by default none."""
         return {}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         return
 
 
@@ -190,15 +190,15 @@ class System:
         """The parts and ties."""
         return [*self.parts, *self.ties]
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
-        memory: dict[str, np.ndarray] = {"load": self.load, "steady": self.steady}
+        saved: dict[str, np.ndarray] = {"load": self.load, "steady": self.steady}
         for each in self._remembering:
-            memory |= {f"{each.name}/{name}": values for name, values in each.memory().items()}
-        return memory
+            saved |= {f"{each.name}/{name}": values for name, values in each.saved_arrays().items()}
+        return saved
 
-    def recall(self, memory: Mapping[str, Any]) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        self.load, self.steady = memory["load"].copy(), memory["steady"].copy()
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self.load, self.steady = saved["load"].copy(), saved["steady"].copy()
         for each in self._remembering:
-            each.recall(within(memory, each.name))
+            each.restore(within(saved, each.name))

@@ -104,11 +104,11 @@ class Silence(Tracker):
         if since > self._hold:
             run.stopped = True
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """The largest speed of every monitor so far, and the last step at which one was loud."""
-        return {**super().memory(), "peaks": self._peaks, "loud": np.array(self._loud)}
+        return {**super().saved_arrays(), "peaks": self._peaks, "loud": np.array(self._loud)}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory`."""
-        super().recall(memory)
-        self._peaks, self._loud = memory["peaks"].copy(), int(memory["loud"])
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays`."""
+        super().restore(saved)
+        self._peaks, self._loud = saved["peaks"].copy(), int(saved["loud"])

@@ -18,11 +18,11 @@ WORK = ("outside", "damping", "friction", "crack", "law_switch", "turning", "clo
 class Owner(Protocol):
     """An object that contains a part of the state: a system of parts, a tracker."""
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name."""
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
 
 
 @dataclass
@@ -98,7 +98,7 @@ class State:
         arrays["laws/name"] = np.array([name for name, _ in self.laws])
         arrays["laws/step"] = np.array([step for _, step in self.laws], dtype=np.int64)
         for owner, kept in self.owners.items():
-            arrays |= {f"{owner}/{name}": values for name, values in kept.memory().items()}
+            arrays |= {f"{owner}/{name}": values for name, values in kept.saved_arrays().items()}
         return {name: np.array(values) for name, values in arrays.items()} if copies else arrays
 
     def take(self, arrays: Arrays) -> None:
@@ -111,7 +111,7 @@ class State:
         self.step = int(arrays["step"])
         self.laws = list(zip(arrays["laws/name"].tolist(), arrays["laws/step"].tolist(), strict=True))
         for owner, kept in self.owners.items():
-            kept.recall(within(arrays, owner))
+            kept.restore(within(arrays, owner))
 
 
 _ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity", "supplied", "side_work")

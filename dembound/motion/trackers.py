@@ -58,13 +58,13 @@ class Tracker(ABC):
     def observe(self, run: Run, record: np.ndarray) -> None:  # noqa: B027  # few trackers use it
         """Receive the record of the probes for the steps since the last call, see `Simulation.advance`."""
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name."""
         return {"due": np.array(self.due)}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        self.due = int(memory["due"])
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self.due = int(saved["due"])
 
 
 class Every(Tracker):

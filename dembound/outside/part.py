@@ -73,15 +73,15 @@ class GridPart(Part):
         """Stress (m, 3) σ_xx, σ_yy, σ_xy, tension positive."""
         return {"stress": (stress(self.body, displacement[:2, self.nodes]), "Pa")}
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """The convolution variables of the layers."""
         absorber = self._law.absorber
         return {"strain_memory": absorber.strain_memory, "force_memory": absorber.force_memory}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        for name, values in self.memory().items():
-            values[:] = memory[name]
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        for name, values in self.saved_arrays().items():
+            values[:] = saved[name]
 
 
 def stress(body: GridBody, displacement: np.ndarray) -> np.ndarray:

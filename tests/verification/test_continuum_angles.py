@@ -93,8 +93,8 @@ def _forces(part: GridPart, u: np.ndarray, row: Row) -> np.ndarray:
     body = Body(np.zeros(layout.count), np.zeros(layout.count), np.ones(3), np.zeros((3, 0)), 0.0, row.step)
     supported, found = np.zeros(0, dtype=np.int64), []
     for quarter in (1.0, 1.0j):  # a motion a quarter of a period later gives the imaginary part
-        for memory in part.memory().values():
-            memory[:] = 0.0
+        for saved in part.saved_arrays().values():
+            saved[:] = 0.0
         for step in range(-1000, 1):
             now = quarter * u * np.exp(-1j * row.frequency * row.step * step)
             at, rate = (aligned_zeros(3, layout.count) for _ in range(2))

@@ -71,7 +71,7 @@ def test_pressure_passes_through_an_open_crack_that_is_closed():
             bundle.limit[0], bundle.apart[0], bundle.furthest[0] = 2e-5, 2e-4, 3e-4
             bundle.listed[0] = 1
             part.bonds.spring[50], part.bonds.spring_broken[50] = 0.0, 0
-        part.recall(part.memory())
+        part.restore(part.saved_arrays())
         records.append(simulation.advance(100)[:, :, 3])
     whole, cracked = records
     assert whole.max() > 0.9

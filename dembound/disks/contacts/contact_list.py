@@ -32,7 +32,7 @@ _HISTORY = ("state", "shear", "slip", "closed", "cracked")
 """The arrays of the pairs' history variables, in the order of `ContactHistory`."""
 
 _KEPT = ("first", "second", "contact_type", *_HISTORY)
-"""The arrays of the pairs, besides their forces, that memory() returns."""
+"""The arrays of the pairs, besides their forces, that saved_arrays() returns."""
 
 
 class ContactList(PairList):
@@ -253,23 +253,23 @@ class ContactList(PairList):
         """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""
         return self._counted(acting(self.arrays, geometry)[self.live])
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """The pairs with their history, and cracks not yet recorded, for a checkpoint."""
         self.note_cracks()
-        memory = {name: self.of(name) for name in _KEPT} | {"force": self.force}
-        memory |= {"image": self.image, "constants": self._constants, "origin": self.origin}
-        memory["keeps_slip"] = np.array(self.keeps_slip)
+        saved = {name: self.of(name) for name in _KEPT} | {"force": self.force}
+        saved |= {"image": self.image, "constants": self._constants, "origin": self.origin}
+        saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
-        return memory | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
+        return saved | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        self._constants = memory["constants"]
-        self._set_origin(memory["origin"][:, self._slot - self._slots.start])
-        self.keeps_slip = bool(memory["keeps_slip"])
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self._constants = saved["constants"]
+        self._set_origin(saved["origin"][:, self._slot - self._slots.start])
+        self.keeps_slip = bool(saved["keeps_slip"])
         begin, node = self.nodes.start, self.layout.node
-        first, second = (node[memory[name]] - begin for name in ("first", "second"))
-        pairs = Pairs(first, second, memory["image"], memory["contact_type"])
-        self._list(pairs, ContactHistory(*(memory[name] for name in _HISTORY)))
-        self.arrays.force[:, self.live] = memory["force"].T
-        self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]
+        first, second = (node[saved[name]] - begin for name in ("first", "second"))
+        pairs = Pairs(first, second, saved["image"], saved["contact_type"])
+        self._list(pairs, ContactHistory(*(saved[name] for name in _HISTORY)))
+        self.arrays.force[:, self.live] = saved["force"].T
+        self._cracks = [Cracks(*(saved[f"crack_{field.name}"] for field in fields(Cracks)))]

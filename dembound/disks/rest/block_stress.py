@@ -153,13 +153,13 @@ class Uniformity:
             near_holes=float(off[near].max()) if near.any() else float("nan"),
         )
 
-    def memory(self) -> Arrays:
-        """All numbers as arrays, from which `recalled` restores the object."""
+    def saved_arrays(self) -> Arrays:
+        """All numbers as arrays, from which `restored` restores the object."""
         return {field.name: np.array(getattr(self, field.name)) for field in fields(self)}
 
     @classmethod
-    def recalled(cls, memory: Arrays) -> Self:
-        """The uniformity restored from the arrays returned by `memory`."""
-        block, place = (memory[name].copy() for name in ("block", "place"))
-        numbers = {name: float(memory[name]) for name in ("deviation", "packing", "beyond", "near_holes")}
+    def restored(cls, saved: Arrays) -> Self:
+        """The uniformity restored from the arrays returned by `saved_arrays`."""
+        block, place = (saved[name].copy() for name in ("block", "place"))
+        numbers = {name: float(saved[name]) for name in ("deviation", "packing", "beyond", "near_holes")}
         return cls(block=block, place=place, **numbers)

@@ -92,14 +92,14 @@ class Loading:
         self._go_on_from(0.0, state)
         return True
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """The slowly applied loads, and the step of their begin."""
         return {"lacking": self._lacking, "rising": np.array([self._begun, self._steps])}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        self._lacking = memory["lacking"].copy()
-        self._begun, self._steps = memory["rising"].tolist()
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self._lacking = saved["lacking"].copy()
+        self._begun, self._steps = saved["rising"].tolist()
 
     def _go_on_from(self, share: float, state: State) -> None:
         """Leave the elastic law at a share of its path to rest."""

@@ -46,34 +46,34 @@ class Settled:
     before: "Settled | None" = None
     column: "Settled | None" = None
 
-    def memory(self) -> Arrays:
-        """All arrays from which `recalled` restores the settled body in another run; without the stages before."""
+    def saved_arrays(self) -> Arrays:
+        """All arrays from which `restored` restores the settled body in another run; without the stages before."""
         start = self.start
         kept = {name: np.array(getattr(self, name)) for name in NUMBERS}
         kept |= {"displacement": start.displacement, "has_history": np.array(start.has_history)}
         if self.uniformity is not None:
-            kept |= {f"uniformity/{name}": values for name, values in self.uniformity.memory().items()}
+            kept |= {f"uniformity/{name}": values for name, values in self.uniformity.saved_arrays().items()}
         kept |= {f"cracks/{field.name}": getattr(self.cracks, field.name) for field in fields(Cracks)}
         for part, pairs in start.contacts.items():
-            kept |= {f"contacts/{part}/{name}": values for name, values in pairs.memory().items()}
+            kept |= {f"contacts/{part}/{name}": values for name, values in pairs.saved_arrays().items()}
         return kept
 
     @classmethod
-    def recalled(cls, scene: DiskScene, memory: Arrays) -> Self:
-        """The settled body of an equal scene restored from the arrays returned by `memory`."""
-        contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in memory) else {}
+    def restored(cls, scene: DiskScene, saved: Arrays) -> Self:
+        """The settled body of an equal scene restored from the arrays returned by `saved_arrays`."""
+        contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in saved) else {}
         for part, pairs in contacts.items():
-            pairs.recall(within(memory, f"contacts/{part}"))
-        cracks, uniformity = within(memory, "cracks"), within(memory, "uniformity")
+            pairs.restore(within(saved, f"contacts/{part}"))
+        cracks, uniformity = within(saved, "cracks"), within(saved, "uniformity")
         return cls(
-            start=Start(among(memory["displacement"], scene), contacts, bool(memory["has_history"])),
-            steps=int(memory["steps"]),
-            ratio=float(memory["ratio"]),
-            mean_reaction=float(memory["mean_reaction"]),
-            mean_residual=float(memory["mean_residual"]),
-            stress=memory["stress"].copy(),
+            start=Start(among(saved["displacement"], scene), contacts, bool(saved["has_history"])),
+            steps=int(saved["steps"]),
+            ratio=float(saved["ratio"]),
+            mean_reaction=float(saved["mean_reaction"]),
+            mean_residual=float(saved["mean_residual"]),
+            stress=saved["stress"].copy(),
             cracks=Cracks(**{field.name: cracks[field.name] for field in fields(Cracks)}),
-            uniformity=Uniformity.recalled(uniformity) if uniformity else None,
+            uniformity=Uniformity.restored(uniformity) if uniformity else None,
         )
 
 

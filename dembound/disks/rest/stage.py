@@ -109,7 +109,7 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     """
     if (kept := stage.stages.finished(stage.key)) is not None:
         with understood(Path(f"{stage.key}.npz")):
-            return Settled.recalled(scene, kept)
+            return Settled.restored(scene, kept)
     static, start = scene.case.static, starting()
     assert static is not None
     body = StaticScene(scene, static)
@@ -141,5 +141,5 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
         uniformity=None if asked is None else Uniformity.of(body.scene, system, displacement, asked),
         cracks=rest.take_cracks(),
     )
-    stage.stages.finish(stage.key, settled.memory())
+    stage.stages.finish(stage.key, settled.saved_arrays())
     return settled

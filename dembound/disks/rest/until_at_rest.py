@@ -89,16 +89,16 @@ class UntilAtRest(Tracker):
         message = f"{self._stage} {_where_it_ended(self._body.static, run, self.ratio, lacking, cracks)}"
         raise StalledError(message, run, lacking.T, cracks)
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """The next step of evaluation, the force ratio and step of the last progress, and the loads."""
         best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
-        return {**super().memory(), **best, **self._loading.memory()}
+        return {**super().saved_arrays(), **best, **self._loading.saved_arrays()}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        super().recall(memory)
-        self._best, self._best_at = float(memory["best"]), int(memory["best_at"])
-        self._loading.recall(memory)
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        super().restore(saved)
+        self._best, self._best_at = float(saved["best"]), int(saved["best_at"])
+        self._loading.restore(saved)
 
     def take_cracks(self) -> Cracks:
         """The bonds that broke since the last call."""

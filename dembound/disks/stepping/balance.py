@@ -52,21 +52,21 @@ class Balance:
         """Work (J) done up to displacements (3, n), without the work of their rotation, which the kernels count."""
         return self._of_ended + float(np.sum(self.force * (displacement - self.datum)))
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name."""
         kept = {name: getattr(self, f"_{name}") for name in ("steady", "across", *_EVOLVING)}
         kept |= {"datum": self.datum, "force": self.force, "of_ended": np.array(self._of_ended)}
         return kept | {f"follower_{name}": getattr(self.followers, name) for name in _FOLLOWING}
 
     @classmethod
-    def recalled(cls, scene: DiskBody, memory: Arrays) -> Balance:
-        """The balance restored from the arrays returned by `memory` in another run of the same case."""
-        balance = cls(scene, memory["force"].copy(), *(memory[name].copy() for name in _FIXED))
+    def restored(cls, scene: DiskBody, saved: Arrays) -> Balance:
+        """The balance restored from the arrays returned by `saved_arrays` in another run of the same case."""
+        balance = cls(scene, saved["force"].copy(), *(saved[name].copy() for name in _FIXED))
         for name in _EVOLVING:
-            setattr(balance, f"_{name}", memory[name].copy())
-        balance._of_ended = float(memory["of_ended"])
+            setattr(balance, f"_{name}", saved[name].copy())
+        balance._of_ended = float(saved["of_ended"])
         for name in _FOLLOWING:
-            getattr(balance.followers, name)[...] = memory[f"follower_{name}"]
+            getattr(balance.followers, name)[...] = saved[f"follower_{name}"]
         return balance
 
     def count_breaks_from(self, parts: Sequence[DiskPart]) -> None:

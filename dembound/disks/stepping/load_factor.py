@@ -117,14 +117,14 @@ class LoadFactor(Every):
             "particles": particles,
         }
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """The least factor found so far with its pair, and the next step."""
-        return {**super().memory(), "factor": np.array(self.factor), "found": self._found}
+        return {**super().saved_arrays(), "factor": np.array(self.factor), "found": self._found}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        super().recall(memory)
-        self.factor, self._found = float(memory["factor"]), memory["found"].copy()
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        super().restore(saved)
+        self.factor, self._found = float(saved["factor"]), saved["found"].copy()
 
 
 def load_factor_of(run: Run) -> LoadFactor | None:

@@ -133,13 +133,13 @@ class NearTies:
             self._found = contacts.arrays, contacts.live[at], listed
         return self._found[1:]
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """Slip at the start, and the findings so far."""
         return {"slip": self._slip, "step": self.step, "place": self.place}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        self._slip, self.step, self.place = (memory[name].copy() for name in ("slip", "step", "place"))
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self._slip, self.step, self.place = (saved[name].copy() for name in ("slip", "step", "place"))
 
     def describe(self, side: str, time_step: float) -> dict[str, Any] | None:
         """Time (s) and place (m) of the first opening or slip near the ties of a side, for a summary; None for none."""

@@ -110,16 +110,16 @@ class DiskPart(Part):
         """Number of intact bonds and closed contacts of every disk, if the material's law has a history."""
         return {} if self.contacts is None else {"coordination": (self.contacts.coordination(self.geometry), "1")}
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """Whether the law in use has a history, and the pairs, for a checkpoint."""
-        pairs = {} if self.contacts is None else self.contacts.memory()
+        pairs = {} if self.contacts is None else self.contacts.saved_arrays()
         return {"uses_history": np.array(self.uses_history), **pairs}
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        self.uses_history = bool(memory["uses_history"])
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self.uses_history = bool(saved["uses_history"])
         if self.contacts is not None:
-            self.contacts.recall(memory)
+            self.contacts.restore(saved)
 
     @property
     def geometry(self) -> int:

@@ -158,20 +158,20 @@ class DiskSystem(RecordedDisks):
         """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""
         return None if self.balance is None else self.balance.force
 
-    def memory(self) -> Arrays:
+    def saved_arrays(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
-        memory = dict(super().memory())
+        saved = dict(super().saved_arrays())
         for owner, kept in (("balance", self.balance), ("near_ties", self.near_ties)):
-            memory |= {} if kept is None else {f"{owner}/{name}": values for name, values in kept.memory().items()}
-        return memory
+            saved |= {} if kept is None else {f"{owner}/{name}": values for name, values in kept.saved_arrays().items()}
+        return saved
 
-    def recall(self, memory: Arrays) -> None:
-        """Restore the arrays returned by `memory` in another run of the same case."""
-        super().recall(memory)
-        kept = within(memory, "balance")
-        self.balance = Balance.recalled(self.scene, kept) if kept else None
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        super().restore(saved)
+        kept = within(saved, "balance")
+        self.balance = Balance.restored(self.scene, kept) if kept else None
         if self.near_ties is not None:
-            self.near_ties.recall(within(memory, "near_ties"))
+            self.near_ties.restore(within(saved, "near_ties"))
         self._set_balance_in_use()
 
     def _set_balance_in_use(self) -> None:

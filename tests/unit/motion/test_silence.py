@@ -23,7 +23,7 @@ def ended_at(speeds: np.ndarray, rule: Silent, block: int, observed=lambda recor
         run.state.step += len(piece)
         tracker.observe(run, piece)
         tracker_copy = Silence(rule, STEP)
-        tracker_copy.recall(tracker.memory())
+        tracker_copy.restore(tracker.saved_arrays())
         tracker = tracker_copy  # a run continued from its state ends at the same step
         if run.stopped:
             return run.state.step

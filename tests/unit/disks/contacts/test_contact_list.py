@@ -113,16 +113,16 @@ def test_pairs_that_stay_keep_their_memory_and_new_ones_have_none(contacts: Cont
     pairs.state[::5] = TENSION
     pairs.shear[:], pairs.slip[:] = np.arange(count) + 1.0, -np.arange(count) - 1.0
 
-    def memory() -> dict[Key, tuple]:
+    def history() -> dict[Key, tuple]:
         listed = contacts.arrays
         rows = np.abs(listed.constants[listed.contact_type])
         each = zip(listed.state, listed.shear, listed.slip, *rows.T, strict=True)
         return dict(zip(keys(contacts), each, strict=True))
 
-    before = memory()
+    before = history()
     for seed in (1, 2):
         contacts.search(shaken(contacts, 0.1, seed))
-        for key, found in memory().items():
+        for key, found in history().items():
             if key in before and found[1] != 0.0:  # not lost and found again
                 assert found == before[key]
             else:

@@ -99,6 +99,6 @@ def test_the_worst_block_is_reported_with_its_place_and_holes_apart(body) -> Non
     assert found.beyond == pytest.approx(found.deviation, rel=1e-6)
     assert found.packing < 1e-9
     assert found.near_holes > 0.05
-    kept = Uniformity.recalled(found.memory())
-    assert kept.memory().keys() == found.memory().keys()
-    assert all(np.array_equal(kept.memory()[name], values) for name, values in found.memory().items())
+    kept = Uniformity.restored(found.saved_arrays())
+    assert kept.saved_arrays().keys() == found.saved_arrays().keys()
+    assert all(np.array_equal(kept.saved_arrays()[name], values) for name, values in found.saved_arrays().items())
