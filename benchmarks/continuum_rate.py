@@ -23,8 +23,8 @@ from dembound.disks.stability import choose_step
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import wall_forces
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
+from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 

@@ -9,8 +9,8 @@ from dembound import api
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
+from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh

@@ -10,8 +10,8 @@ import numpy as np
 from dembound.boundaries.sides import normal_axis
 from dembound.disks.material import bragg
 from dembound.disks.scene import DiskScene
-from dembound.outside import choice
-from dembound.outside.choice import Signal
+from dembound.outside import sizing
+from dembound.outside.sizing import Signal
 from dembound.words import Entries, percent
 
 LEAST_SHOWN = 1e-5
@@ -60,15 +60,15 @@ def unevenness(scene: DiskScene, signals: Sequence[Signal], lowest: float = math
 
     k : wave number of the slowest waves, none shorter than a brick; L, D : length of a random brick and mean diameter
     of its disks. The largest over signals. lowest : frequency (Hz) from which on the energy is that of displacements,
-    see `choice.energies`.
+    see `sizing.energies`.
     """
     if scene.case.packing.is_lattice:
         return 0.0
     assert scene.outside is not None
-    speed, brick = choice.slowest(scene.outside.body.medium), scene.ground.brick
+    speed, brick = sizing.slowest(scene.outside.body.medium), scene.ground.brick
     length, found = float(max(brick.size)), [0.0]
     for signal in signals:
-        frequency, energy = choice.energies(signal, lowest)
+        frequency, energy = sizing.energies(signal, lowest)
         k = 2.0 * math.pi * np.minimum(frequency / speed, 1.0 / length)
         squares = (k**2 * length * brick.mean_diameter) ** 2
         found.append(math.sqrt(float(energy @ squares / energy.sum())))
@@ -81,16 +81,16 @@ def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = 
     Half of a lattice's bond has the impedance ρc/cos(kD/2), so that a continuum beyond it returns (kD)²/16; the ties'
     dashpots, `damping` times ρc_pD, add (kD)²·(damping/8) c/c_p. Waves on the lattice lag by the phase kL(kD)²/24. For
     the slowest waves, of the speed c; the largest over signals. lowest : frequency (Hz) from which on errors are those
-    of displacements, see `choice.energies`.
+    of displacements, see `sizing.energies`.
     """
     outside = scene.outside
     assert outside is not None
-    speed = choice.slowest(outside.body.medium)
+    speed = sizing.slowest(outside.body.medium)
     diameter, length = scene.ground.brick.mean_diameter, max(scene.case.size)
     returned = 1.0 / 16.0 + 0.25 * outside.wall.lag * speed / diameter
     found = []
     for signal in signals:
-        frequency, energy = choice.energies(signal, lowest)
+        frequency, energy = sizing.energies(signal, lowest)
         k = 2.0 * math.pi * frequency / speed
         square = (k * diameter) ** 2
         errors = [returned * square, k * length * square / 24.0]

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
 from dembound.outside.gll import Rule
+from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Mesh
 

@@ -14,8 +14,8 @@ from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.motion import threads
-from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
+from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 

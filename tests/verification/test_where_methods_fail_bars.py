@@ -48,7 +48,7 @@ def test_long_bonds_spread_cracks(energy, share, taken):
     [(20.0, 240e-6, 0.99, 1.03), (100.0, 480e-6, 1.03, 1.13), (100.0, 80e-6, 1.75, 2.1)],
 )
 def test_short_pulses_seem_to_strengthen_a_bar(energy, period, low, high):
-    """The ranges over spacings of docs/evidence/cracks.md, in strengths, with 0.02, the shortest 0.1, to either side."""
+    """The ranges over spacings in docs/evidence/cracks.md, in strengths, ± 0.02, of the shortest ± 0.1."""
     assert low < bars.apparent_strength(period, energy) < high
 
 

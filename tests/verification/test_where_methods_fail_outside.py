@@ -6,8 +6,8 @@ from angles import Side, branches, reflection
 from decay import step_beside
 
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene, step_limit
 from dembound.outside.body import GridBody
+from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh

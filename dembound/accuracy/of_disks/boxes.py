@@ -18,7 +18,7 @@ from dembound.disks.beyond.settings import expected_tops, extents, least_element
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
-from dembound.outside import choice
+from dembound.outside import sizing
 from dembound.outside.near_field import NearField
 from dembound.outside.ram import GridSizes
 from dembound.table import Box
@@ -118,7 +118,7 @@ def boxes(scene: DiskScene) -> Iterator[BoxOfDisks]:
 def rectangles(case: DiskCase, ground: PackedMaterial) -> Iterator[Box]:
     """Boxes (m) of disks of a ground for a case that `may_be_boxed`, for different sizes of elements."""
     diameter, order, accuracy = ground.brick.mean_diameter, case.outside.order, case.outside.accuracy
-    side = choice.element_size(signals_of(case), medium_of(ground), order, accuracy)
+    side = sizing.element_size(signals_of(case), medium_of(ground), order, accuracy)
     beside_a_force = NearField((0.0, 0.0, 0.0, 0.0), 1.0, "force").largest_side(order, accuracy)
     widest = max(side, least_element(case, diameter)) / beside_a_force
     for part in NEARER:

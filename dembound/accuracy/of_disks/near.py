@@ -19,7 +19,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene
 from dembound.holes import Hole, Rectangle
-from dembound.outside.choice import mean_frequency
+from dembound.outside.sizing import mean_frequency
 
 NEAR, CURVED = 0.1, 0.6
 """Error of motion along the ray over (κD)² (r/(r + b))², κ = k + CURVED/r, with the RMS wave number k of S waves."""

@@ -16,7 +16,7 @@ from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.outside import choice
+from dembound.outside import sizing
 
 RATIOS = (3.0, 4.0, 5.0, 6.0)
 """Diameters of the pair over those of the case that are tried, the smallest that can be afforded is taken."""
@@ -87,7 +87,7 @@ def sides_of_pair(case: DiskCase) -> list[str]:
 def ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
     """Ratios of diameters, the smallest first, with which the pair still resolves waves and holes."""
     finest = scene.ground.brick.mean_diameter
-    frequencies = [choice.cutoff(signal, SHARE) for signal in signals_of(case)]
+    frequencies = [sizing.cutoff(signal, SHARE) for signal in signals_of(case)]
     highest = max((each for each in frequencies if math.isfinite(each)), default=0.0)
     shortest = slowest_speed(scene.ground) / highest / PER_WAVE if highest > 0.0 else math.inf
     largest = max(1.0, largest_diameter(case, shortest) / finest)

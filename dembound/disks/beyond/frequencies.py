@@ -7,8 +7,8 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.outside import choice
-from dembound.outside.choice import Signal
+from dembound.outside import sizing
+from dembound.outside.sizing import Signal
 from dembound.waves.wave import Wave
 
 LENGTHS = (200.0, 20.0)
@@ -20,7 +20,7 @@ def frequencies_of(case: DiskCase, ground: PackedMaterial, count: int) -> np.nda
 
     Without a spectrum of finite energy: frequencies of waves from `LENGTHS` diameters long, evenly spaced.
     """
-    signals = [signal for signal in signals_of(case) if not choice.jumps(signal)]
+    signals = [signal for signal in signals_of(case) if not sizing.jumps(signal)]
     highest = float(np.nanmax(ground.wave_speeds(0))) / (LENGTHS[1] * ground.brick.mean_diameter)
     if not signals:
         return np.linspace(LENGTHS[1] / LENGTHS[0], 1.0, count) * highest
@@ -29,7 +29,7 @@ def frequencies_of(case: DiskCase, ground: PackedMaterial, count: int) -> np.nda
 
 def mean_frequency(case: DiskCase) -> float:
     """Mean frequency (Hz) of the energy of the case's waves and forces; nan without a spectrum of finite energy."""
-    means = [_mean_of(signal) for signal in signals_of(case) if not choice.jumps(signal)]
+    means = [_mean_of(signal) for signal in signals_of(case) if not sizing.jumps(signal)]
     means = [mean for mean in means if not math.isnan(mean)]
     return sum(means) / len(means) if means else math.nan
 
@@ -41,12 +41,12 @@ def mean_frequency_of(wave: Wave) -> float:
 
 def _mean_of(signal: Signal) -> float:
     """Mean frequency of a signal, Hz; nan without energy."""
-    frequencies, energy = choice.energies(signal)
+    frequencies, energy = sizing.energies(signal)
     return float(frequencies @ energy / energy.sum()) if energy.sum() > 0.0 else math.nan
 
 
 def _quantiles(signal: Signal, count: int) -> np.ndarray:
     """Frequencies (count,) in the middle of equal shares of a signal's energy."""
-    frequencies, energy = choice.energies(signal)
+    frequencies, energy = sizing.energies(signal)
     share = np.concatenate([[0.0], np.cumsum(energy) / energy.sum()])
     return np.interp((np.arange(count) + 0.5) / count, share, np.concatenate([[0.0], frequencies]))

@@ -13,12 +13,12 @@ from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.holes import Hole
-from dembound.outside import choice
-from dembound.outside.choice import Signal
+from dembound.outside import sizing
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 from dembound.outside.near_field import NearField
+from dembound.outside.sizing import Signal
 from dembound.table import Box
 from dembound.waves import Constant
 
@@ -89,12 +89,12 @@ def settings_of(case: DiskCase, medium: Medium, diameter: float, box: Box, sides
         element=keys.element or max(_element(case, medium, box, sides), least),
         least=least,
         margin=keys.margin or 1,
-        layers=keys.layers or choice.layer_count(keys.order, keys.accuracy * (0.5 if lasting else 1.0)),
-        absorption=Absorption(keys.reflection or choice.reflection(keys.accuracy), keys.shift, keys.delay),
+        layers=keys.layers or sizing.layer_count(keys.order, keys.accuracy * (0.5 if lasting else 1.0)),
+        absorption=Absorption(keys.reflection or sizing.reflection(keys.accuracy), keys.shift, keys.delay),
         damping=keys.damping,
     )
     if keys.margin is None:
-        inner = choice.inner_length(lasting, fastest(medium), keys.shift, keys.accuracy)
+        inner = sizing.inner_length(lasting, fastest(medium), keys.shift, keys.accuracy)
         requested = [1, _margin(chosen, box, sides, inner) if lasting > 0.0 else 1]
         requested += [margin_below_surface(chosen, each, medium, keys.accuracy) for each in buried(case, box, sides)]
         chosen = chosen._replace(margin=max(requested))
@@ -113,9 +113,9 @@ class Buried(NamedTuple):
 
     def error(self, settings: Settings, medium: Medium, margin: int) -> float:
         """Velocity error by surface reflections that run along layers beyond `margin` elements."""
-        beyond = (margin + choice.WITHIN * settings.layers) * settings.sides(*self.size)[0]
-        speeds = choice.slowest(medium) / fastest(medium)
-        return choice.grazing_error(self.depth, speeds, settings.absorption.reflection, self.beside + beyond)
+        beyond = (margin + sizing.WITHIN * settings.layers) * settings.sides(*self.size)[0]
+        speeds = sizing.slowest(medium) / fastest(medium)
+        return sizing.grazing_error(self.depth, speeds, settings.absorption.reflection, self.beside + beyond)
 
 
 def buried(case: DiskCase, box: Box, sides: Sequence[str]) -> list[Buried]:
@@ -131,9 +131,9 @@ def buried(case: DiskCase, box: Box, sides: Sequence[str]) -> list[Buried]:
 
 def margin_below_surface(settings: Settings, source: Buried, medium: Medium, accuracy: float) -> int:
     """Number of elements beside a box with which layers absorb surface reflections to an accuracy; at least 1."""
-    speeds = choice.slowest(medium) / fastest(medium)
-    offset = choice.offset(source.depth, speeds, settings.absorption.reflection, accuracy)
-    elements = (offset - source.beside) / settings.sides(*source.size)[0] - choice.WITHIN * settings.layers
+    speeds = sizing.slowest(medium) / fastest(medium)
+    offset = sizing.offset(source.depth, speeds, settings.absorption.reflection, accuracy)
+    elements = (offset - source.beside) / settings.sides(*source.size)[0] - sizing.WITHIN * settings.layers
     return max(math.ceil(elements - ROUNDING), 1)
 
 
@@ -214,7 +214,7 @@ def expected_tops(case: DiskCase, box: Box) -> tuple[float, float] | None:
 
 def least_element(case: DiskCase, diameter: float) -> float:
     """Smallest useful side (m) of elements beside disks of this mean diameter, m."""
-    return choice.least_size(case.outside.order, diameter, is_random=not case.packing.is_lattice)
+    return sizing.least_size(case.outside.order, diameter, is_random=not case.packing.is_lattice)
 
 
 def fastest(medium: Medium) -> float:
@@ -263,9 +263,9 @@ def near_fields(
     """The static fields of the holes and forces of a case beside sides of a box (m).
 
     lowest : frequency (Hz) from which on wave numbers of waves that pass holes are those of displacements, see
-    `choice.energies`.
+    `sizing.energies`.
     """
-    number = choice.wave_number(signals_of(case), medium, lowest)
+    number = sizing.wave_number(signals_of(case), medium, lowest)
     ends = dict(zip(("left", "bottom", "right", "top"), box, strict=True))
     found = []
     for low, high, source in _sources(case):
@@ -319,4 +319,4 @@ def _element(case: DiskCase, medium: Medium, box: Box, sides: Sequence[str]) -> 
     if not signals:
         raise CaseError([f"outside.element: is absent, but {_why_nothing(case)}; give the largest side of elements, m"])
     of_fields = [field.largest_side(keys.order, keys.accuracy) for field in near_fields(case, medium, box, sides)]
-    return min([choice.element_size(signals, medium, keys.order, keys.accuracy), *of_fields])
+    return min([sizing.element_size(signals, medium, keys.order, keys.accuracy), *of_fields])

@@ -24,8 +24,8 @@ import numpy as np
 
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.outside import choice
-from dembound.outside.choice import Signal
+from dembound.outside import sizing
+from dembound.outside.sizing import Signal
 
 FAINT = 1e-6
 """Part of ω² by which everything is held, as a common motion of all copies meets no resistance."""
@@ -104,7 +104,7 @@ def sent_back(
     lengths : of the ground along x and y, m. axes : along which waves run; the mean over them is returned.
     """
     shares = np.zeros(len(signals))
-    cutoff = max(choice.cutoff(signal, LEFT_OUT) for signal in signals)
+    cutoff = max(sizing.cutoff(signal, LEFT_OUT) for signal in signals)
     for axis in axes:
         lowest = float(np.nanmin(ground.wave_speeds(axis))) / (2.0 * float(ground.brick.size[axis]))
         for number in range(1, math.floor(cutoff / lowest) + 1):
@@ -115,6 +115,6 @@ def sent_back(
 
 def _density(signal: Signal, frequency: float) -> float:
     """Share of the energy of velocities per frequency (1/Hz) at a frequency."""
-    frequencies, energy = choice.energies(signal)
+    frequencies, energy = sizing.energies(signal)
     step = frequencies[1] - frequencies[0]
     return float(np.interp(frequency, frequencies, energy) / (energy.sum() * step))

@@ -31,8 +31,8 @@ from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.packing_errors import lattice_errors, unevenness
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import place_of
-from dembound.outside import choice
-from dembound.outside.choice import Signal
+from dembound.outside import sizing
+from dembound.outside.sizing import Signal
 
 PASSED, STEEP, RETURNED = 4.5, 8.0, 0.5
 """Nodes in the length of the shortest wave that elements pass on, the power of f above which they return less, and the
@@ -53,7 +53,7 @@ KEPT = 0.45
 """Part of R0 that layers return in all, as waves reach them at all angles."""
 
 LAYERS, STEEPEST = 0.4, 1e-4
-"""Part of `choice.LAYER_ERRORS`, which are bounds, that layers have with this R0; it grows as the square of log R0."""
+"""Part of `sizing.LAYER_ERRORS`, which are bounds, that layers have with this R0; it grows as the square of log R0."""
 
 SCATTERED = 0.5
 """Part of waves that enter through a continuum that leaves through it again."""
@@ -81,7 +81,7 @@ def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[
     elements and ties return less; waves longer than the run count as one length.
     """
     outside, signals = scene.outside, signals_of(scene.case)
-    if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
+    if outside is None or not signals or any(sizing.jumps(signal) for signal in signals):
         return None
     lowests = (math.inf, 1.0 / scene.case.run.duration)
     parts = [_parts(scene, outside, signals, lowest) for lowest in lowests]
@@ -117,7 +117,7 @@ def near_error(scene: DiskScene, outside: Surroundings) -> float:
 def _near_errors(
     scene: DiskScene, outside: Surroundings, places: Mapping[str, np.ndarray], lowest: float
 ) -> dict[str, float]:
-    """Errors of elements and ties beside forces and holes at places (2,) m by name; lowest : see `choice.energies`."""
+    """Errors of elements and ties beside forces and holes at places (2,) m by name; lowest : see `sizing.energies`."""
     order, side, diameter = outside.settings.order, largest_element(outside), scene.ground.brick.mean_diameter
     fields = near_fields(scene.case, outside.body.medium, outside.box, outside.sides, lowest)
     largest = [(field, math.hypot(field.error(order, side), field.of_ties(diameter))) for field in fields]
@@ -136,19 +136,19 @@ class _Parts(NamedTuple):
 
 
 def _parts(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal], lowest: float) -> _Parts:
-    """The parts of the error; lowest : Hz, see `choice.energies`."""
+    """The parts of the error; lowest : Hz, see `sizing.energies`."""
     settings, medium, mesh = outside.settings, outside.body.medium, outside.body.mesh
-    passed = settings.order * choice.slowest(medium) / (PASSED * largest_element(outside))
+    passed = settings.order * sizing.slowest(medium) / (PASSED * largest_element(outside))
     long = fastest(medium) / (2.0 * math.pi * mesh.inner)
     elements, lasting = 0.0, 0.0
     for signal in signals:
-        frequency, energy = choice.energies(signal, lowest)
+        frequency, energy = sizing.energies(signal, lowest)
         returned = np.minimum(1.0, (frequency / passed) ** STEEP)
         elements = max(elements, math.sqrt(float(energy @ returned**2 / energy.sum())))
         lasting = max(lasting, math.sqrt(float(energy[frequency < long].sum() / energy.sum())))
     reflection = settings.absorption.reflection
     steep = (math.log(reflection) / math.log(STEEPEST)) ** 2
-    layers = LAYERS * choice.layer_error(settings.order, settings.layers) * steep * lasting
+    layers = LAYERS * sizing.layer_error(settings.order, settings.layers) * steep * lasting
     alike = KEPT * reflection
     if scene.case.load:
         alike = math.hypot(alike, layers)
@@ -184,9 +184,9 @@ def _spread(scene: DiskScene, outside: Surroundings, source: np.ndarray, place: 
 
 def _shallow(outside: Surroundings, signals: Sequence[Signal]) -> float:
     """Depth (m) down to which places count as on the surface."""
-    spectra = [choice.energies(signal) for signal in signals]
+    spectra = [sizing.energies(signal) for signal in signals]
     mean = min(float(frequency @ energy / energy.sum()) for frequency, energy in spectra)
-    return SHALLOW * choice.slowest(outside.body.medium) / mean
+    return SHALLOW * sizing.slowest(outside.body.medium) / mean
 
 
 def _both_shallow(scene: DiskScene, outside: Surroundings, depth: float, source: np.ndarray, place: np.ndarray) -> bool:

@@ -23,9 +23,9 @@ from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.packing_errors import packing_facts
 from dembound.disks.reports.continuum_errors import largest_element, near_error
 from dembound.disks.scene import DiskScene
-from dembound.outside import choice
-from dembound.outside.choice import Signal
+from dembound.outside import sizing
 from dembound.outside.layer import Profile
+from dembound.outside.sizing import Signal
 from dembound.words import Entries, percent
 
 SHOWN = 5e-4
@@ -61,7 +61,7 @@ def continuum_facts(scene: DiskScene) -> Entries:
         yield "below the column", f"{_elements(scene.foot)}; through it waves enter and leave"
     yield "absorbing layers", _layers(outside, signals)
     yield "continuum cost", _cost(scene)
-    if signals and not any(choice.jumps(signal) for signal in signals):
+    if signals and not any(sizing.jumps(signal) for signal in signals):
         yield from packing_facts(scene, signals)
 
 
@@ -104,14 +104,14 @@ def _less(depth: float) -> str:
 def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -> str:
     """Nodes in the shortest wave and the error of the elements."""
     body, order, side = outside.body, outside.settings.order, largest_element(outside)
-    if any(choice.jumps(signal) for signal in signals):
-        shortest = side * choice.NODES[order] / order
+    if any(sizing.jumps(signal) for signal in signals):
+        shortest = side * sizing.NODES[order] / order
         return f"begin or end at once; elements return those shorter than {shortest:.3g} m"
-    length = choice.shortest_wave(signals, body.medium)
-    beyond = choice.slowest(body.medium) / length
-    error = max(choice.element_error(signals, body.medium, order, side), near_error(scene, outside))
+    length = sizing.shortest_wave(signals, body.medium)
+    beyond = sizing.slowest(body.medium) / length
+    error = max(sizing.element_error(signals, body.medium, order, side), near_error(scene, outside))
     return (
-        f"{order * length / side:.3g} nodes in the shortest wavelength, {length:.3g} m ({100.0 * choice.SHARE:g} % of "
+        f"{order * length / side:.3g} nodes in the shortest wavelength, {length:.3g} m ({100.0 * sizing.SHARE:g} % of "
         f"the energy is above {beyond:.3g} Hz); error of velocities at most {percent(min(error, 1.0))}"
         f"{_as_small(scene, error)}"
     )
@@ -132,7 +132,7 @@ def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
     begin, depth = (_lengths(outside, count) for count in (settings.margin, settings.layers))
     angles = ", ".join(f"{angle:g}" for angle in ANGLES)
     p, s = (", ".join(f"{100.0 * each:.2g}" for each in returned) for returned in _reflections(outside, signals))
-    floor = choice.layer_error(settings.order, settings.layers)
+    floor = sizing.layer_error(settings.order, settings.layers)
     return (
         f"begin {begin} m beyond the sides and are {depth} m deep, {settings.layers} elements, R0 = "
         f"{settings.absorption.reflection:.3g}; at {angles}° they return at most {p} % of P and {s} % of S waves, "
@@ -177,8 +177,8 @@ def continuum_warnings(scene: DiskScene, steps: float) -> Iterator[str]:
     asked = f"outside.accuracy = {percent(keys.accuracy)}"
     yield from _poor_elements(scene, outside, keys, asked)
     settings, order = outside.settings, keys.order
-    if (error := choice.layer_error(order, settings.layers)) > keys.accuracy:
-        enough = choice.layer_count(order, keys.accuracy)
+    if (error := sizing.layer_error(order, settings.layers)) > keys.accuracy:
+        enough = sizing.layer_count(order, keys.accuracy)
         yield (
             f"outside.layers: {settings.layers} elements of order {order} return about {percent(error)} of the "
             f"displacement, more than {asked}; {enough} are enough"
@@ -186,7 +186,7 @@ def continuum_warnings(scene: DiskScene, steps: float) -> Iterator[str]:
     if settings.absorption.reflection > keys.accuracy:
         yield (
             f"outside.reflection: is {settings.absorption.reflection:g}, above {asked}; give at most "
-            f"{choice.reflection(keys.accuracy):g}"
+            f"{sizing.reflection(keys.accuracy):g}"
         )
     yield from _lasting(scene, outside, keys, asked)
     yield from _from_the_surface(scene, outside, keys, asked)
@@ -207,12 +207,12 @@ def _is_flat(outside: Surroundings) -> bool:
 def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
     """Warnings about elements too large for waves or nearby sources, or too small for the disks.
 
-    The returned share is the part of the spectrum with fewer than `choice.NODES` nodes per wavelength.
+    The returned share is the part of the spectrum with fewer than `sizing.NODES` nodes per wavelength.
     `expected_errors` at monitors are smaller: half of it arrives there, and for longer waves it falls gradually.
     """
     order, side = keys.order, largest_element(outside)
     signals, medium = signals_of(scene.case), outside.body.medium
-    error = choice.element_error(signals, medium, order, side) if signals else 0.0
+    error = sizing.element_error(signals, medium, order, side) if signals else 0.0
     if keys.element is None:
         if error > max(LEEWAY * keys.accuracy, LARGE):
             yield (
@@ -222,7 +222,7 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
             )
         return
     if error > LEEWAY * keys.accuracy:
-        enough = choice.element_size(signals, medium, order, keys.accuracy)
+        enough = sizing.element_size(signals, medium, order, keys.accuracy)
         needed = max(enough, least_element(scene.case, scene.ground.brick.mean_diameter))
         if needed < side:
             yield (
@@ -246,9 +246,9 @@ def _lasting(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked:
     """A warning about a margin that is too small for a force that stays."""
     lasting, body = lasting_time(scene.case), outside.body
     speed = fastest(body.medium)
-    error = choice.missing(lasting, speed, keys.shift, body.mesh.inner)
+    error = sizing.missing(lasting, speed, keys.shift, body.mesh.inner)
     if error > keys.accuracy:
-        inner = choice.inner_length(lasting, speed, keys.shift, keys.accuracy)
+        inner = sizing.inner_length(lasting, speed, keys.shift, keys.accuracy)
         yield (
             f"outside.margin: under a load that stays for {lasting:.3g} s about {percent(min(error, 1.0))} of the "
             f"displacement will be missing, more than {asked}; {inner:.4g} m within the layers are enough, now "

@@ -111,7 +111,7 @@ contact_forces(u, scene.rows[0], result)
 """
 
 MOTION = """
-from dembound.outside.alone import GridScene
+from dembound.outside.grid_scene import GridScene
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh

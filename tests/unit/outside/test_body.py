@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.outside.alone import step_limit
 from dembound.outside.body import GridBody
+from dembound.outside.grid_scene import step_limit
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh

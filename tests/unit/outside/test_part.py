@@ -6,7 +6,7 @@ import pytest
 from dembound.boundaries.support import SupportBuilder
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
-from dembound.outside.alone import GridScene, step_limit
+from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.part import GridPart, stress
 
 

@@ -22,7 +22,7 @@ from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene, build
 from dembound.holes import Circle, Rectangle
 from dembound.holes.rectangle import STRAIGHT
-from dembound.outside.choice import mean_frequency
+from dembound.outside.sizing import mean_frequency
 from dembound.packings import Square
 
 RATE = 2.0 * np.pi * 20.0

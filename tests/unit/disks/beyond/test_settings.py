@@ -17,7 +17,7 @@ from dembound.disks.beyond.settings import (
 )
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
-from dembound.outside import choice
+from dembound.outside import sizing
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 
@@ -47,7 +47,7 @@ def chosen(case, diameter: float = 1.0, sides=SIDES):
 def test_settings_left_out_are_those_of_the_waves(case) -> None:
     found = chosen(case())
 
-    assert found.element == pytest.approx(choice.element_size(signals_of(case()), ROCK, 4, 1e-3))
+    assert found.element == pytest.approx(sizing.element_size(signals_of(case()), ROCK, 4, 1e-3))
     assert (found.margin, found.layers) == (1, 3)
     assert found.absorption == Absorption(pytest.approx(1e-4), 0.3, 0.1)
     assert chosen(case(outside={"accuracy": 1e-2})).absorption.reflection == pytest.approx(1e-3)
@@ -86,7 +86,7 @@ def test_what_makes_waves(case) -> None:
     assert [(each.wave.type, each.is_force) for each in signals_of(case())] == [("cosine", True)]
     steady = signals_of(case(load={"wave": None}))
     assert [(each.wave.type, each.is_force) for each in steady] == [("cosine", False), ("constant", True)]
-    assert choice.jumps(steady[1])
+    assert sizing.jumps(steady[1])
     driven = {"left": {"type": "velocity", "wave_p": "pulse"}, "right": {"type": "outside"}}
     both = signals_of(case(boundary=driven))
     assert [(each.wave.type, each.is_force) for each in both] == [("cosine", False), ("cosine", True)]
@@ -108,12 +108,12 @@ def test_a_load_that_stays_needs_a_margin(case) -> None:
     assert lasting_time(case()) == 0.0
     assert lasting_time(stays) == 10.0
     assert lasting_time(case(load={"wave": None})) == 12.0
-    inner = choice.inner_length(10.0, 1000.0, 0.3, 1e-3)
+    inner = sizing.inner_length(10.0, 1000.0, 0.3, 1e-3)
     for sides in (SIDES, ("right",)):
         found = chosen(stays, sides=sides)
         less, enough = (mesh_of(found._replace(margin=found.margin - each), BOX, sides).inner for each in (1, 0))
         assert less < inner <= enough
-        assert found.layers == choice.layer_count(4, 5e-4)
+        assert found.layers == sizing.layer_count(4, 5e-4)
 
 
 def test_elements_lie_where_there_are_sides(case) -> None:
