@@ -36,7 +36,7 @@ from dembound.casefile.disks.static import Static
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
 from dembound.casefile.sweep import Sweep
-from dembound.cli.app import EXIT_CODES, app
+from dembound.cli.app import EXIT_CODES, MORE, app
 from dembound.table import Table, name_of
 
 HERE = Path(__file__).parent
@@ -230,7 +230,7 @@ def _sentence(table: Type) -> str:
 def _quoted(text: str) -> str:
     """The text with names of several words, and values in quotation marks, as code."""
     text = re.sub(r'(?<![`{] )(?<!`)("[\w:]+")', r"`\1`", text)
-    return re.sub(r"(?<![`\w.])([a-z]+(?:[_.][a-z]+)+|\[\[?[a-z.]+\]?\])(?![\w`./])", _if_key, text)
+    return re.sub(r"(?<![`\"\w.])([a-z]+(?:[_.][a-z]+)+|\[\[?[a-z.]+\]?\])(?![\w`./])", _if_key, text)
 
 
 def _if_key(found: re.Match[str]) -> str:
@@ -332,9 +332,11 @@ def commands() -> str:
     """The page of all commands."""
     panels: dict[str, list[str]] = {}
     every: dict[str, Any] = {}
-    for name, command in typer.main.get_command(app).commands.items():
+    group: Any = typer.main.get_command(app)
+    for name in group.list_commands(group.make_context("dembound", [], resilient_parsing=True)):
+        command = group.commands[name]
         found = {name: command} | {f"{name} {inner}": each for inner, each in getattr(command, "commands", {}).items()}
-        panels.setdefault(command.rich_help_panel or "", []).extend(found)
+        panels.setdefault(command.rich_help_panel or "Usual commands", []).extend(found)
         every |= found
     given = {name: _arguments(command) + _options(command) for name, command in every.items()}
     count = Counter(line for lines in given.values() for line in lines)
@@ -344,7 +346,7 @@ def commands() -> str:
     codes = EXIT_CODES.removeprefix("Exit codes: ").rstrip(".").split("; ")
     texts = [COMMANDS.rstrip(), "## Exit codes", "\n".join("- `{}`: {}".format(*code.split(" ", 1)) for code in codes)]
     for panel, of_panel in panels.items():
-        texts.append(f"## {panel}")
+        texts.append(f"## {'More commands' if panel == MORE else panel}")
         for name in of_panel:
             texts += _command(name, every[name], given[name], common)
     return GENERATED + _joined([*texts, "## Options of several commands", "\n".join(sorted(common))])
