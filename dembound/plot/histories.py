@@ -177,12 +177,13 @@ def draw_band(
 ) -> None:
     """Draw the band of a history (k,) of a column at times (k,) s, and the corrected line if there is one.
 
-    The band ends where the estimate does. units : seconds in a unit of time, and SI units in one of the values.
+    The band ends where the estimate does, and has its own times. units : seconds in a unit of time, and SI units in one
+    of the values.
     """
-    count = min(len(band.time), len(time))
-    at, middle, half = time[:count] / units[0], values[:count], band.half_width[:count, column] / units[1]
+    at, half = band.time / units[0], band.half_width[:, column] / units[1]
+    middle = np.interp(band.time, time, values)
     colour = panel.lines[-1].get_color()
     panel.fill_between(at, middle - half, middle + half, color=colour, label=f"{label}, estimated error", **WITHIN)
     if band.corrected is not None:
-        corrected = band.corrected[:count, column] / units[1]
+        corrected = band.corrected[:, column] / units[1]
         panel.plot(at, corrected, label=f"{label}, without the error of its sides", **CORRECTED)
