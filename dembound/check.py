@@ -13,7 +13,7 @@ from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
 from dembound.results.estimates import split_in_words
 from dembound.running import plan, require_stages, space_in_words, space_warnings, warnings_before
-from dembound.words import Entries, percent
+from dembound.words import Entries, percent, with_unit
 
 TRIAL_STEPS, TRIALS = 20, 3
 
@@ -38,7 +38,7 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
     """Steps, RAM, space on the disk and time, and the reductions of the scene."""
     scene = planned.stepped
     step, limit = planned.time_step, planned.step_limit
-    yield "time step", f"{step:.4g} s, {step / limit:.3f} of the limit {limit:.6g} s"
+    yield "time step", f"{with_unit(step, 's')}, {step / limit:.3g} of the limit {with_unit(limit, 's')}"
     yield "steps", f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}"
     yield "memory", f"about {in_words(scene.largest_memory)} at its peak{_here()}"
     yield "disk", space_in_words(planned, results)
@@ -75,8 +75,8 @@ def _until_silent(planned: Plan) -> str:
         return ""
     rule = silent_rule(planned.scene, planned.kind.sources(planned.scene))
     return (
-        f", or until all monitors are below {percent(rule.level, 3)} of their peaks for {rule.hold:.3g} s, after "
-        f"{rule.earliest:.3g} s"
+        f", or until all monitors are below {percent(rule.level, 3)} of their peaks for {with_unit(rule.hold, 's')}, "
+        f"after {with_unit(rule.earliest, 's')}"
     )
 
 

@@ -1,12 +1,46 @@
 """Numbers as text, and texts by name, for tables and messages."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 
 Entries = Iterator[tuple[str, str]]
 """Names, each with what is said under it, in the order in which they are printed."""
+
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+"""Prefixes of units, the largest first."""
+
+UPWARDS = ("Pa", "N", "N/m", "J", "J/m", "Hz")
+"""Units that have only prefixes above 1, as mPa would be read as MPa; others have only those below, as speeds."""
 
 
 def percent(share: float, digits: int = 2) -> str:
     """A share in per cent, such as "0.13 %", with `digits` digits; larger numbers with all digits before the point."""
     value = 100.0 * share
     return f"{value:.{digits}g} %" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f} %"
+
+
+def with_unit(value: float, unit: str, digits: int = 3) -> str:
+    """A number in an SI unit as text, with the prefix that suits it: 1.25e6 Pa is "1.25 MPa"."""
+    (text,), prefixed = in_one_unit([value], unit, digits)
+    return f"{text} {prefixed}"
+
+
+def in_one_unit(values: Sequence[float], unit: str, digits: int = 3) -> tuple[list[str], str]:
+    """Numbers as text with so many digits, and their unit with the prefix that suits the largest."""
+    sizes = [abs(value) for value in values if math.isfinite(value)]
+    largest = float(f"{max(sizes, default=0.0):.{digits}g}")  # 999,999 Pa is 1 MPa
+    fitting = [each for each in PREFIXES if (each[0] >= 1.0 if unit in UPWARDS else each[0] <= 1.0)]
+    factor, name = next((each for each in fitting if each[0] <= largest), fitting[-1] if largest > 0.0 else (1.0, ""))
+    return [f"{float(f'{value / factor:.{digits}g}'):.12g}" for value in values], f"{name}{unit}"
+
+
+def columns(rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
+    """Rows of equally many cells as lines with aligned columns, the first so many to the left, others to the right."""
+    wide = [max(map(len, cells)) for cells in zip(*rows, strict=True)]
+    return [
+        "  ".join(
+            f"{cell:{'<' if place < left else '>'}{width}}"
+            for place, (cell, width) in enumerate(zip(row, wide, strict=True))
+        ).rstrip()
+        for row in rows
+    ]

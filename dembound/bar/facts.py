@@ -13,10 +13,10 @@ from dembound.boundaries.words import side_in_words
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import COARSEST, Bar
 from dembound.casefile.bar.range import BarRange
-from dembound.casefile.magnitudes import stress_in_words, waves_used
+from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted, show
 from dembound.exact.dispersion import cells_per_wavelength
-from dembound.words import Entries
+from dembound.words import Entries, with_unit
 
 ERROR = 0.01
 """Error of the phase speed that the shortest wavelength may have without a warning."""
@@ -28,10 +28,10 @@ PERCENT = f"{100.0 * ERROR:g} %"
 def bar_facts(scene: BarScene, time_step: float) -> Entries:
     """Facts about a bar and its method, ready to print."""
     case = scene.case
-    apart = " and ".join(f"{size:g}" for size in dict.fromkeys(part.spacing for part in case.bar.parts))
-    yield "nodes", f"{scene.count:,}, {apart} m apart"
+    apart = " and ".join(with_unit(size, "m") for size in dict.fromkeys(part.spacing for part in case.bar.parts))
+    yield "nodes", f"{scene.count:,}, {apart} apart"
     yield "method", method_in_words(case)
-    yield "Courant number", f"{time_step / unit_step(scene):.4g}"
+    yield "Courant number", f"{time_step / unit_step(scene):.3g}"
     if case.bar.range:
         yield "bar", f"{case.bar.length:g} m long"
         for given, start, part in zip(case.bar.range, case.bar.starts, case.bar.parts, strict=True):
@@ -55,7 +55,7 @@ def _bar_facts(scene: BarScene) -> Entries:
     described, bar = describe_bar(scene), scene.case.bar
     section = f"section {described['section']:.4g} m², density {described['density']:g} kg/m³"
     yield "bar", f"{bar.length:g} m long, {section}"
-    yield "stiffness", f"E = {bar.modulus / 1e9:.4g} GPa, c = {bar.speed:.4g} m/s"
+    yield "stiffness", f"E = {with_unit(bar.modulus, 'Pa')}, c = {with_unit(bar.speed, 'm/s')}"
     yield from _material_facts(bar)
 
 
@@ -81,8 +81,8 @@ def _rounded_up(share: float) -> str:
 
 def _pressure(pressure: float, peak: float) -> str:
     """Pressure (Pa) of a load in words, and the largest stress if the peak of its wave is not 1."""
-    given, largest = stress_in_words(pressure), stress_in_words(abs(pressure) * peak)
-    return given if largest == stress_in_words(abs(pressure)) else f"up to {largest}: {given}"
+    given, largest = with_unit(pressure, "Pa"), with_unit(abs(pressure) * peak, "Pa")
+    return given if largest == with_unit(abs(pressure), "Pa") else f"up to {largest}: {given}"
 
 
 def method_in_words(case: BarCase) -> str:
@@ -109,19 +109,19 @@ def _material_facts(bar: Bar) -> Entries:
     stretch, strength = bar.breaking_stretch, bar.breaking_stretch * bar.modulus
     yield (
         "strength",
-        "unbreakable" if np.isinf(stretch) else f"{strength / 1e6:.4g} MPa, critical stretch {stretch:.4g}",
+        "unbreakable" if np.isinf(stretch) else f"{with_unit(strength, 'Pa')}, critical stretch {stretch:.3g}",
     )
     if bar.fracture_energy is not None:
         length, opening = bar.characteristic_length, bar.fracture.opening(strength)
         yield (
             "cracks",
-            f"G_f = {bar.fracture_energy:g} J/m², open at w_c = 2G_f/σ_t = {opening * 1e6:.4g} µm, characteristic "
-            f"length EG_f/σ_t² = {length * 1e3:.4g} mm, spacing at most {COARSEST * length * 1e3:.4g} mm",
+            f"G_f = {bar.fracture_energy:g} J/m², open at w_c = 2G_f/σ_t = {with_unit(opening, 'm')}, characteristic "
+            f"length EG_f/σ_t² = {with_unit(length, 'm')}, spacing at most {with_unit(COARSEST * length, 'm')}",
         )
     if bar.strength_rates is not None:
         slowest, fastest = (f"{rate:g} 1/s" for rate in bar.strength_rates)
-        largest = f"{bar.largest_strength / 1e6:.4g} MPa"
-        yield "strain rates", f"strength from {strength / 1e6:.4g} MPa at {slowest} to {largest} at {fastest}"
+        largest = with_unit(bar.largest_strength, "Pa")
+        yield "strain rates", f"strength from {with_unit(strength, 'Pa')} at {slowest} to {largest} at {fastest}"
     if bar.attenuation > 0.0:
         yield "attenuation", f"α = {bar.attenuation:g} 1/m"
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 GAINED = 1e-3
 """Share of the energy that breaking bonds may add instead of removing it; above it the run reports it."""
@@ -14,13 +14,13 @@ LISTED = 3
 
 def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
     """Changes of method, place and time of breaks and spalls, and which of these results converge."""
-    facts = [f"{used['law']} from {used['from'] * 1e3:.4g} ms" for used in summary["laws"][1:]]
+    facts = [f"{used['law']} from {with_unit(used['from'], 's')}" for used in summary["laws"][1:]]
     facts += [
-        f"broke at the {side} end ({summary['boundaries'][side]['type']}), {broken['time'] * 1e3:.4f} ms"
+        f"broke at the {side} end ({summary['boundaries'][side]['type']}), {with_unit(broken['time'], 's')}"
         for side, broken in summary["breaks_at_ends"].items()
     ]
     facts += [
-        f"spall at {_range(spall['start'])} m, {spall['time'] * 1e3:.4f} ms" for spall in summary["spalls"][:LISTED]
+        f"spall at {_range(spall['start'])} m, {with_unit(spall['time'], 's')}" for spall in summary["spalls"][:LISTED]
     ]
     if (more := len(summary["spalls"]) - LISTED) > 0:
         facts.append(f"and {more} more, see summary.json")

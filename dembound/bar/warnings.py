@@ -19,13 +19,12 @@ from dembound.casefile.magnitudes import (
     is_quasi_static,
     large_stress,
     large_velocity,
-    stress_in_words,
     stress_warnings,
     time_warnings,
 )
 from dembound.casefile.unlikely import unlikely_in
 from dembound.meanings import fading
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 _TOO_LARGE = "solids break or yield at a tenth of 3 %, are the units right?"
 
@@ -147,7 +146,7 @@ def _loads_at_dashpots(case: BarCase) -> Iterator[str]:
         beyond = impedance if case.side(load.side).layer else float(supports.damping.sum())
         if beyond > TOO_MUCH * impedance:
             taken = beyond / (impedance + beyond)
-            stress = stress_in_words((1.0 - taken) * abs(load.pressure) * case.wave[load.wave].peak())
+            stress = with_unit((1.0 - taken) * abs(load.pressure) * case.wave[load.wave].peak(), "Pa")
             yield (
                 f"load.{load.name}: is on an end that absorbs: boundary.{load.side} takes {percent(taken, 3)} of it, "
                 f"and up to {stress} enters the bar; on a free end all of it does"
@@ -172,7 +171,7 @@ def _loads_spread_too_far(case: BarCase) -> Iterator[str]:
             entering = share * abs(load.pressure) * wave.peak()
             yield (
                 f"load.{load.name}.nodes: is {load.nodes}, {wide:.3g} m, so long beside its wave that only "
-                f"{percent(share)} of its peak enters, {stress_in_words(entering)}; take fewer nodes"
+                f"{percent(share)} of its peak enters, {with_unit(entering, 'Pa')}; take fewer nodes"
             )
 
 

@@ -15,10 +15,9 @@ from dembound.bar.scene import BarScene
 from dembound.bar.warnings import ends_too_soon, stress_beside_strength
 from dembound.boundaries import normal_axis
 from dembound.casefile.bar import BarCase
-from dembound.casefile.magnitudes import stress_in_words
 from dembound.results.reader import open_record, snapshots_of
 from dembound.results.warnings import energy_warnings, still_moving
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
     import h5py
@@ -108,7 +107,7 @@ def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str
         if distance <= near and first["time"] < case.wave[wave].start + 2.0 * end.length / end.speed:
             if pull := _pull(case, side, first["time"]):
                 cure = f"change the sign of {f'{key}.pressure' if what == 'load' else f'wave.{wave}'} if it is to push"
-                what = f"{what} pulls, with {stress_in_words(pull)}, and"
+                what = f"{what} pulls, with {with_unit(pull, 'Pa')}, and"
             yield (
                 f"{key}: the {what} itself broke the bar, at {first['time']:.4g} s and {distance:g} m from "
                 f"the {side} end, before any reflected wave had returned there; {cure}"
@@ -147,6 +146,6 @@ def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
     tension = max(0.0, *(float(np.max(group["stress"][:])) for group in groups))
     if tension < NOTHING * strength:
         yield (
-            f"bar: the largest tension reached is {stress_in_words(tension)}, {percent(tension / strength)} of "
-            f"the strength, {stress_in_words(strength)}; nothing can break"
+            f"bar: the largest tension reached is {with_unit(tension, 'Pa')}, {percent(tension / strength)} of "
+            f"the strength, {with_unit(strength, 'Pa')}; nothing can break"
         )

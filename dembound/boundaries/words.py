@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dembound.boundaries.sides import Motion
+from dembound.words import with_unit
 
 FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
 """Keys of the factors of dashpots, and their symbols."""
@@ -73,5 +74,5 @@ def _springs_in_words(side: Mapping[str, Any]) -> str:
     reach = f"{nearest:.4g}" + (f"…{farthest:.4g}" if farthest > nearest else "")
     return (
         f"; springs α_n = {side['alpha_n']:g}, α_s = {side['alpha_s']:g}, "
-        f"G = {side['shear_modulus'] / 1e9:.4g} GPa, L = {reach} m"
+        f"G = {with_unit(side['shear_modulus'], 'Pa')}, L = {reach} m"
     )

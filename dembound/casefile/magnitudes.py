@@ -8,7 +8,7 @@ import numpy as np
 
 from dembound.casefile import Case
 from dembound.waves import Wave
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 FAR = 1000.0
 """Ratio of two times above which one of them is probably in another unit.
@@ -164,27 +164,19 @@ def grip_stress(
     return ("its stress ρcv", sudden) if sudden >= even else ("its stress ρc²u/L", even)
 
 
-def stress_in_words(stress: float) -> str:
-    """A stress in Pa as text: in MPa, or in Pa where it is small.
-
-    A load whose wave contains the pressures has such a small one, such as 1 Pa.
-    """
-    return f"{stress / 1e6:.4g} MPa" if abs(stress) >= 1e4 else f"{stress:.4g} Pa"
-
-
 def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, key: str) -> Iterator[str]:
     """Warnings about stresses many times the strength, or the largest of all if it is a tiny part of the strength.
 
     stresses : table -> description of the stress, and its value in Pa. strength : Pa. key : of the strength.
     """
-    against = f"{key}, {stress_in_words(strength)}: Pa and MPa?"
+    against = f"{key}, {with_unit(strength, 'Pa')}: Pa and MPa?"
     for place, (what, stress) in stresses.items():
         if stress > STRONG * strength:
-            yield f"{place}: {what} is {stress_in_words(stress)}, {stress / strength:,.0f} times {against}"
+            yield f"{place}: {what} is {with_unit(stress, 'Pa')}, {stress / strength:,.0f} times {against}"
     if stresses:
         place, (what, stress) = max(stresses.items(), key=lambda item: item[1][1])
         if stress < WEAK * strength:
-            yield f"{place}: {what} is {stress_in_words(stress)}, {percent(stress / strength)} of {against}"
+            yield f"{place}: {what} is {with_unit(stress, 'Pa')}, {percent(stress / strength)} of {against}"
 
 
 def large_velocity(place: str, velocity: float, speed: float, reason: str, waves: str = "waves") -> Iterator[str]:
@@ -213,8 +205,8 @@ def large_stress(place: str, what: str, stress: float, modulus: float, reason: s
     """
     if stress > LARGE_STRAIN * modulus:
         yield (
-            f"{place}: {what}, {stress_in_words(stress)}, is {percent(stress / modulus)} of the stiffness, "
-            f"{stress_in_words(modulus)}, and so are strains; {reason}"
+            f"{place}: {what}, {with_unit(stress, 'Pa')}, is {percent(stress / modulus)} of the stiffness, "
+            f"{with_unit(modulus, 'Pa')}, and so are strains; {reason}"
         )
 
 

@@ -13,6 +13,7 @@ from dembound.casefile.model import Case
 from dembound.casefile.wave_uses import wave_use_warnings
 from dembound.meanings import GRAVITY, MEANINGS, Meaning
 from dembound.table import Table
+from dembound.words import with_unit
 
 LIGHTEST = 1.6
 """Least acceleration (m/s²) that is regarded as gravity: that of the moon."""
@@ -121,7 +122,9 @@ def _damps_waves(numbers: tuple[float, ...], table: Table, case: Case) -> str | 
 
 def _pulls(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
     """A given stress that is a tension along x or y."""
-    pulling = [f"{value:g} Pa along {axis}" for axis, value in zip("xy", numbers, strict=False) if value > 0.0]
+    pulling = [
+        f"{with_unit(value, 'Pa')} along {axis}" for axis, value in zip("xy", numbers, strict=False) if value > 0.0
+    ]
     turned = [-value if value > 0.0 else value for value in numbers[:2]]
     if not pulling:
         return None

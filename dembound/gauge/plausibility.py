@@ -9,7 +9,7 @@ from dembound.gauge.findings import Findings
 from dembound.gauge.passages import first_return
 from dembound.gauge.peaks import NOISE_FACTOR, SMALLEST, positive_peaks, white_noise, width_of
 from dembound.meanings import MEANINGS
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 LONGEST = 100.0
 """Length of a bar, m, above which millimetres were meant."""
@@ -82,11 +82,11 @@ def implausible_modulus(modulus: float | None, density: float | None, speed: flo
     least, most = (likely.low, likely.high) if density is None else (density / TIED, density * TIED)
     if least <= modulus / speed**2 <= most:
         return
-    says = f"--youngs-modulus: is {modulus:.4g} Pa, "
+    says = f"--youngs-modulus: is {with_unit(modulus, 'Pa')}, "
     if density is None:
         says += f"with the wave speed, {speed:.4g} m/s, that of a density E/c² of {modulus / speed**2:.3g} kg/m³"
     else:
-        says += f"must be within a factor of {TIED:g} of ρc², {density * speed**2:.4g} Pa"
+        says += f"must be within a factor of {TIED:g} of ρc², {with_unit(density * speed**2, 'Pa')}"
     units = [slip for slip in MEANINGS["modulus"].slips if least <= slip.mend(modulus) / speed**2 <= most]
     yield says + "".join(f"; likely {slip.what}: write {slip.mend(modulus):.4g}" for slip in units)
 
@@ -95,9 +95,9 @@ def differing_modulus(modulus: float | None, density: float | None, speed: float
     """Message about a modulus E, Pa, that is some way from ρc²; density : ρ, kg/m³, None if unknown; speed : c, m/s."""
     if modulus is not None and density is not None and abs(apart := modulus / (density * speed**2) - 1.0) > APART:
         yield (
-            f"--youngs-modulus: is {modulus:.4g} Pa, {'+' * (apart > 0.0)}{percent(apart)} from ρc², "
-            f"{density * speed**2:.4g} Pa, and so are stresses made of strains, or strains of stresses: check it, "
-            "--density and --wave-speed"
+            f"--youngs-modulus: is {with_unit(modulus, 'Pa')}, {'+' * (apart > 0.0)}{percent(apart)} from ρc², "
+            f"{with_unit(density * speed**2, 'Pa')}, and so are stresses made of strains, or strains of stresses: "
+            "check it, --density and --wave-speed"
         )
 
 

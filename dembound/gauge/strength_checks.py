@@ -11,7 +11,7 @@ from dembound.gauge.passages import speed_of_fronts
 from dembound.gauge.plausibility import LARGEST_STRAIN, differing_modulus
 from dembound.gauge.pulse_faults import ac_coupling, faults
 from dembound.meanings import MEANINGS, fading
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 SAME, NEARER = 0.99, 0.9
 """Share of the tension at the spall that was nearer to the free end before, within this share of the distance.
@@ -92,7 +92,7 @@ def _spalled_nearer(gauge: Gauge, strength: Strength, speed: float) -> Iterator[
     first = np.where(there.any(axis=1), there.argmax(axis=1), len(moments))
     if tension[-1].max() > 0.0 and len(before := np.flatnonzero(first < first[-1])):
         yield (
-            f"--spall: all of the tension at {strength.position:g} m, {strength.nominal / 1e6:.4g} MPa, was at "
+            f"--spall: all of the tension at {strength.position:g} m, {with_unit(strength.nominal, 'Pa')}, was at "
             f"{places[before[0]]:.4g} m before, nearer to the free end, where the bar should have broken: check "
             "--spall (it is from the loaded end), --length, --wave-speed and --pulse-end"
         )

@@ -10,6 +10,7 @@ from dembound.errors import CaseError
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, radius_range
 from dembound.table import LARGEST_WHOLE, Box, Table, quantity
+from dembound.words import with_unit
 
 MOST_DISKS = 500_000_000
 """Largest number of disks of a scene: the ends of their contacts, 4.4 each, are numbered with 32 bits."""
@@ -219,9 +220,10 @@ class DensePacking(Packing):
         if not low <= pressure <= high:
             raise CaseError(
                 [
-                    f"packing.confining_stress: {self.confining_stress:g} Pa is {pressure:.2g} of the "
-                    f"contact modulus {contact_modulus:g} Pa; {low:g} to {high:g} of it "
-                    f"({low * contact_modulus:.3g} to {high * contact_modulus:.3g} Pa) can be packed"
+                    f"packing.confining_stress: {with_unit(self.confining_stress, 'Pa')} is {pressure:.2g} of the "
+                    f"contact modulus {with_unit(contact_modulus, 'Pa')}; {low:g} to {high:g} of it "
+                    f"({with_unit(low * contact_modulus, 'Pa')} to {with_unit(high * contact_modulus, 'Pa')}) "
+                    "can be packed"
                 ]
             )
         return Recipe(

@@ -5,15 +5,17 @@ from dembound.check import check, duration_in_words
 from dembound.disks.reports.facts import disk_facts
 from dembound.motion.ram import in_words
 from dembound.running import plan, warnings_before
+from dembound.words import with_unit
 
 
 def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
     case = bar({"run.time_step": 1e-4})
     facts, warnings = check(case)
     planned = plan(case)
+    limit = planned.step_limit
 
     assert facts["steps"] == "100 for 0.01 s"
-    assert facts["time step"] == f"0.0001 s, {1e-4 / planned.step_limit:.3f} of the limit {planned.step_limit:.6g} s"
+    assert facts["time step"] == f"100 µs, {1e-4 / limit:.3g} of the limit {with_unit(limit, 's')}"
     assert facts["memory"].startswith(f"about {in_words(planned.stepped.largest_memory)} at its peak")
     assert facts["reduced"] == "rows: 2 identical rows are stepped as one, 20 of 40 disks"
     assert facts["estimated time"] == "less than 1 s with 1 thread, without building, pictures"
@@ -34,7 +36,7 @@ def test_a_run_until_silence_is_announced_with_its_times(bar) -> None:
     steps = check(bar(silent))[0]["steps"]
 
     # a pulse of 0.01 s, and 4.75 m at 1000 m/s
-    assert steps == "100 for 0.01 s, or until all monitors are below 2 % of their peaks for 0.005 s, after 0.0147 s"
+    assert steps == "100 for 0.01 s, or until all monitors are below 2 % of their peaks for 5 ms, after 14.7 ms"
 
 
 def test_a_bar_is_reported_as_a_bar(spalling) -> None:

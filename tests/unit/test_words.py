@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from dembound.words import percent
+from dembound.words import columns, in_one_unit, percent, with_unit
 
 OWN = re.compile(r":[+]?\.[23]g\} %")
 """A share that is written with its own format, by which 0.998 would be "1e+02 %"."""
@@ -30,6 +30,31 @@ OWN = re.compile(r":[+]?\.[23]g\} %")
 )
 def test_shares_have_their_digits_and_no_exponent(share: float, digits: int, words: str) -> None:
     assert percent(share, digits) == words
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [
+        (8e6, "Pa", "8 MPa"),
+        (-1.23456e9, "Pa", "-1.23 GPa"),
+        (999_999.0, "Pa", "1 MPa"),  # not 1000 kPa
+        (-1.0, "Pa", "-1 Pa"),
+        (0.0025, "Pa", "0.0025 Pa"),  # mPa would be read as MPa
+        (0.0, "Pa", "0 Pa"),
+        (2.5e13, "Pa", "25000 GPa"),
+        (2740.3, "m/s", "2740 m/s"),
+        (2.463e-4, "s", "246 µs"),
+        (float("inf"), "Pa", "inf Pa"),
+        (float("nan"), "Pa", "nan Pa"),
+    ],
+)
+def test_numbers_have_three_digits_and_the_prefix_that_suits_them(value: float, unit: str, words: str) -> None:
+    assert with_unit(value, unit) == words
+
+
+def test_numbers_beside_each_other_have_one_unit_and_aligned_columns() -> None:
+    assert in_one_unit([2.3936e9, 0.3874e9, -1e6], "Pa") == (["2.39", "0.387", "-0.001"], "GPa")
+    assert columns([["monitor", "at"], ["P1", "0.5 s"]]) == ["monitor     at", "P1       0.5 s"]
 
 
 def test_no_message_has_a_format_of_its_own() -> None:

@@ -20,6 +20,7 @@ from dembound.disks.material.homogenise import HomogenisedMaterial, homogenise
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
+from dembound.words import with_unit
 
 LARGEST_OVERLAP = 0.1
 """Largest locked-in pressure over the contact modulus: the largest pressure at which bricks are packed."""
@@ -157,8 +158,8 @@ def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) 
         if ground.packed_pressure <= 0.0:
             raise CaseError(["material.locked_in: needs disks that were packed under stress; use static.stress"])
         if material.locked_in > most:
-            allowed = f"at most {most:.3g} Pa, {LARGEST_OVERLAP:g} of the contact modulus"
-            raise CaseError([f"material.locked_in: is {material.locked_in:g} Pa, must be {allowed}"])
+            allowed = f"at most {with_unit(most, 'Pa')}, {LARGEST_OVERLAP:g} of the contact modulus"
+            raise CaseError([f"material.locked_in: is {with_unit(material.locked_in, 'Pa')}, must be {allowed}"])
     return ground
 
 

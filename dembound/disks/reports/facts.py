@@ -14,7 +14,7 @@ from dembound.disks.reports.incident_facts import incident_facts
 from dembound.disks.reports.summary import describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
-from dembound.words import Entries, percent
+from dembound.words import Entries, in_one_unit, percent, with_unit
 
 BALANCED = 1e-9
 """Part of the forces of a pressure below which their sum is a rounding error."""
@@ -82,16 +82,19 @@ def _hole_facts(case: DiskCase) -> Entries:
 def _packing_facts(scene: DiskScene) -> Entries:
     packing = describe_packing(scene)
     speeds = [
-        f"{name} = {packing[key]:.1f} m/s"
+        f"{name} = {with_unit(packing[key], 'm/s')}"
         for name, key in (("c_p", "p_wave_speed"), ("c_s", "s_wave_speed"))
         if packing[key] is not None
     ]
-    stiffness = ", ".join(f"{name} {packing[name] / 1e9:.4f}" for name in ("C11", "C22", "C12", "C66"))
-    disks, pressure = counted(packing["disks_per_brick"], "disk"), f"{scene.ground.packed_pressure / 1e6:.3f} MPa"
-    solid = f"solid fraction {packing['solid_fraction']:.4f}"
-    yield "brick", f"{disks}, {solid}, {packing['coordination']:.3f} contacts per disk"
-    yield "brick equilibrium", f"residual force ratio {packing['residual_ratio']:.1e}, packed under {pressure}"
-    yield "homogenised stiffness", f"{stiffness} GPa"
+    disks = counted(packing["disks_per_brick"], "disk")
+    solid = f"solid fraction {packing['solid_fraction']:.3f}"
+    yield "brick", f"{disks}, {solid}, {packing['coordination']:.3g} contacts per disk"
+    if (pressure := scene.ground.packed_pressure) > 0.0:  # a lattice needs none
+        ratio = f"residual force ratio {packing['residual_ratio']:.1e}"
+        yield "brick equilibrium", f"{ratio}, packed under {with_unit(pressure, 'Pa')}"
+    moduli = ("C11", "C22", "C12", "C66")
+    texts, unit = in_one_unit([packing[name] for name in moduli], "Pa")
+    yield "homogenised stiffness", f"{', '.join(map(' '.join, zip(moduli, texts, strict=True)))} {unit}"
     yield "wave speeds", ", ".join(speeds) or "no motion is free"
 
 
@@ -106,7 +109,7 @@ def _law_facts(scene: DiskScene) -> Entries:
     bonds = "no bonds"
     if scene.ground.moduli.pb_emod > 0.0:
         tension, shear = (
-            "unbreakable" if strength is None else f"{strength / 1e6:.3g} MPa"
+            "unbreakable" if strength is None else with_unit(strength, "Pa")
             for strength in (material.pb_ten, material.pb_coh)
         )
         pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
@@ -125,7 +128,7 @@ def _law_facts(scene: DiskScene) -> Entries:
             for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh))
             if strength is not None
         ]
-        yield "locked-in stress", ", ".join([f"{material.locked_in / 1e6:.3g} MPa before the static stage", *shares])
+        yield "locked-in stress", ", ".join([f"{with_unit(material.locked_in, 'Pa')} before the static stage", *shares])
 
 
 def _static_facts(case: DiskCase) -> Entries:
@@ -135,7 +138,8 @@ def _static_facts(case: DiskCase) -> Entries:
         return
     acting = [load.name for load in case.load if load.wave is None]
     if static.stress is not None:
-        acting.append("σ_xx, σ_yy, σ_xy = {:.3g}, {:.3g}, {:.3g} MPa".format(*(s / 1e6 for s in static.stress)))
+        texts, unit = in_one_unit(static.stress, "Pa")
+        acting.append(f"σ_xx, σ_yy, σ_xy = {', '.join(texts)} {unit}")
     if case.material.locked_in:
         acting.append("the locked-in stress")
     sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
@@ -159,7 +163,7 @@ def _images(scene: DiskScene, nodes: np.ndarray, forces: np.ndarray) -> str:
     for side, edge in scene.edges.items():
         if scene.case.side(side).is_mirror and np.isin(nodes, edge.nodes).all():
             both = 2.0 * forces[:, :2].sum(axis=0) * (np.arange(2) != edge.axis)
-            return "; with the images beyond {} ({:.4g}, {:.4g}) N/m".format(side, *both)
+            return f"; with the images beyond {side} {_force(both)}"
     return ""
 
 
@@ -167,17 +171,23 @@ def _whole_of(load: Load, scene: DiskScene, forces: np.ndarray) -> str:
     """The total force of a load, or its pressure with the length of wall for its forces (k, 3)."""
     whole = forces[:, :2].sum(axis=0)
     if load.pressure is None:
-        return "({:.4g}, {:.4g}) N/m".format(*whole)
+        return _force(whole)
     all_forces = np.hypot(*forces[:, :2].T).sum()
     whole[np.abs(whole) < BALANCED * all_forces] = 0.0
-    left = ", ({:.4g}, {:.4g}) N/m in all".format(*whole) if whole.any() else ""
+    left = f", {_force(whole)} in all" if whole.any() else ""
     length = all_forces / abs(load.pressure)
-    return f"{load.pressure / 1e6:.4g} MPa on {length:.4g} m of wall of hole {load.hole}{left},"
+    return f"{with_unit(load.pressure, 'Pa')} on {length:.3g} m of wall of hole {load.hole}{left},"
+
+
+def _force(whole: np.ndarray) -> str:
+    """A force (2,) N/m as text."""
+    texts, unit = in_one_unit(whole.tolist(), "N/m")
+    return f"({', '.join(texts)}) {unit}"
 
 
 def _side_fact(scene: DiskScene, side: str) -> str:
     facts = describe_side(scene, side)
     return (
         f"{side_in_words(facts)}; {facts['particles']} particles, "
-        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.4f}"
+        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.3g}"
     )

@@ -8,6 +8,7 @@ import numpy as np
 from dembound.boundaries.viscoelastic import Springs
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.words import with_unit
 
 UNLIKE = 2.0
 """Factor by which the springs' mean 1/L may differ from that of the nearest place where waves begin."""
@@ -88,6 +89,7 @@ def _wrong_modulus(scene: DiskScene, side: str, table: Springs) -> Iterator[str]
     ratio = table.shear_modulus(medium) / medium.shear_modulus if medium.shear_modulus > 0.0 else math.nan
     if ratio > OTHER_MODULUS or ratio < 1.0 / OTHER_MODULUS:  # nan is neither
         yield (
-            f"boundary.{side}.young_modulus: gives springs of G = {table.shear_modulus(medium):.3g} Pa, "
-            f"{ratio:.2g} times that of the disks, {medium.shear_modulus:.3g} Pa; is it in Pa? Without it that is taken"
+            f"boundary.{side}.young_modulus: gives springs of G = {with_unit(table.shear_modulus(medium), 'Pa')}, "
+            f"{ratio:.2g} times that of the disks, {with_unit(medium.shear_modulus, 'Pa')}; is it in Pa? "
+            "Without it that is taken"
         )

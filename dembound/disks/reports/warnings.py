@@ -11,7 +11,6 @@ from dembound.boundaries import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import with_history
-from dembound.casefile.magnitudes import stress_in_words
 from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.material.wave_front import slowest_speed
@@ -27,7 +26,7 @@ from dembound.disks.stepping.near_ties import near_tie_warnings
 from dembound.meanings import MEANINGS
 from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import energy_warnings, still_moving
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 LARGEST_PULL = 3.5
 """Largest tensile stress of a bond over the mean one, where contacts under a locked-in stress relax.
@@ -143,9 +142,9 @@ def _locked_in(scene: DiskScene) -> Iterator[str]:
     pulled = LARGEST_PULL * scene.ground.bond_share * material.locked_in
     if pulled > material.pb_ten:
         yield (
-            f"material.locked_in: is {material.locked_in / 1e6:.3g} MPa; where it relaxes, the largest bond stress is "
-            f"about {pulled / 1e6:.3g} MPa of tension, above material.pb_ten = {material.pb_ten / 1e6:.3g} MPa, and "
-            "break in the static stage"
+            f"material.locked_in: is {with_unit(material.locked_in, 'Pa')}; where it relaxes, the largest bond stress "
+            f"is about {with_unit(pulled, 'Pa')} of tension, above material.pb_ten = "
+            f"{with_unit(material.pb_ten, 'Pa')}, and bonds break in the static stage"
         )
 
 
@@ -158,8 +157,8 @@ def _settles_in_tension(scene: DiskScene) -> Iterator[str]:
     largest = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)
     if largest > strength:
         yield (
-            f"static.stress: has a tension of {stress_in_words(largest)}, above material.pb_ten = "
-            f"{stress_in_words(strength)}; bonds break in the static stage"
+            f"static.stress: has a tension of {with_unit(largest, 'Pa')}, above material.pb_ten = "
+            f"{with_unit(strength, 'Pa')}; bonds break in the static stage"
         )
 
 

@@ -26,7 +26,7 @@ from dembound.errors import CaseError
 from dembound.waves.constant import Constant
 from dembound.waves.spectrum import HANN_FADE
 from dembound.waves.wave import Wave
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 FEWEST_PER_WAVELENGTH = 20.0
 """Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
@@ -76,7 +76,7 @@ def strong_waves(scene: DiskScene) -> dict[str, str]:
     impedance = medium.density * medium.p_wave_speed
     stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in entering}
     return {
-        name: f"{stress / 1e6:.3g} MPa, above the confining stress of {pressure / 1e6:.3g} MPa"
+        name: f"{with_unit(stress, 'Pa')}, above the confining stress of {with_unit(pressure, 'Pa')}"
         for name, stress in stresses.items()
         if stress > pressure
     }

@@ -20,7 +20,7 @@ def test_facts_are_those_of_the_bar(spalling) -> None:
 
     assert facts.pop("right end").startswith("viscous, β_P = 0.9; returns at most ")
     expected = {
-        "nodes": "41, 0.025 m apart",
+        "nodes": "41, 25 mm apart",
         "method": "peridynamics, horizon = 3, corrected_ends = false",
         "Courant number": "1",
         "bar": "1 m long, section 1 m², density 2500 kg/m³",
@@ -30,8 +30,8 @@ def test_facts_are_those_of_the_bar(spalling) -> None:
         "left end": "free",
         "load hit": "12 MPa times wave hit, on 3 nodes at the left end",
         "monitor gauge": "node 21 at 0.525 m",
-        "cracks": "G_f = 10000 J/m², open at w_c = 2G_f/σ_t = 2500 µm, characteristic length EG_f/σ_t² = 173.6 mm, "
-        "spacing at most 34.72 mm",
+        "cracks": "G_f = 10000 J/m², open at w_c = 2G_f/σ_t = 2.5 mm, characteristic length EG_f/σ_t² = 174 mm, "
+        "spacing at most 34.7 mm",
         "strain rates": "strength from 8 MPa at 1 1/s to 12 MPa at 100 1/s",
     }
     assert facts.items() >= expected.items()

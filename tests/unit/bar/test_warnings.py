@@ -60,7 +60,7 @@ def ending(side: str = "right", **more) -> dict:
         (blow(808.0), "load.blow", None),
         (blow(-792.0), "load.blow", f"its pressure is 792 Pa, 0.0099 % of {MPA}"),
         (blow(7.92e9), "load.blow", None),
-        (blow(8.08e9), "load.blow", f"its pressure is 8080 MPa, 1,010 times {MPA}"),
+        (blow(8.08e9), "load.blow", f"its pressure is 8.08 GPa, 1,010 times {MPA}"),
         (UNBROKEN | blow(1e-9), "load.blow", None),  # what cannot break has no strength to compare with
         # δ = 3·25 mm; a quarter of EG_f/σ_t², 2.5 GPa·G_f/(8 MPa)², is as long at 7.68 kJ/m²
         ({"method": SPALLING["method"], "bar.fracture_energy": 7.6e3}, "method.horizon", "is 0.075 m long"),

@@ -168,7 +168,7 @@ def test_a_bar_that_nothing_pulls_is_warned_of(spalling, tmp_path) -> None:
     for tension, warned in ((4.1e5, False), (3.9e5, True)):
         with h5py.File(folder / "run.h5", "r+") as file:
             file["histories/gauge/stress"][3] = tension
-        said = "bar: the largest tension reached is 0.39 MPa, 4.9 % of the strength, 8 MPa; nothing can break"
+        said = "bar: the largest tension reached is 390 kPa, 4.9 % of the strength, 8 MPa; nothing can break"
         assert after(case, folder) == warned * [said]
     unbroken = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}
     assert after(spalling({**FIRM, "bar": unbroken}), folder) == []

@@ -13,7 +13,7 @@ CAVITY = {"name": "cavity", "type": "circle", "centre": [10.0, 5.0], "radius": 2
 DRIVEN = {"boundary.top": {"type": "viscous_input", "wave_p": "blow"}}
 IN_CAVITY = {"load": [PRESS], "hole": [CAVITY]}
 FROM_LOAD = "but waves come from load.blow, at (9.5, 9.5) m"
-MODULUS = "young_modulus: gives springs of G = 1e+"
+MODULUS = "young_modulus: gives springs of G = 1"
 
 
 def at(*source: float) -> dict:
