@@ -35,7 +35,7 @@ def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
             "take a smaller bar.spacing or run.courant"
         )
     if error := summary["energy"]["relative_error"]:
-        facts.append(f"energy closes to {percent(error)}")
+        facts.append(f"largest error of the energy balance: {percent(error)}")
     return facts
 
 

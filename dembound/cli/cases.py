@@ -104,6 +104,8 @@ def run(
         require_replaceable(folder, case)
     if bound is not None:
         loaded = [chosen(case, bound, keep, changes, longest) for case in loaded]
+    for case in loaded:
+        _print_replaced(case, output)
     for case in loaded[1:]:  # the first is planned below, before anything is written
         preflight(case)
     for number, case in enumerate(loaded):
@@ -136,9 +138,7 @@ def resume(
             for line in changes_since(folder):
                 err.print(f"warning: {line}")
         done = _watched(Folder.of(folder), partial(resume_case, folder, until))
-        _print_results(done)
-        if recorded_case(done / "run.h5").output.estimate:
-            print_estimate(done)
+        _print_results(done, estimated=recorded_case(done / "run.h5").output.estimate)
 
 
 @app.command("rerun", rich_help_panel=MORE)
@@ -163,6 +163,7 @@ def rerun(
     if changes:
         _require_another_folder(path, output, case.name)
     prepare_computing(threads)
+    _print_replaced(case, output)
     begun_for = recorded_beginning(path) if case.run.duration == recorded.run.duration else None
     if begun_for is not None:
         err.print(f"{case.name}: ledger and snapshots at the intervals of the run as it was begun, for {begun_for:g} s")
@@ -178,6 +179,15 @@ def _require_another_folder(record: Path, output: Path, name: str) -> None:
         raise CaseError(
             [f"--set: would replace {record}, from which the case is read; give another --name or --output"]
         )
+
+
+def _print_replaced(case: Case, output: Path) -> None:
+    """Print which results a run of the case will replace."""
+    from dembound.results.folder import Folder
+    from dembound.running import replaced_in_words
+
+    for line in replaced_in_words(Folder(output, case.name), case):
+        err.print(f"{case.name}: {line}")
 
 
 def _run(
@@ -196,9 +206,8 @@ def _run(
     from dembound.running import run_case
 
     folder = Folder(output, case.name)
-    _print_results(_watched(folder, partial(run_case, case, output, seconds=spent, begun_for=begun_for)))
-    if estimated or case.output.estimate:
-        print_estimate(folder.final)
+    done = _watched(folder, partial(run_case, case, output, seconds=spent, begun_for=begun_for))
+    _print_results(done, estimated=estimated or case.output.estimate)
 
 
 def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:
@@ -217,18 +226,15 @@ def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:
         raise
 
 
-def _print_results(folder: Path) -> None:
-    """Print the outcome of a run and its folder."""
-    from dembound.kinds import kind_of_record
-    from dembound.results.summary import end_in_words
+def _print_results(folder: Path, *, estimated: bool) -> None:
+    """Print the outcome of a run, the peaks at its monitors, its files, and the next command; estimate its errors."""
+    from dembound.cli.ending import ending
     from dembound.results.summary_file import read_summary
 
-    summary = read_summary(folder)
-    name = summary["name"]
-    facts = [*end_in_words(summary), *kind_of_record(folder / "run.h5").outcome(summary)]
-    if facts:
-        out.print(f"{name}: {'; '.join(facts)}")
-    out.print(f"{name}: results in {folder}")
+    for line in ending(folder, read_summary(folder), estimated=estimated):
+        out.print(line)
+    if estimated:
+        print_estimate(folder)
 
 
 def _left_of(folder: Path) -> list[str]:

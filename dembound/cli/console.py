@@ -23,6 +23,12 @@ class PlainConsole(Console):
     def __init__(self, **options: Any) -> None:
         super().__init__(markup=False, emoji=False, highlight=False, soft_wrap=True, **options)
 
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print; texts are broken between words on a terminal, and elsewhere have one line each, for scripts."""
+        if self.is_terminal and all(isinstance(each, str) for each in objects):
+            options.setdefault("soft_wrap", False)
+        super().print(*objects, **options)
+
     def render_str(self, text: str, **options: Any) -> Text:
         """The text of anything printed, also of cells and titles, in one line."""
         return super().render_str(visible(text), **options)

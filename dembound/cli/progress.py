@@ -4,9 +4,11 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as RichProgress
+from rich.text import Text
 
+from dembound.cli.compiling import COMPILATION
 from dembound.cli.console import INTERVAL, err
 from dembound.motion.trackers import Run
 from dembound.running import Progress
@@ -23,9 +25,22 @@ def progress_of(name: str) -> Iterator[Progress]:
         BarColumn(),
         TextColumn("{task.percentage:3.0f} %  {task.fields[rate]}", markup=False),
         TimeRemainingColumn(),
+        _Compiling(),
     )
-    with RichProgress(*columns, console=err, transient=True) as bar:
-        yield ProgressBar(bar, name)
+    COMPILATION.beside_bar = True
+    try:
+        with RichProgress(*columns, console=err, transient=True) as bar:
+            yield ProgressBar(bar, name)
+    finally:
+        COMPILATION.beside_bar = False
+
+
+class _Compiling(ProgressColumn):
+    """What is being compiled, and for how long."""
+
+    def render(self, task: Task) -> Text:
+        """The note of the process."""
+        return Text(COMPILATION.note())
 
 
 def print_warning(name: str, message: str) -> None:
@@ -45,6 +60,8 @@ class Lines(Progress):
     def __init__(self, name: str, now: Callable[[], float] = time.monotonic) -> None:
         self.name, self.now = name, now
         self.began = self.said = now()
+        self.next = INTERVAL
+        """Seconds of a static stage after which the next line is printed."""
         self.steps: int | None = None
         """Steps of the run at the last line; None before the first block."""
         self.compiled = 0.0
@@ -55,11 +72,10 @@ class Lines(Progress):
         print_warning(self.name, message)
 
     def settling(self, steps: int, ratio: float) -> None:
-        """Print time, steps and force ratio of the static stage."""
-        if self.now() - self.said >= INTERVAL:
-            self.said = self.now()
-            took = self.said - self.began
-            err.print(f"{self.name}: settling for {took:.0f} s, {steps:,} steps, force ratio {ratio:.1e}")
+        """Print time, steps and force ratio of the static stage, after 10, 20, 40, … seconds."""
+        if (took := self.now() - self.began) >= self.next:
+            self.next *= 2.0
+            err.print(f"{self.name}: static stage, {took:.0f} s, {steps:,} steps, unbalanced force ratio {ratio:.1e}")
 
     def running(self, run: Run, steps: int) -> None:
         """Print steps done and in all, simulated time, and particle-steps per second since the last line."""
@@ -89,7 +105,7 @@ class ProgressBar(Progress):
 
     def settling(self, steps: int, ratio: float) -> None:
         """The static stage, whose number of steps is not known in advance."""
-        self.bar.update(self.task, description=f"{self.name}: settling, {steps:,} steps, force ratio {ratio:.1e}")
+        self.bar.update(self.task, description=f"{self.name}: static stage, {steps:,} steps, ratio {ratio:.1e}")
 
     def running(self, run: Run, steps: int) -> None:
         """The run itself."""

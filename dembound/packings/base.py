@@ -220,7 +220,7 @@ class DensePacking(Packing):
         if not low <= pressure <= high:
             raise CaseError(
                 [
-                    f"packing.confining_stress: {with_unit(self.confining_stress, 'Pa')} is {pressure:.2g} of the "
+                    f"packing.confining_stress: {with_unit(pressure * contact_modulus, 'Pa')} is {pressure:.2g} of the "
                     f"contact modulus {with_unit(contact_modulus, 'Pa')}; {low:g} to {high:g} of it "
                     f"({with_unit(low * contact_modulus, 'Pa')} to {with_unit(high * contact_modulus, 'Pa')}) "
                     "can be packed"

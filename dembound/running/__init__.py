@@ -4,6 +4,7 @@ from dembound.running.disk_space import space_in_words, space_warnings
 from dembound.running.job import SECTIONS, resume_case, run_case
 from dembound.running.planning import MOST_STEPS, plan, preflight, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
+from dembound.running.replaced import replaced_in_words
 from dembound.running.shared import Shared
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "Shared",
     "plan",
     "preflight",
+    "replaced_in_words",
     "require_stages",
     "resume_case",
     "run_case",

@@ -4,7 +4,7 @@ import json
 import math
 import shutil
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -153,9 +153,13 @@ def _changed_keys(path: Path, recorded: dict[str, Any]) -> Iterator[str]:
         keys = [line.partition(":")[0] for line in differences(recorded, _lasting_any_time(now))]
     except DemboundError as error:
         keys = [str(error).splitlines()[0]]
-    listed = ", ".join(keys[:MOST_KEYS]) + ", …" * (len(keys) > MOST_KEYS)
-    of_it = f"{path}: has changed since the run began ({listed}); the case as it was goes on"
+    of_it = f"{path}: has changed since the run began ({listed(keys)}); the case as it was goes on"
     yield from [f"{of_it}, dembound run begins the changed one"] if keys else []
+
+
+def listed(keys: Sequence[str]) -> str:
+    """The first of some changed keys as text."""
+    return ", ".join(keys[:MOST_KEYS]) + ", …" * (len(keys) > MOST_KEYS)
 
 
 def _changed_inputs(folder: Path, inputs: Mapping[str, str]) -> Iterator[str]:

@@ -272,13 +272,14 @@ def test_a_run_tells_its_warnings_what_happened_and_is_named(dembound, written, 
     # where kernels are compiled meanwhile, a line of progress may stand between the warnings
     warned = [line for line in answer.err.splitlines() if "particle-steps/s" not in line]
     assert warned == [f"soft: warning: {warning}" for warning in found["warnings"]]
-    told = answer.out.splitlines()[-2]
-    laws, cracks, energy = told.removeprefix("soft: ").split("; ")
+    told = [line.removeprefix("soft: ") for line in answer.out.splitlines() if line.startswith("soft: ")]
+    laws, cracks, energy, folder = told
+    assert folder == f"results in {Path('results') / 'soft'}"
     assert laws == f"elastic law to {found['laws'][1]['from']:.3g} s, then linearpbond"
     count = found["cracks"]["tension"]
     assert count > 0
     assert cracks.split(", one draw")[0] == f"{count} bonds broke ({count} tension, 0 shear)"
-    assert energy == f"energy closes to {100.0 * found['energy']['relative_error']:.2g} %"
+    assert energy == f"largest error of the energy balance: {100.0 * found['energy']['relative_error']:.2g} %"
 
 
 def test_off_a_terminal_a_run_says_every_ten_seconds_how_far_it_is(bar, capsys) -> None:
@@ -305,8 +306,8 @@ def test_off_a_terminal_a_run_says_every_ten_seconds_how_far_it_is(bar, capsys) 
         clock[0] = now
         lines.settling(steps, 1e-3 / now)
     assert capsys.readouterr().err.splitlines() == [
-        "bar: settling for 10 s, 1,200 steps, force ratio 1.0e-04",
-        "bar: settling for 21 s, 2,400 steps, force ratio 4.8e-05",
+        "bar: static stage, 10 s, 1,200 steps, unbalanced force ratio 1.0e-04",
+        "bar: static stage, 21 s, 2,400 steps, unbalanced force ratio 4.8e-05",
     ]
 
 
@@ -327,7 +328,7 @@ def test_cases_are_run_one_after_the_other_and_differences_told(dembound, writte
     ran = dembound("run", written("one"), written("two"), written("other", moved), "--output", "kept")
     assert ran.code == 0
     saved = "rows: 2 identical rows are stepped as one, 20 of 40 disks"
-    assert ran.out.splitlines() == [
+    assert [line for line in ran.out.splitlines() if not line.startswith(" ")] == [
         line for name in ("one", "two", "other") for line in (f"{name}: {saved}", f"{name}: results in kept/{name}")
     ]
     answer = dembound("compare", "kept/one", "kept/two", "kept/other")
@@ -858,7 +859,9 @@ def test_rounding_errors_are_printed_as_none(dembound, rod) -> None:
 def test_markup_in_titles_and_names_is_text(dembound, written, tmp_path) -> None:
     path = written("[bold]", {"title": "[/bold] $x^{$ :smile:"})
     assert "[bold]: [/bold] $x^{$ :smile:" in dembound("check", path).out
-    assert dembound("run", path).out.splitlines()[-1].endswith(f"results in {Path('results') / '[bold]'}")
+    told = dembound("run", path).out
+    assert f": results in {Path('results') / '[bold]'}\n" in told
+    assert "next: dembound report 'results/[bold]'\n" in told
     assert dembound("plot", "results/[bold]", "--title", "[/bold] $x^{$", "-o", "[p].png").out == "wrote [p].png\n"
 
 

@@ -143,7 +143,7 @@ def _static_facts(case: DiskCase) -> Entries:
     if case.material.locked_in:
         acting.append("the locked-in stress")
     sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
-    yield "static stage", f"under {' and '.join(acting)}, to a force ratio of {static.ratio:g}"
+    yield "static stage", f"under {' and '.join(acting)}, to an unbalanced force ratio of {static.ratio:g}"
     yield "static sides", sides
 
 

@@ -6,24 +6,27 @@ from typing import Any
 from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.motion.cracks import MANY
 from dembound.results.reader import laws_in_words
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 SHOWN = 1e-3
-"""Share of the stress below which deviations of the packing itself are not reported."""
+"""Share of the stress below which what differs in the packing itself is not printed."""
 
 
 def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
     """Reductions, the static stage, changes of law, broken bonds and the energy error."""
     facts = [*summary["reduced"], *summary["not_reduced"]]
     if (static := summary["static"]) is not None:
+        stages = [("static stage", static)]
         if (before := static["before"]) is not None:
-            facts += _settled(before, "settled")
-        facts += _settled(static, "settled" if before is None else "after the excavation")
+            stages = [("static stage before the excavation", before), ("static stage after the excavation", static)]
+        lines = [line for name, stage in stages for line in _stages(name, stage)]
+        took = with_unit(summary["seconds"]["settle"], "s", 2)
+        facts += [*lines[:-1], f"{lines[-1]}; {took}{' for all stages' if len(lines) > 1 else ''}"]
     if summary["has_history"]:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
         facts += _broken(summary["cracks"], static)
         if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
-            facts.append(f"energy closes to {percent(error)}")
+            facts.append(f"largest error of the energy balance: {percent(error)}")
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts
@@ -37,33 +40,33 @@ def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list
     modes = f"({cracks['tension']:,} tension, {cracks['shear']:,} shear)"
     stages = [] if static is None else [each["cracks"] for each in (static, static["before"]) if each is not None]
     if [count] == stages:
-        return [f"bonds broke only while settling {modes}"]
+        return [f"bonds broke only in the static stage {modes}"]
     draw = ", one draw of many: see dembound estimate --repeat" if count - sum(stages) > MANY else ""
     return [f"{count:,} bonds broke{' in all' if any(stages) else ''} {modes}{draw}"]
 
 
-def _settled(static: Mapping[str, Any], words: str) -> list[str]:
-    """Results of a static stage, preceded by those of its free-field column if there is one."""
-    column = [] if static["column"] is None else [f"column settled in {_stage(static['column'])}"]
-    return [*column, f"{words} in {_stage(static)}"]
+def _stages(name: str, static: Mapping[str, Any]) -> list[str]:
+    """Results of a static stage, after those of its free-field column if there is one."""
+    column = [] if static["column"] is None else [f"{name} of the free-field column: {_stage(static['column'])}"]
+    return [*column, f"{name}: {_stage(static)}"]
 
 
 def _stage(static: Mapping[str, Any]) -> str:
     """Results of a static stage in words, from its summary."""
     reached = ""
     if (asked := static["asked"]) is not None:  # supports may have prevented it
-        reached = f" and a stress of {_in_mpa(static['stress'])} where {_in_mpa(asked)} MPa was asked for"
+        reached = f", stress {_in_mpa(static['stress'])} of {_in_mpa(asked)} MPa requested"
         reached += _even(static["uniformity"])
     broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
-    return f"{static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{reached}{broken}"
+    return f"{static['steps']:,} steps, unbalanced force ratio {static['ratio']:.1e}{reached}{broken}"
 
 
 def _even(uniformity: Mapping[str, Any]) -> str:
     """Deviation of the stress in blocks from the requested stress, in words."""
     own, beyond, near = (uniformity[key] for key in ("packing", "beyond", "near_holes"))
     return (
-        f", to {percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
-        f"{f', to {percent(beyond)} beside what the packing has by itself' if own >= SHOWN else ''}"
+        f", within {percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
+        f"{f', {percent(beyond)} beside what the packing has by itself' if own >= SHOWN else ''}"
         f"{f', {percent(near)} beside holes' if near is not None else ''}"
     )
 

@@ -117,9 +117,10 @@ def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarr
     steps = run.state.step
     facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
     if steps >= static.max_steps:
-        return f"came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}\nallow more with static.max_steps"
+        came = f"came to an unbalanced force ratio of {ratio:.3g} in {steps:,} steps"
+        return f"{came}, {facts}\nallow more with static.max_steps"
     return (
-        f"stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}\n"
+        f"stalls at an unbalanced force ratio of {ratio:.3g} after {steps:,} steps, {facts}\n"
         "is the body held, and can its contacts carry the load?"
     )
 

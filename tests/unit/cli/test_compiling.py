@@ -7,7 +7,8 @@ from types import SimpleNamespace
 
 from numba.core import event
 
-from dembound.cli.compiling import MESSAGE, FirstCompilation
+from dembound.cli import compiling
+from dembound.cli.compiling import MESSAGE, Compilation
 
 COMPUTE = """
 import numpy as np
@@ -31,9 +32,31 @@ def test_only_the_first_kernel_compiled_is_reported(tmp_path) -> None:
     assert printed() == ""  # loaded
 
 
+def compiled(module: str, status: event.EventStatus) -> event.Event:
+    """What numba sends when it begins or ends to compile a function of a module."""
+    dispatcher = SimpleNamespace(py_func=SimpleNamespace(__module__=module))
+    return event.Event("numba:compile", status, {"dispatcher": dispatcher})
+
+
+def test_on_a_terminal_the_time_of_compiling_is_shown_until_it_is_over(monkeypatch) -> None:
+    shown = []
+    status = SimpleNamespace(start=lambda: shown.append("begins"), stop=lambda: shown.append("ends"))
+    monkeypatch.setattr(compiling.err, "_force_terminal", True)
+    monkeypatch.setattr(compiling.err, "status", lambda note: status)
+    clock = iter([10.0, 10.0, 13.0, 14.0, 20.0, 20.0, 21.5])
+    listener = Compilation(lambda: next(clock))
+    begin, end = (compiled("dembound.kernels.loop", each) for each in (event.EventStatus.START, event.EventStatus.END))
+    for each in (begin, begin, end):  # one function within another
+        listener.notify(each)
+    assert (shown, listener.note()) == (["begins"], "compiling the solver, 3 s")
+    listener.notify(end)
+    assert (shown, listener.note()) == (["begins", "ends"], "")
+    listener.notify(begin)
+    assert listener.note() == "compiling the solver, 6 s"  # 4 s before, 1.5 s now
+
+
 def test_functions_of_other_packages_are_not_reported(capsys) -> None:
-    listener = FirstCompilation()
+    listener = Compilation()
     for module, said in (("scipy.special", ""), ("dembound.kernels.loop", f"{MESSAGE}\n"), ("dembound.machine", "")):
-        dispatcher = SimpleNamespace(py_func=SimpleNamespace(__module__=module))
-        listener.notify(event.Event("numba:compile", event.EventStatus.START, {"dispatcher": dispatcher}))
+        listener.notify(compiled(module, event.EventStatus.START))
         assert capsys.readouterr().err == said

@@ -68,7 +68,7 @@ def test_edge_radii_are_adjusted_to_whole_disks():
 
 @pytest.mark.parametrize("modulus", [1e7, 1e12])
 def test_confining_stress_out_of_range_names_the_range(modulus):
-    with pytest.raises(CaseError, match=r"packing\.confining_stress: 1e\+07 Pa .* can be packed"):
+    with pytest.raises(CaseError, match=r"packing\.confining_stress: 10 MPa .* can be packed"):
         read({**B, "confining_stress": 1e7}).pack(modulus)
 
 

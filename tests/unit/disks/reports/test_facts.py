@@ -139,7 +139,10 @@ def test_loads_and_the_static_stage_are_reported(bar) -> None:
     # 40 disks of 625 kg; two of them in each of two columns in the region
     assert facts["load weight"] == "(250, 0) kN/m on 40 particles, steady"
     assert facts["load tap"] == "(1, 0) MN/m on 4 particles, times wave pulse"
-    assert facts["static stage"] == "under weight and σ_xx, σ_yy, σ_xy = -1, -2, 0 MPa, to a force ratio of 1e-05"
+    assert (
+        facts["static stage"]
+        == "under weight and σ_xx, σ_yy, σ_xy = -1, -2, 0 MPa, to an unbalanced force ratio of 1e-05"
+    )
     assert facts["static sides"] == "left fixed"
     assert Disks().not_estimated(case) == ["the static stage"]
 
