@@ -146,10 +146,10 @@ type = "viscous"
 [wave.pulse]
 type = "ricker"
 amplitude = 0.1
-frequency = 20.0
+frequency = 8.0
 
 [run]
-duration = 0.2
+duration = 0.5
 ```
 
 - **Units** are SI, angles degrees. Two dimensions mean a thickness of 1 m: forces are per metre.
@@ -369,7 +369,10 @@ def _command(name: str, command: Any, lines: Sequence[str], common: Sequence[str
 
 
 def _as_code(text: str) -> str:
-    """The text of a command with options as code."""
+    """The text of a command with options as code, and pages of docs as links."""
+    text = re.sub(
+        r"docs/((?:\w+/)*)(\w+)\.md", lambda page: f"[{page[2].replace('_', ' ')}](../{page[1]}{page[2]}.md)", text
+    )
     return re.sub(r"(?<![`\w-])(--[a-z][a-z-]*(?: [a-z]+\.[a-z]+=\w+)?)", r"`\1`", text)
 
 

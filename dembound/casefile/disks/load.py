@@ -13,9 +13,10 @@ ACTIONS = ("force", "acceleration", "pressure")
 
 
 class Load(Table):
-    """Give one of `force`, `acceleration` (with neither place: on every particle, as gravity) and `pressure`.
+    """A load on particles: one of `force`, `acceleration` and `pressure`.
 
-    A force acts on one particle or on those of a rectangle, an acceleration on these or on all, a pressure in a hole.
+    A force acts on one particle or on those of a rectangle, an acceleration on these or, with neither place, on all, as
+    gravity, and a pressure in a hole.
 
     A force is split among the particles of its region in proportion to their area; on the free surface of a continuum
     it is a uniform traction. A pressure pushes the wall of a hole away from it. A wave's values, taken as pure numbers,
