@@ -79,7 +79,7 @@ class Part:
 
 DISKS = (
     Part("`[packing]`", packings.TYPES, packings.Packing),
-    Part("`[ground]`", (Ground,)),
+    Part("`[ground]`", (Ground,), guide="tasks/absorb_waves"),
     Part("`[material]`", (Material,), guide="tasks/cracks"),
     Part("`[motion]`", (Motion,)),
     Part("`[reduce]`", (Reduce,), guide="evidence/reductions"),
@@ -88,20 +88,21 @@ DISKS = (
         boundaries.TYPES,
         Boundary,
         more="The sides are tables `[boundary.left]`, `[boundary.right]`, `[boundary.bottom]` and `[boundary.top]`.",
-        guide="tasks/choose_sides",
+        guide="tasks/absorb_waves",
     ),
-    Part("`[outside]`", (OutsideTable,), guide="tasks/choose_sides"),
+    Part("`[outside]`", (OutsideTable,), guide="tasks/absorb_waves"),
     Part(
         "`[static]`",
         (Static,),
         more="Its sides are tables `[static.boundary.left]` and so on, of type `"
         + "`, `".join(f'"{name_of(table)}"' for table in boundaries.TYPES if table.for_static)
         + "`.",
+        guide="tasks/holes_and_stress",
     ),
-    Part("`[incident]`", (IncidentWave,)),
+    Part("`[incident]`", (IncidentWave,), guide="tasks/absorb_waves"),
     Part("`[wave]`", waves.TYPES, waves.Wave, more="Each wave is a table `[wave.NAME]`."),
     Part("`[[load]]`", (Load,), guide="tasks/blasts"),
-    Part("`[[hole]]`", holes.TYPES, holes.Hole),
+    Part("`[[hole]]`", holes.TYPES, holes.Hole, guide="tasks/holes_and_stress"),
     Part("`[[monitor]]`", (Monitor,)),
     Part("`[run]`", (Run,)),
     Part("`[output]`", (Output,), guide="tasks/show_results"),
@@ -112,9 +113,9 @@ DISKS = (
 """The tables of a case of disks."""
 
 BARS = (
-    Part("`[bar]`", (Bar,)),
+    Part("`[bar]`", (Bar,), guide="tasks/bars"),
     Part("`[[bar.range]]`", (BarRange,)),
-    Part("`[method]`", methods.TYPES, methods.Method, guide="tasks/choose_sides"),
+    Part("`[method]`", methods.TYPES, methods.Method, guide="tasks/bars"),
     Part("`[[load]]` of a bar", (BarLoad,)),
     Part("`[[monitor]]` of a bar", (BarMonitor,)),
     Part("`[run]` of a bar", (BarRun,), within=Run, more="The keys of [`[run]`](#run), and:"),
