@@ -28,7 +28,7 @@ SCENE = Window(np.array([40.0, 0.0]), np.array([80.0, 60.0]))
 CLOSE = Window(np.array([83.0, 36.0]), np.array([12.0, 14.0]))
 """What the two panels show, in metres: most of the ground, and a corner of the box with part of the wall."""
 
-INCHES_PER_METRE = 4.4 / 60.0
+INCHES_PER_METRE = 4.2 / 60.0
 """Of the scene; the other panel is as high."""
 
 ARROW = {"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"}
