@@ -188,7 +188,7 @@ NAMES: dict[tuple[str, ...], Advice] = {
         ),
     ),
     ("layer", "layers", "soil", "strata", "zones"): (("packing", "there is one [material] for all disks"),),
-    ("dt", "delta_t", "time_increment", "deltat", "timestep"): _STEP,
+    ("dt", "delta_t", "time_increment", "deltat"): _STEP,
     ("courant", "cfl", "timestep_factor", "safety_factor"): (("safety", "write safety, share of the stability limit"),),
     ("mass_scaling", "density_scaling", "timestep_scale", "scaling"): (
         ("", f"there is none: it would change the speed of waves{_MORE}"),
