@@ -116,7 +116,7 @@ def test_each_mistake_gets_one_plain_line(old: str, new: str, line: str) -> None
 def test_choices_and_near_keys_are_named() -> None:
     assert problem('pattern = "A"', 'pattern = "D"') == f'packing.pattern: is "D", must be one of {PATTERNS}'
     assert problem('pattern = "A"\n', "") == f"packing.pattern: is missing, must be one of {PATTERNS}"
-    assert problem("duration = 0.1", "duration = 0.1\ntimestep = 1").endswith("(did you mean time_step?)")
+    assert problem("duration = 0.1", "duration = 0.1\ntimstep = 1").endswith("(did you mean time_step?)")
 
 
 def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
