@@ -25,6 +25,7 @@ from typing import Any
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -57,14 +58,14 @@ QUICK = ("p_pulse", "p_and_s", "resonance", "interface")
 DRAWING = ("plot", "signals", "sweep", "chart", "boundary", "packing", "movie")
 """Commands whose pictures are shown."""
 
-WIDTH, DOTS = 6.2, 160
+WIDTH, DOTS = 6.2, 130
 """Width of a picture in inches, and its dots per inch: ten points are legible on a page of 390 and of 1440 pixels."""
 
 SCENE = (4.4, 4.2)
 """Largest width and height of a scene in a picture, inches."""
 
-TALLEST = 5.0
-"""Height of the tallest figure of a picture, inches."""
+HEIGHTS = (3.3, 5.8)
+"""Least and largest height of a figure of a picture, inches."""
 
 RUNS = ("build", "settle", "step", "record")
 """Sections of the entry `seconds` of a summary that are the time of a run, without imports, compiling and pictures."""
@@ -113,7 +114,7 @@ class Example:
         for key, value in tomllib.loads(self.tables).items():
             arguments.append(f"    {key}={as_python(value, 4, len(key) + 1)},")
         made = "import dembound\n\ncase = dembound.case(" + "\n".join(arguments) + "\n)\n"
-        return f'{made}results = dembound.run(case, "results")\nprint(dembound.estimate("{self.estimated}").worst())'
+        return f'{made}results = dembound.run(case, "results")\nprint(dembound.estimate("results/{self.name}").worst())'
 
     @property
     def estimated(self) -> str:
@@ -158,9 +159,9 @@ def as_python(value: Any, indent: int = 0, before: int = 0) -> str:
 def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
     """The page of all examples, cards by topic, and the list of pages."""
     parts = [
-        "# Gallery\n\nEvery picture is a case that runs in seconds: `dembound cases copy gallery/p_pulse`, then the commands of "
-        "its page. Run times are those of one core, compiled, without pictures; errors are those that `dembound "
-        "estimate` predicts.\n"
+        "# Gallery\n\nEvery picture is a case that runs in seconds: `dembound cases copy gallery/p_pulse`, then the "
+        "commands of its page.\nRun times are those of one core, compiled, without pictures. Errors are those that "
+        "`dembound estimate` predicts.\n"
     ]
     for topic, names in TOPICS.items():
         parts.append(f"## {topic}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n")
@@ -172,16 +173,17 @@ def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
     return "\n".join(parts)
 
 
-@style.styled
 def fitted(figure: Figure) -> np.ndarray:
-    """The pixels (rows, columns, 3) of a figure in the common width; legends are laid out again for it."""
+    """The pixels (rows, columns, 3) of a figure in the common width, laid out again for it; a chart is scaled."""
     width, height = figure.get_size_inches()
-    figure.set_size_inches(WIDTH, min(height * max(WIDTH / width, 0.75), TALLEST))
-    figure.set_dpi(DOTS)
-    figure.suptitle(figure.get_suptitle(), fontsize=9)
+    if figure.legends or figure.get_supylabel():
+        figure.set_size_inches(WIDTH, float(np.clip(height * max(WIDTH / width, 0.75) + 0.4, *HEIGHTS)))
+        figure.suptitle(figure.get_suptitle(), fontsize=9)
     if figure.legends:
         figure.legends[0].remove()
-        style.outside_legend(figure, figure.axes, columns=3)
+        with rc_context({"legend.fontsize": 8, "legend.frameon": False}):
+            style.outside_legend(figure, figure.axes, columns=3)
+    style.set_pixels(figure, int(WIDTH * DOTS))
     return style.pixels_of(figure)
 
 
@@ -228,7 +230,7 @@ def predicted(results: Path) -> str:
     cause = max(worst.by, key=lambda name: worst.by[name], default="rounding")
     size = f"{percent(worst.share.value)}, at most {percent(worst.share.upper)}"
     words = f"{size}: {worst.quantity} at `{worst.monitor}`, most by {cause}"
-    return "; ".join([words, *(f"not: {each}" for each in unknown[:1])])
+    return "; ".join([words, *(f"not estimated: {each}" for each in unknown[:1])])
 
 
 def write_pages(examples: dict[str, Example], measured: dict[str, Measured]) -> None:
