@@ -38,8 +38,11 @@ def ending(folder: Path, summary: Mapping[str, Any], *, estimated: bool = False)
 
 
 def peaks(monitors: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """A table of the largest velocity at each monitor: its size, its component and its time."""
-    shown = {name: monitors[name] for name in list(monitors)[:MOST_MONITORS]}
+    """A table of the largest velocity at each monitor but twins in a free field: its size, its component, its time."""
+    from dembound.casefile.disks.monitor import FREE_FIELD
+
+    own = [name for name in monitors if not name.endswith(FREE_FIELD)]
+    shown = {name: monitors[name] for name in own[:MOST_MONITORS]}
     if not shown:
         return []
     sizes, speed = in_one_unit([abs(each["peak_velocity"]) for each in shown.values()], "m/s")
@@ -48,5 +51,5 @@ def peaks(monitors: Mapping[str, Mapping[str, Any]]) -> list[str]:
     for (name, each), size, time in zip(shown.items(), sizes, times, strict=True):
         moves = each["peak_time"] is not None
         rows.append((name, size, *((each["component"], time) if moves else ("-", "-"))))
-    more = len(monitors) - len(shown)
+    more = len(own) - len(shown)
     return [*columns(rows), *([f"… and {more} more in summary.json"] if more else [])]

@@ -60,12 +60,13 @@ def print_estimate(folder: Path) -> None:
 
 def _show(folder: Path, found: Budget) -> None:
     """Print an estimate, and draw its band into the picture of the histories if the run has drawn one."""
-    from dembound.accuracy.table import lines_of
+    from dembound.accuracy.table import lines_of, next_step
     from dembound.plot.histories import plot_histories
     from dembound.plot.style import save
+    from dembound.running.recorded import file_of_record
 
     out.print(f"{folder.name}: errors, estimated in {found.cpu_seconds:.2g} s of CPU time", markup=False)
-    for line in lines_of(found):
+    for line in [*lines_of(found), next_step(found, folder, file_of_record(folder / "run.h5"))]:
         out.print(line, markup=False, soft_wrap=True)
     picture = folder / "histories.png"
     if picture.is_file():

@@ -90,6 +90,14 @@ def require_replaceable(folder: Folder, case: Case) -> None:
             )
 
 
+def file_of_record(record: Path) -> Path | None:
+    """The case file of a record in its folder of results; None if it is no longer there."""
+    with open_record(record) as file:
+        texts = {name: text_of(file.attrs[name]) for name in (PLACE, DIGEST) if name in file.attrs}
+    source = recorded_source(texts, record.parent.parent)
+    return None if source is None else source[0]
+
+
 def tables_of(text: str, record: Path) -> dict[str, Any]:
     """The tables of a recorded case; raises RecordError for a text that is no case."""
     try:

@@ -1,11 +1,13 @@
 """A budget as a table: rows, columns that fit, totals of both truths, and what is not known."""
 
+from pathlib import Path
+
 import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.history import History
-from dembound.accuracy.table import WHAT, WIDTH, lines_of
+from dembound.accuracy.table import WHAT, WIDTH, lines_of, next_step
 
 TIME = np.linspace(0.0, 1.0, 5)
 
@@ -20,18 +22,17 @@ def budget(causes, names=("P1", "surface")) -> Budget:
     return Budget(dict.fromkeys(names, motion), Causes(made, ["motion after 3 s"], ["a note"]))
 
 
-def test_every_cause_has_a_row_and_each_truth_a_total():
-    walls = ("walls", "by the disks along the radius", 0.07, "formula", True)
+def test_every_monitor_has_a_row_and_each_truth_a_total():
+    walls = ("walls of holes", "by the disks along the radius", 0.07, "formula", True)
     found = budget([("sides", "from companions", 0.041, "companion", False), walls])
     assert lines_of(found) == [
         WHAT,
-        "how wrong is it     P1  surface  known by",
-        "  sides          4.1 %    4.1 %  companion",
-        "of these disks   4.1 %    4.1 %  at most 5.7 %",
-        "  walls            7 %      7 %  formula",
-        "of the rock      8.1 %    8.1 %  at most 11 %",
+        "                these  walls of",
+        "monitor  sides  disks     holes  the rock  at most",
+        "P1       4.1 %  4.1 %       7 %     8.1 %     11 %",
+        "surface  4.1 %  4.1 %       7 %     8.1 %     11 %",
         "sides: from companions",
-        "walls: by the disks along the radius",
+        "walls of holes: by the disks along the radius",
         "a note",
         "not estimated: motion after 3 s",
     ]
@@ -40,17 +41,27 @@ def test_every_cause_has_a_row_and_each_truth_a_total():
 def test_bounds_and_what_is_unknown_are_marked():
     bound = ("law", "by a bound", 0.3, "bound", False)
     found = lines_of(budget([("sides", "why not", float("nan"), "unknown", False), bound], ["a"]))
-    assert found[1:5] == [
-        "how wrong is it        a  known by",
-        "  sides                ?  unknown",
-        "  law            <= 30 %  bound",
-        "of the rock            ?  at least",
-    ]
+    assert found[1:4] == ["monitor      law  whole  at most", "a        <= 30 %      ?        ?", "law: by a bound"]
+    assert "not estimated: sides, why not" in found
 
 
 def test_lines_fit_a_terminal_and_monitors_that_do_not_are_counted():
     names = [f"monitor_{k}" for k in range(12)]
     found = lines_of(budget([("sides", "a sentence " * 20, 0.02, "companion", False)], names))
     assert max(map(len, found)) <= WIDTH
-    assert "and 8 more monitors, at most 2.8 %" in found
+    assert "and 2 more monitors, at most 2.8 %" in found
     assert lines_of(Budget({}, Causes([], ["has no monitor"]))) == ["not estimated: has no monitor"]
+    small = [(f"cause number {k}", "words", 1e-5, "formula", k > 5) for k in range(9)]
+    found = lines_of(budget([("sides", "words", 0.02, "companion", False), *small]))
+    assert max(map(len, found)) <= WIDTH
+    assert any(line.startswith("< 0.1 % at all monitors: cause number 0, cause number 1") for line in found)
+
+
+def test_what_to_do_next_names_the_largest_cause_where_the_error_is_large():
+    folder, case = Path("results/my run"), Path("run.toml")
+    found = budget([("sides", "words", 0.02, "companion", False), ("grid", "words", 0.03, "formula", False)])
+    said = "next: most is by grid, at P1; less with dembound advise"
+    assert next_step(found, folder, case) == f"{said} run.toml --error 1%"
+    assert next_step(found, folder, None) == f"{said} CASE --error 1%"
+    assert "error is below 1 %" in next_step(budget([("sides", "words", 0.007, "formula", False)]), folder, case)
+    assert next_step(Budget({}, Causes([])), folder, case) == "next: dembound report 'results/my run'"

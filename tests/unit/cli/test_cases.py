@@ -42,7 +42,7 @@ def test_nothing_is_replaced_unseen(dembound, written, tmp_path) -> None:
     assert said() == []
     assert said() == [f"bar: replaces results/bar (of the same case) {then}"]
     changed = ("--set", "run.safety=0.5", "--set", "run.duration=0.02")
-    assert said(*changed) == [f"bar: replaces results/bar (with another run.safety, run.duration) {then}"]
+    assert said(*changed) == [f"bar: replaces results/bar (with another run.duration, run.safety) {then}"]
     (tmp_path / "results" / "bar").rename(tmp_path / "results" / "bar.partial")
     stopped = "the stopped run in results/bar.partial, which dembound resume would have continued"
     assert said() == [f"bar: begins anew, without {stopped}"]

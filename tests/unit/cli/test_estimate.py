@@ -19,7 +19,7 @@ def test_a_run_is_estimated_and_drawn(dembound, tmp_path):
     written(tmp_path)
     answer = dembound("run", "bar.toml", "--estimate")
     assert answer.code == 0, answer.err
-    assert "of the rock" in answer.out
+    assert "the rock  at most" in answer.out
     folder = tmp_path / "results" / "bar"
     found = json.loads((folder / "summary.json").read_text())["error_estimate"]
     # the right side returns (1 − β)/(1 + β) = 1/3 of what arrives, which adds to the motion beside it
