@@ -14,7 +14,7 @@ import typer
 from dembound.cli.app import Cases, Settings, Threads, app, load_case, prepare_computing, text_for
 from dembound.cli.console import out
 from dembound.errors import CaseError, NotAccurateError
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
     from dembound.accuracy.proposal import Advice, Proposal
@@ -175,16 +175,19 @@ def lines_of(case: Case, found: Advice) -> Iterator[str]:
     from dembound.accuracy.table import lines_of as table_of
     from dembound.results.estimates import in_words
 
-    yield f"{case.name}: steps of about {found.given.cost:.2g} s; advice took {found.cpu_seconds:.2g} s of CPU time"
+    cost, spent = with_unit(found.given.cost, "s", 2), with_unit(found.cpu_seconds, "s", 2)
+    yield f"{case.name}: its steps take about {cost}; advice took {spent} of CPU time"
     yield from table_of(found.given.budget)
     yield ""
-    yield "cheapest case   error  at most     time   what changes"
+    yield "   requested  predicted  at most      time   what changes"
+    before = ""
     for bound, best in found.best.items():
         share = best.budget.worst().share
-        numbers = f"{in_words(share.value):>8} {in_words(share.upper):>8}  {best.cost:>6.2g} s   "
+        numbers = f"{in_words(share.value):>9} {in_words(share.upper):>8}  {with_unit(best.cost, 's', 2):>8}   "
         words = best.choice.name if best.choice.changes else "nothing"
         if not best.holds(bound):
-            words = f"none keeps it, least: {words}"
+            words = f"no choice holds it, least: {words}"
+        before, words = words, "the same" if words == before != "nothing" else words
         first = f"{percent(bound, 3):>12}  {numbers}"
         yield from textwrap.wrap(words, WIDTH, initial_indent=first, subsequent_indent=" " * 8)
 
@@ -195,8 +198,8 @@ def _lines(best: Proposal) -> list[str]:
 
     worst = best.budget.worst()
     return [
-        f"{best.choice.name}; expected error {in_words(worst.share.value)}, at most {in_words(worst.share.upper)} "
-        f"({split_in_words(worst.by)}), steps of about {best.cost:.2g} s"
+        f"{best.choice.name}; predicted error {in_words(worst.share.value)}, at most {in_words(worst.share.upper)} "
+        f"({split_in_words(worst.by)}), steps take about {with_unit(best.cost, 's', 2)}"
     ]
 
 

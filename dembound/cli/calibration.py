@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.table import Table
 
 from dembound.cli.app import (
     Name,
@@ -22,7 +21,7 @@ from dembound.cli.app import (
     text_for,
     writable,
 )
-from dembound.cli.console import out
+from dembound.cli.console import compact_table, out
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
@@ -221,7 +220,7 @@ def _print_table(found: Sequence[Calibration]) -> None:
     """One line per factor: side and wave, old and new value, and M_out/M_in with the new value."""
     from dembound.studies.all_sides import changes_of
 
-    table = Table("key", "side", "β", "before", "M_out/M_in", "passes", title=found[0].case.name)
+    table = compact_table("key", "side", "β", "before", "M_out/M_in", "passes", title=found[0].case.name)
     for (key, result), each in zip(changes_of(found).items(), found, strict=True):
         before = each.case.boundary[each.side].factors[each.motion]
         ratio = f"{each.ratio[-1]:.6f}" if each.ratio else "–"

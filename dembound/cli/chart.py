@@ -138,8 +138,9 @@ def _print(charted: Charted) -> None:
         )
     out.print(table)
     out.print(charted.reference.covered)
-    out.print("* on the Pareto front; cost: least CPU time of stepping, within a quarter of each other the same")
-    out.print(f"run: time of the whole run without files, median; work: {charted.work_unit}")
+    out.print("* no other choice is more accurate and as cheap (Pareto front)")
+    out.print("cost: least CPU time of the steps; those within a quarter of each other count as equal")
+    out.print(f"run: median time of the whole run without files; work: {charted.work_unit}")
     if farthest := max(line.apart for line in charted.lines):
         out.print(f"† monitors record elsewhere than in the reference, up to {farthest:.3g} m away")
     out.print(f"{charted.case.name}: {charted.sentence}")

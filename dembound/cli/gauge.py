@@ -87,7 +87,7 @@ def gauge(
             coefficient=attenuation,
         )
     if peaks is not None and found.peaks is not None and len(found.peaks.time) < peaks:
-        err.print(f"--peaks: asks for {peaks} tension peaks, there are {len(found.peaks.time)}")
+        err.print(f"--peaks: requests {peaks} tension peaks, there are {len(found.peaks.time)}")
     for warning in found.warnings:
         err.print(f"warning: {warning}")
     for note in gauge.notes:

@@ -487,8 +487,8 @@ def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, 
     found = json.loads((folder / "summary.json").read_text())["result"]
     sides = load(tmp_path / "bar_calibrated.toml").boundary
     assert found == {f"boundary.{side}.beta_p": sides[side].beta_p for side in ("left", "right")}
-    rows = [line for line in answer.out.splitlines() if line.startswith("│ boundary.")]
-    assert [row.split()[1] for row in rows] == list(found)
+    rows = [line for line in answer.out.splitlines() if line.startswith(" boundary.")]
+    assert [row.split()[0] for row in rows] == list(found)
     assert "right, pass  1: β_P = 0.500000" in answer.out
     assert dembound("plot", folder / "left_p", folder / "right_p", "-o", "passes.png").code == 0
     assert (tmp_path / "passes.png").read_bytes().startswith(PNG)
@@ -677,7 +677,7 @@ def test_what_sides_send_back_is_printed_drawn_and_written(dembound, written, tm
     quick = dembound("boundary", path, *top, "--angle", 0, "--frequency", 5, "--quick")
     assert "returns 11.1 % of the energy, 33.3 % of the amplitude; with matched β 0 %" in quick.out
     short = dembound("boundary", path, "--side", "right", "--angle", 0, "--frequency", 990)
-    assert "copies of the brick send back" in short.out
+    assert "copies of the brick reflect" in short.out
     assert dembound("boundary", path, "--side", "left", "--set", 'boundary.left={type="periodic"}').code == 2
 
 

@@ -17,6 +17,7 @@ from dembound.bar.stability import own_step, unit_step
 from dembound.casefile.bar import BarCase
 from dembound.errors import DemboundError
 from dembound.methods import FiniteDifference
+from dembound.words import with_unit
 
 COARSER = (32.0, 24.0, 16.0, 12.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25)
 FACTORS = (1.0, *COARSER, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125, 0.1)
@@ -62,8 +63,8 @@ class BarOption:
     def words(self) -> str:
         """The choice in words."""
         ranges = self.scene.rod.ranges
-        spacings = " and ".join(dict.fromkeys(f"{part.spacing:.4g}" for part in ranges))
-        return f"{self.ends}{self.method}, nodes every {spacings} m, steps of {self.step:.4g} s"
+        spacings = " and ".join(dict.fromkeys(with_unit(part.spacing, "m") for part in ranges))
+        return f"{self.ends}{self.method}, nodes every {spacings}, steps of {with_unit(self.step, 's')}"
 
     @property
     def spacing(self) -> float:

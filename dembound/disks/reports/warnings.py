@@ -237,7 +237,7 @@ def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:
         x, y = found["place"]
         yield (
             f"static.stress: in {block_in_words(found)} the stress differs by up to {percent(found['deviation'])} "
-            f"of the largest principal stress asked for, most at ({x:.4g}, {y:.4g}) m; {_whence(found)}"
+            f"of the largest principal stress requested, most at ({x:.4g}, {y:.4g}) m; {_whence(found)}"
         )
 
 

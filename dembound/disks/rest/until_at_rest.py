@@ -115,7 +115,7 @@ class UntilAtRest(Tracker):
 def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarray, cracks: Cracks) -> str:
     """Lines about a stage that takes too long, with its state and advice; unbalanced (2, n) N as for `_lacking`."""
     steps = run.state.step
-    facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
+    facts = f"static.ratio requests {static.ratio:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
     if steps >= static.max_steps:
         came = f"came to an unbalanced force ratio of {ratio:.3g} in {steps:,} steps"
         return f"{came}, {facts}\nallow more with static.max_steps"

@@ -219,11 +219,11 @@ def test_of_a_bar_that_may_break_finite_differences_are_named_where_its_method_d
     assert not choice.holds
     assert choice.case.method == case.method  # type: ignore[attr-defined]
     named = re.search(
-        r"; finite differences, loads on the last node, nodes every ([\d.]+) m, .* have ([\d.]+) %", choice.words
+        r"; finite differences, loads on the last node, nodes every ([\d.]+) mm, .* have ([\d.]+) %", choice.words
     )
     assert named
     assert choice.words.endswith("break otherwise")
-    other = {"bar.spacing": float(named[1]), "method": {"type": "finite_difference"}, "load.hit.nodes": 1}
+    other = {"bar.spacing": 1e-3 * float(named[1]), "method": {"type": "finite_difference"}, "load.hit.nodes": 1}
     finite = with_changes(case, {**other, "run": {"duration": 1.1e-3, "courant": 1.0}})
     assert 0.01 * float(named[2]) == pytest.approx(
         true_error(choice._replace(choice=Choice.of(case, finite, ""))), rel=0.1
