@@ -52,13 +52,13 @@ TOPICS = {
 }
 """Topic of the index -> names of its examples."""
 
-QUICK = ("p_pulse", "p_and_s", "resonance", "interface")
+QUICK = ("p_pulse", "resonance", "interface")
 """Examples that tests run."""
 
 DRAWING = ("plot", "signals", "sweep", "chart", "boundary", "packing", "movie")
 """Commands whose pictures are shown."""
 
-WIDTH, DOTS = 6.2, 130
+WIDTH, DOTS = 6.2, 125
 """Width of a picture in inches, and its dots per inch: ten points are legible on a page of 390 and of 1440 pixels."""
 
 SCENE = (4.4, 4.2)
@@ -69,6 +69,9 @@ HEIGHTS = (3.3, 5.8)
 
 RUNS = ("build", "settle", "step", "record")
 """Sections of the entry `seconds` of a summary that are the time of a run, without imports, compiling and pictures."""
+
+SHADES = 8
+"""Red, green and blue of a picture are rounded to multiples of this, which halves its file."""
 
 LINE = 100
 """Characters of a line of Python."""
@@ -210,8 +213,8 @@ def measure(example: Example) -> Measured:
             else:
                 error = predicted(Path(example.estimated))
         summary = dembound.Results(example.estimated).summary
-    pixels = np.vstack([fitted(figure) for figure in figures])
-    Image.fromarray(pixels).save(DOCS / "pictures" / f"gallery_{example.name}.png", optimize=True)
+    pixels = np.rint(np.vstack([fitted(figure) for figure in figures]) / SHADES) * SHADES
+    Image.fromarray(np.minimum(pixels, 255).astype(np.uint8)).save(DOCS / "pictures" / f"gallery_{example.name}.png", optimize=True)
     size = f"{summary['particles']:,} disks" if "particles" in summary else f"{summary['nodes']:,} nodes"
     seconds = sum(summary["seconds"][section] for section in RUNS)
     drawn = "; ".join(figure.get_suptitle().replace("\n", ", ") for figure in figures)
