@@ -157,9 +157,7 @@ def _sentences(found: Measured) -> list[str]:
     gaps = {kind: found.gaps[kind] for kind in found.found.kinds if found.gaps.get(kind, math.inf) < NEAR_GAP * highest}
     if gaps:
         where = " and ".join(f"{kind.upper()} waves of {frequency:.3g} Hz" for kind, frequency in gaps.items())
-        lines.append(
-            f"copies of the brick reflect {where} by themselves, which adds to the numbers near there"
-        )
+        lines.append(f"copies of the brick reflect {where} by themselves, which adds to the numbers near there")
     return lines
 
 
