@@ -60,7 +60,7 @@ def _errors(planned: Plan) -> Entries:
     found = judge_of(case).quick(planned.scene).found
     sizes = {cause.name: cause.largest for cause in found if cause.how != "unknown"}
     known = f"{split_in_words(sizes)} by formula; " if sizes else ""
-    yield "errors", f"{known}dembound advise computes {'the others' if known else 'them'}, and finds cheaper cases"
+    yield "errors", f"{known}dembound advise predicts {'the others' if known else 'them'} and finds cheaper cases"
 
 
 def _here() -> str:

@@ -21,7 +21,7 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
     assert facts["estimated time"] == "less than 1 s with 1 thread, without building, pictures"
     own = dict(disk_facts(planned.scene))
     assert {name: fact for name, fact in facts.items() if name in own} == own
-    assert facts["errors"] == "dembound advise computes them, and finds cheaper cases"
+    assert facts["errors"] == "dembound advise predicts them and finds cheaper cases"
     found = {"time step", "steps", "memory", "disk", "estimated time", "errors", "reduced"}
     assert set(facts) - set(own) - {"echoes"} == found
     assert "reduced" not in check(bar({"reduce.rows": False}))[0]

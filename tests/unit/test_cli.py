@@ -736,7 +736,7 @@ def test_a_gauge_tells_what_its_history_and_options_allow(dembound, felt, titles
     assert (some.err, "times of 3 peaks" in some.out) == ("", True)
     count = int(re.search(r"of (\d+) peaks", speed[-1]).group(1))
     many = dembound("gauge", *PLACED, "--peaks", count + 1)
-    assert many.err == f"--peaks: asks for {count + 1} tension peaks, there are {count}\n"
+    assert many.err == f"--peaks: requests {count + 1} tension peaks, there are {count}\n"
     assert many.out == alone.out
 
     known = ("--wave-speed", 2740, "--attenuation", 0.52, "--density", 2620)

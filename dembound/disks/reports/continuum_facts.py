@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.boundaries.sides import normal_axis
 from dembound.casefile.disks.outside import OutsideTable
+from dembound.casefile.messages import counted
 from dembound.disks import step_cost
 from dembound.disks.beyond.settings import (
     ROUNDING,
@@ -72,7 +73,7 @@ def _elements(outside: Surroundings) -> str:
     width, height = (_from_to(sizes) for sizes in mesh.element_sizes.T)
     return (
         f"{outside.count:,} nodes in {len(mesh.elements):,} elements of order {mesh.order}, {width} m × "
-        f"{height} m, {absorbing:.0f} % of which absorb; {len(outside.wall.element):,} ties"
+        f"{height} m, {absorbing:.0f} % of which absorb; {counted(len(outside.wall.element), 'tie')}"
     )
 
 

@@ -26,7 +26,7 @@ def disk_facts(scene: DiskScene) -> Entries:
     yield "particles", _particles(scene)
     yield "contacts", f"{len(scene.assembly.pairs):,}"
     if not scene.layout.is_plain:
-        yield "rows of copies", f"{100.0 * fill(scene.layout):.0f} % of the lanes hold particles"
+        yield "vector lanes", f"{100.0 * fill(scene.layout):.0f} % hold particles"
     yield from _packing_facts(scene)
     yield from _law_facts(scene)
     yield from _hole_facts(case)

@@ -21,7 +21,7 @@ def test_a_body_that_slides_without_end_stalls(bar, monkeypatch) -> None:
     changes = {"packing.size": [1.0, 1.0], "motion.held": ["y", "rotation"], "boundary": WRAP, "load": [push]}
     monkeypatch.setattr(until_at_rest, "PATIENCE", PATIENCE)
     looks: list[float] = []
-    with pytest.raises(RunError, match=r"stalls at a force ratio of (?s:.*)is the body held") as caught:
+    with pytest.raises(RunError, match=r"stalls at an unbalanced force ratio of (?s:.*)is the body held") as caught:
         settle(scene(bar, **{**changes, **loose}), lambda _, ratio: looks.append(ratio))
 
     assert f"a force ratio of {looks[-1]:.3g} after {len(looks) * LOOK:,} steps" in str(caught.value)
@@ -83,7 +83,7 @@ def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to_over_the_pair
     tough = {"material.law": "linearpbond", "material.elastic_start": False, "material.fric": 0.5}
     body = scene(bar, **{**STANDING, **tough, "static": static})
     with pytest.raises(
-        StalledError, match=r"in 100 steps, static\.ratio asks for 1e-08; (?s:.*)static\.max_steps"
+        StalledError, match=r"in 100 steps, static\.ratio requests 1e-08; (?s:.*)static\.max_steps"
     ) as caught:
         settle(body, lambda _, ratio: ratios.append(ratio))
     contacts, total = caught.value.run.system.contacts["body"], body.steady_load.copy()
@@ -101,7 +101,7 @@ def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to_over_the_pair
     assert 0 < np.count_nonzero(pair == 0.0) < len(pair)
     assert np.count_nonzero(lacking) == body.count - len(body.edges["bottom"].nodes)
     assert ratios[-1] == pytest.approx(lacking.mean() / pair[pair > 0.0].mean(), rel=1e-12)
-    assert f"came to a force ratio of {ratios[-1]:.3g} in" in str(caught.value)
+    assert f"came to an unbalanced force ratio of {ratios[-1]:.3g} in" in str(caught.value)
 
 
 def test_what_dashpots_alone_hold_lacks_its_force(bar) -> None:
