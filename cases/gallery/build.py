@@ -214,9 +214,8 @@ def measure(example: Example) -> Measured:
                 error = predicted(Path(example.estimated))
         summary = dembound.Results(example.estimated).summary
     pixels = np.rint(np.vstack([fitted(figure) for figure in figures]) / SHADES) * SHADES
-    Image.fromarray(np.minimum(pixels, 255).astype(np.uint8)).save(
-        DOCS / "pictures" / f"gallery_{example.name}.png", optimize=True
-    )
+    picture = Image.fromarray(np.minimum(pixels, 255).astype(np.uint8))
+    picture.save(DOCS / "pictures" / f"gallery_{example.name}.png", optimize=True)
     size = f"{summary['particles']:,} disks" if "particles" in summary else f"{summary['nodes']:,} nodes"
     seconds = sum(summary["seconds"][section] for section in RUNS)
     drawn = "; ".join(figure.get_suptitle().replace("\n", ", ") for figure in figures)
