@@ -1,0 +1,124 @@
+"""What the documents show can be typed: cases are accepted, commands exist with their options and arguments.
+
+A TOML block is a whole case if it has a table ``[run]``, else a fragment. A case that the text says to save "as
+`NAME.toml`" right above it is saved under that name where the commands of a page are run.
+"""
+
+import contextlib
+import io
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+from typer.core import TyperGroup
+
+from dembound.cli.app import app
+from dembound.schemas import loads
+
+PROGRAM = typer.main.get_command(app)
+UsageError = typer.BadParameter.__base__  # wherever this version of typer has it
+
+ROOT = Path(__file__).parents[2]
+GALLERY = ROOT / "docs" / "gallery"
+"""Its pages show shipped cases, which read files beside them."""
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+BLOCK = re.compile(
+    r"(?:as `(?P<name>\w+\.toml)`:\n\n)?^```(?P<language>\w*)\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE
+)
+ENDS = {"&&", "||", ";", "|", ">", ">>", "2>", "&"}
+"""Words of a shell after which the arguments of a command are over."""
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    """The blocks of a page in one language."""
+    return [block["text"] for block in BLOCK.finditer(page.read_text()) if block["language"] == language]
+
+
+def commands(text: str) -> Iterator[list[str]]:
+    """The arguments of each `dembound` in the lines of a shell."""
+    for line in text.replace("\\\n", " ").splitlines():
+        words: list[str] = []
+        for word in [*shlex.split(line, comments=True), ";"]:
+            if word not in ENDS:
+                words.append(word)
+                continue
+            if words and words[0] == "dembound":
+                yield words[1:]
+            words = []
+
+
+def parse(command: Any, arguments: list[str], name: str = "dembound") -> None:
+    """Parse arguments without running anything, and without what options of a group do, such as installing completion.
+
+    Raises UsageError, or typer.Exit after the help of a command.
+    """
+    if isinstance(command, TyperGroup):
+        context = command.context_class(command, info_name=name)
+        _, rest, _ = command.make_parser(context).parse_args(list(arguments))
+        if rest:
+            chosen, found, left = command.resolve_command(context, rest)
+            parse(found, left, f"{name} {chosen}")
+    else:
+        command.make_context(name, list(arguments))
+
+
+def test_whole_cases_are_accepted() -> None:
+    whole = [
+        text
+        for page in PAGES
+        if GALLERY not in page.parents
+        for text in blocks(page, "toml")
+        if "[run]" in text.splitlines()
+    ]
+    assert len(whole) > 5
+    for text in whole:
+        loads(text)
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if blocks(page, "sh")], ids=lambda page: page.relative_to(ROOT).as_posix()
+)
+def test_commands_have_these_options_and_arguments(page, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    wrong = []
+    for arguments in (each for text in blocks(page, "sh") for each in commands(text)):
+        try:
+            with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(typer.Exit):
+                parse(PROGRAM, arguments)
+        except UsageError as error:
+            wrong.append(f"dembound {shlex.join(arguments)}: {error.format_message()}")
+    assert not wrong
+
+
+def test_the_case_of_the_first_tunnel_is_the_shipped_one() -> None:
+    (shown,) = (text for text in blocks(ROOT / "docs/start/first_tunnel.md", "toml") if "[run]" in text)
+    assert (ROOT / "cases" / "first_tunnel.toml").read_text().endswith(shown)
+
+
+@pytest.mark.slow
+def test_the_first_wave_runs_as_written(tmp_path, monkeypatch, capsys) -> None:
+    """In an empty folder, block after block; what Python prints is the next block of the page."""
+    monkeypatch.chdir(tmp_path)
+    printed = None
+    for block in BLOCK.finditer((ROOT / "docs/start/first_wave.md").read_text()):
+        if block["name"]:
+            (tmp_path / block["name"]).write_text(block["text"])
+        if block["language"] == "sh":
+            for arguments in commands(block["text"]):
+                subprocess.run([sys.executable, "-m", "dembound", *arguments], check=True)
+        if printed is not None:
+            assert printed == block["text"]
+            printed = None
+        if block["language"] == "python":
+            capsys.readouterr()
+            exec(block["text"], {})
+            printed = capsys.readouterr().out
+    assert {path.name for path in (tmp_path / "results").iterdir()} >= {"bar", "bar_fixed", "random_calibrated"}
+    assert {path.name for path in tmp_path.glob("*.png")} == {"sides.png", "random.png"}
