@@ -4,7 +4,8 @@ python cases/gallery/build.py [--quick] [--pages] [NAME ...]
 
 Without names all examples are run, with --quick those of `QUICK`; --pages writes the pages alone, with the figures of
 the last runs, which measured.json holds. An example is a case file of this folder. Its first comment has what it shows
-and, indented, the commands that run it and draw its picture; its title is that of the page.
+and, indented, the commands that run it and draw its picture, the last of which estimates its error; its title is that
+of the page.
 """
 
 from __future__ import annotations
@@ -37,8 +38,7 @@ from dembound.words import percent
 
 HERE = Path(__file__).parent
 DOCS = HERE.parents[1] / "docs"
-PAGES = DOCS / "gallery"
-MEASURED = HERE / "measured.json"
+PAGES, MEASURED = DOCS / "gallery", HERE / "measured.json"
 
 TOPICS = {
     "Waves along a bar of disks": ("p_pulse", "p_and_s", "packings"),
@@ -55,7 +55,7 @@ TOPICS = {
 QUICK = ("p_pulse", "resonance", "interface")
 """Examples that tests run."""
 
-DRAWING = ("plot", "signals", "sweep", "chart", "boundary", "packing", "movie")
+DRAWING = ("plot", "signals", "sweep", "chart", "boundary", "packing")
 """Commands whose pictures are shown."""
 
 WIDTH, DOTS = 6.2, 125
@@ -118,12 +118,6 @@ class Example:
             arguments.append(f"    {key}={as_python(value, 4, len(key) + 1)},")
         made = "import dembound\n\ncase = dembound.case(" + "\n".join(arguments) + "\n)\n"
         return f'{made}results = dembound.run(case, "results")\nprint(dembound.estimate("results/{self.name}").worst())'
-
-    @property
-    def estimated(self) -> str:
-        """Folder of the results whose error is estimated."""
-        (command,) = (each for each in self.commands if each.startswith("dembound estimate "))
-        return command.split()[-1]
 
     def page(self, measured: Measured) -> str:
         """The page of the example."""
@@ -207,12 +201,10 @@ def measure(example: Example) -> Measured:
     figures: list[Figure] = []
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         shipped.copy(f"gallery/{example.name}", Path())
-        for command in example.commands:
-            if not command.startswith("dembound estimate "):
-                execute(command, figures)
-            else:
-                error = predicted(Path(example.estimated))
-        summary = dembound.Results(example.estimated).summary
+        for command in example.commands[:-1]:
+            execute(command, figures)
+        results = Path(example.commands[-1].removeprefix("dembound estimate "))
+        error, summary = predicted(results), dembound.Results(results).summary
     pixels = np.rint(np.vstack([fitted(figure) for figure in figures]) / SHADES) * SHADES
     picture = Image.fromarray(np.minimum(pixels, 255).astype(np.uint8))
     picture.save(DOCS / "pictures" / f"gallery_{example.name}.png", optimize=True)
@@ -235,14 +227,6 @@ def predicted(results: Path) -> str:
     size = f"{percent(worst.share.value)}, at most {percent(worst.share.upper)}"
     words = f"{size}: {worst.quantity} at `{worst.monitor}`, most by {cause}"
     return "; ".join([words, *(f"not estimated: {each}" for each in unknown[:1])])
-
-
-def write_pages(examples: dict[str, Example], measured: dict[str, Measured]) -> None:
-    """Write all pages, and the index."""
-    PAGES.mkdir(exist_ok=True)
-    for name, example in examples.items():
-        (PAGES / f"{name}.md").write_text(example.page(measured[name]), encoding="utf-8")
-    (PAGES / "index.md").write_text(index(examples, measured), encoding="utf-8")
 
 
 def read_measured() -> dict[str, Measured]:
@@ -269,8 +253,10 @@ def main(arguments: Sequence[str]) -> None:
         measured[name] = measure(examples[name])
         ordered = {each: asdict(measured[each]) for each in examples if each in measured}
         MEASURED.write_text(json.dumps(ordered, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
-    if set(examples) <= set(measured):
-        write_pages(examples, measured)
+    for name in examples.keys() & measured.keys():
+        (PAGES / f"{name}.md").write_text(examples[name].page(measured[name]), encoding="utf-8")
+    if examples.keys() == measured.keys():
+        (PAGES / "index.md").write_text(index(examples, measured), encoding="utf-8")
 
 
 if __name__ == "__main__":

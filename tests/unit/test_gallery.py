@@ -21,6 +21,7 @@ EXAMPLES = build.read_examples()
 
 
 def test_the_gallery_has_all_cases_of_its_folder() -> None:
+    assert all(each.commands[-1].startswith("dembound estimate results/") for each in EXAMPLES.values())
     assert len(EXAMPLES) >= 20
     assert set(EXAMPLES) == {path.stem for path in CASES.glob("*.toml")} == set(build.read_measured())
     assert {path.stem for path in PAGES.glob("*.md")} == {*EXAMPLES, "index"}
@@ -28,7 +29,10 @@ def test_the_gallery_has_all_cases_of_its_folder() -> None:
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_case_can_be_run(name) -> None:
-    assert plan(dembound.load(CASES / f"{name}.toml")).scene is not None
+    """Without packing bricks, which takes seconds: those cases are only read and checked."""
+    case = dembound.load(CASES / f"{name}.toml")
+    if "seed" not in EXAMPLES[name].tables:
+        assert plan(case).scene is not None
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
