@@ -24,7 +24,7 @@ def test_a_body_that_slides_without_end_stalls(bar, monkeypatch) -> None:
     with pytest.raises(RunError, match=r"stalls at an unbalanced force ratio of (?s:.*)is the body held") as caught:
         settle(scene(bar, **{**changes, **loose}), lambda _, ratio: looks.append(ratio))
 
-    assert f"a force ratio of {looks[-1]:.3g} after {len(looks) * LOOK:,} steps" in str(caught.value)
+    assert f"an unbalanced force ratio of {looks[-1]:.3g} after {len(looks) * LOOK:,} steps" in str(caught.value)
     assert PATIENCE <= len(looks) * LOOK < 2 * PATIENCE
     assert "; broken bonds: 0\nunbalanced force on particle " in str(caught.value)
 
