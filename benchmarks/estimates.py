@@ -113,7 +113,7 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
     }
     causes = causes_of(case, recorded, run.time_step, run.work)
     if scene.reference == "extended":  # which has the same grid, step, and sides through which waves enter
-        alike = ("time step", "time step, kinks", *(f"{side} side" for side in case.driving))
+        alike = ("time step", "time step at kinks", *(f"{side} side" for side in case.driving))
         causes = replace(causes, found=[cause for cause in causes.found if cause.name not in alike])
     found = Budget(causes.motions or recorded, causes, "rock" if scene.reference in ("finer", "layer") else "disks")
     expected = reference_of(scene, case, recorded)

@@ -58,7 +58,7 @@ def causes_of_kinks(formulas: Formulas, motions: Motions, diameter: float) -> It
     for number, (name, of_disks) in enumerate(((GRID, True), (STEP, False))):
         parts = {monitor: each[number] for monitor, each in found.items()}
         if max((size for each in parts.values() for size in each.values()), default=0.0) > LEAST:
-            yield Cause(f"{name}, {KINKS}", words, parts, of_disks=of_disks, factor=KINK_FACTOR)
+            yield Cause(f"{name} at {KINKS}", words, parts, of_disks=of_disks, factor=KINK_FACTOR)
 
 
 @dataclass

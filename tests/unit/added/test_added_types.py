@@ -153,7 +153,7 @@ def test_a_side_with_springs_of_its_own_is_estimated_as_one_of_this_package(aske
     assert asked["calibrated"]["quilt"] == asked["calibrated"]["viscoelastic"]
     np.testing.assert_allclose(asked["held"]["quilt"][1], asked["held"]["quilt"][0], rtol=1e-12)
     assert quilt["unknown"] == known["unknown"] == []
-    of_disks = {f"{name}{kinks}" for name in ("grid", "time step") for kinks in ("", ", kinks")}
+    of_disks = {f"{name}{kinks}" for name in ("grid", "time step") for kinks in ("", " at kinks")}
     assert quilt["causes"].keys() == known["causes"].keys() == of_disks | {"left side", "places", "sides"}
     for cause, errors in known["causes"].items():
         assert quilt["causes"][cause]["middle"] == pytest.approx(errors["middle"], rel=1e-9), cause

@@ -46,7 +46,7 @@ def test_what_companions_lack_and_have_make_up_the_error_of_all_frequencies(name
         next(cause for cause in formulas.causes(each) if cause.name == name).share("m", "velocity", own["m"])
         for each in (own, record(own["m"].velocity[:, 1] - above))
     )
-    (kinks,) = [each for each in causes_of_kinks(formulas, own, LARGER) if each.name == f"{name}, kinks"]
+    (kinks,) = [each for each in causes_of_kinks(formulas, own, LARGER) if each.name == f"{name} at kinks"]
     assert kinks.of_disks == (name == GRID)
     assert whole > 2.0 * below
     # the error of the whole is that within the record; the filter is not causal, by less than 5 % of the error
