@@ -6,7 +6,8 @@ from typing import Any
 from dembound.version import __version__
 
 project = "dembound"
-author = "the authors of dembound"
+author = "the dembound developers"
+copyright = "2026, the dembound developers"
 version = release = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton", "sphinx_design"]
