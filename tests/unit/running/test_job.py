@@ -245,7 +245,7 @@ def test_what_is_missed_in_results_is_warned_of(bar) -> None:
         assert warned({"monitor": two}, "records the same") == names
     for snapshots, names in ((0, ["output.stress and output.contacts"]), (1, [])):
         output = {"stress": True, "contacts": True, "snapshots": snapshots}
-        assert warned({"output": output}, "output.stress and output.contacts: asks") == names
+        assert warned({"output": output}, "output.stress and output.contacts: requests") == names
 
 
 def test_energies_are_entered_a_hundred_times_or_as_often_as_asked_and_snapshots_evenly(bar, tmp_path) -> None:
