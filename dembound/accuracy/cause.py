@@ -16,7 +16,7 @@ SIDES, GRID, STEP, CONTINUUM, ENTRY, WALLS, NEAR = (
 """Names of causes."""
 
 USUAL = 1.4
-"""Factor of formulas whose errors were at most 1.39 times as large in 100 scenes (docs/tasks/trust_a_result.md)."""
+"""Factor of formulas whose errors were at most 1.39 times as large in 100 scenes."""
 
 MOTIONS = ("velocity", "displacement")
 """Quantities of disks."""

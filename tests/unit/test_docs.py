@@ -20,17 +20,17 @@ from dembound.running import SECTIONS, plan
 from dembound.schemas import SCHEMAS
 
 ROOT = Path(__file__).parents[2]
-PAGES = runpy.run_path(str(ROOT / "docs" / "generate.py"))["PAGES"]
+PAGES = runpy.run_path(str(ROOT / "docs" / "generate"))["PAGES"]
 
 
 @pytest.mark.parametrize("name", PAGES)
 def test_generated_pages_are_those_of_the_code(name) -> None:
-    """`python docs/generate.py` writes them anew."""
+    """`python docs/generate` writes them anew."""
     assert (ROOT / "docs" / name).read_text(encoding="utf-8") == PAGES[name]()
 
 
 def test_every_table_key_and_type_stands_in_the_reference() -> None:
-    """Those of the schema for editors, which is made without the list of tables in docs/generate.py."""
+    """Those of the schema for editors, which is made without the list of tables in docs/generate."""
     page = (ROOT / "docs" / "reference" / "case_file.md").read_text(encoding="utf-8")
     tables = {key for schema in SCHEMAS for key in schema.keys if key != "title"}
     assert not [key for key in tables if not re.search(rf"^## `\[+{key}\]+`", page, flags=re.MULTILINE)]

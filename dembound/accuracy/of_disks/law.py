@@ -8,7 +8,7 @@ stress at rest is higher the smaller the disks are; nor on random packings, whos
 
 A law whose contacts follow the motion (`geometry = "updated"`) differs from the elastic one all the same, if a body has
 come to rest under a stress p: the stress turns with the disks. S waves then come earlier or later by p/(2ρc_s²) of
-their time, and motion near a load differs by p/ρc_p² or so (docs/tasks/trust_a_result.md).
+their time, and motion near a load differs by p/ρc_p² or so (docs/evidence/errors.md).
 """
 
 from __future__ import annotations
