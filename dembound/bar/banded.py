@@ -29,7 +29,10 @@ def largest_stable_step(bands: np.ndarray, mass: np.ndarray, held: np.ndarray) -
 
 
 def is_stable(step: float, bands: np.ndarray, mass: np.ndarray, held: np.ndarray) -> bool:
-    """Whether central differences are stable with a time step in s; other parameters as for `largest_stable_step`."""
+    """Whether central differences are stable with a time step (s).
+
+    Bands, mass and held nodes as in `largest_stable_step`.
+    """
     return _is_above(_by_mass(bands, mass, held), 4.0 / step**2)
 
 

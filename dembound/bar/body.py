@@ -53,7 +53,7 @@ class BarBody(Scene):
     def attributes(self) -> dict[str, Any]:
         """Additional attributes of a record's header for bars: loaded end, and types of the left and the right end.
 
-        Of a bar without ranges also its material, as in `attributes_of_monitor`.
+        For a bar without ranges they include its material, with the names of `attributes_of_monitor`.
         """
         uniform = {} if self.case.bar.range else _attributes_of(self.case.bar)
         return uniform | {
@@ -64,7 +64,7 @@ class BarBody(Scene):
     def attributes_of_monitor(self, name: str) -> dict[str, Any]:
         """At a monitor's node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m.
 
-        With a strength also this, Pa, at the slowest and at the fastest strain rate, infinite without one. At an
+        The strength (Pa) is given at the slowest and at the fastest strain rate, infinite where nothing breaks. At an
         interface the range on the left counts; with ranges also their name.
         """
         bar, node = self.case.bar, self.monitors[name]
@@ -159,7 +159,7 @@ class BarBody(Scene):
         return min(largest_stable_step(*self._with_layers(bonds)), *decays, np.inf)
 
     def is_stable(self, bonds: Bonds, step: float) -> bool:
-        """Whether a time step (s) is stable with these bonds; faster than `stable_step`."""
+        """Whether a time step (s) is stable with these bonds; computed faster than `stable_step`."""
         decays = all(step <= layer.step_limit for layer in self.layers.values())
         return decays and is_stable(step, *self._with_layers(bonds))
 

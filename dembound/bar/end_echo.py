@@ -1,14 +1,14 @@
 """Exact reflection of a wave by an absorbing end of a bar, for the wave's own spectrum, its nodes, bonds and steps.
 
 It is the largest difference of the velocity from a bar that goes on beyond this end, over the largest velocity of that
-bar, at any node and in any step of the run. So it includes reflections of the shortest waves, in which sharp pulses,
-and pushes on single nodes, are rich, and their reflection at the other end. Short waves are slow: the longer a run is,
-the more of them return.
+bar, at any node and in any step of the run. So it includes reflections of the shortest waves, which sharp pulses and
+forces on single nodes contain, and their reflection at the other end. Short waves are slow: the longer a run is, the
+more of them return.
 
-Both bars are stepped (linear_steps.py) under one step of the wave, which its values are convolved with. Where this
-would take too long, a bar is represented by `CELLS` of the range at this end, with the load or the wave at its other
-end, and a run by as many ways along it: of a longer bar less returns, as short waves disperse. Changes of bonds are not
-included.
+Both bars are stepped (linear_steps.py) under a unit value of the wave in one step, and the motion is convolved with the
+wave's values. Where this would take too long, a bar is represented by `CELLS` of the range at this end, with the load
+or the wave at its other end, and a run by as many ways along it: a longer bar returns less, as short waves disperse.
+Changes of bonds are not included.
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ WORK, KEPT = 3e7, 4e6
 """Most bonds times steps, some 0.5 s, and velocities of all nodes and steps: 32 MB."""
 
 BEYOND = 0.6
-"""Cells of a bar that goes on, over those of a wave's way in the time it is followed: it must return in this time."""
+"""Cells of the bar that goes on, over the cells that a wave passes in the time for which it is followed."""
 
 FADED = 0.25
-"""Last part of this time, if the run goes on, in which what still moves is faded out: a sudden end would be a push."""
+"""Last part of this time in which remaining motion is faded out if the run goes on: a sudden end would be a force."""
 
 LONG = 2**20
-"""Steps of a wave's values up to which they count."""
+"""Number of steps of a wave's values that are included."""
 
 SAMPLES = 2**22
 """Values that are convolved at once."""
 
 ROUNDING = 1e-12
-"""Rounding errors of a run, over its largest motion, of which this is a bound for some 10⁴ steps."""
+"""Bound of the rounding errors of a run of some 10⁴ steps, over its largest motion."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Returned:
     """The reflection of an end.
 
     shares : by wave the largest reflected motion over the largest motion of the wave, including `ROUNDING`. within :
-    time (s) after the wave for which it was followed, infinite if that is the whole run.
+    time (s) after the wave for which it was followed, infinite for the whole run.
     """
 
     shares: dict[str, float]
@@ -64,8 +64,8 @@ class Returned:
 def returned_of_waves(scene: BarScene, side: str, time_step: float) -> Returned:
     """The reflection of every wave in use by an end; empty where it is not computed.
 
-    Nothing is computed for ends that do not absorb, or where dashpots let a wave in, and for bonds and layers that are
-    very long.
+    Nothing is computed for ends that do not absorb, where a wave enters through dashpots, and for very long bonds and
+    layers.
     """
     case, layer = scene.case, scene.layers.get(side)
     end = case.side(side)
@@ -119,7 +119,7 @@ def _layered(case: BarCase, side: str) -> BarCase:
 def _pushes(scene: BarScene) -> dict[str, dict[bool, tuple[np.ndarray, np.ndarray]]]:
     """By wave in use the forces (n,) N of its value 1, and separately the motions (n,) m/s that it prescribes.
 
-    Signals that are the velocity of no wave, of types from other packages, have the name "".
+    Signals of types from other packages that are not the velocity of a wave have the name "".
     """
     supports, waves = scene.supports, scene.case.wave
     found: dict[str, dict[bool, tuple[np.ndarray, np.ndarray]]] = {}
@@ -140,9 +140,9 @@ def _signal(case: BarCase, name: str, step: float, ahead: float) -> np.ndarray:
 
 
 def _largest(motions: list[np.ndarray], signals: list[np.ndarray], last: int) -> float:
-    """Largest velocity up to a step, the mean of two half steps, under signals (k,) that are added.
+    """Largest velocity (mean of two half steps) up to a step under the sum of signals (k,).
 
-    motions : for each of them the velocities (s, n) under one step of 1.
+    motions : for each signal the velocities (s, n) under a value of 1 in one step.
     """
     from scipy.fft import next_fast_len
 

@@ -1,4 +1,4 @@
-"""The wave that enters a bar at an end with loads or a driving boundary, before any reflection returns."""
+"""The pressure wave that enters a bar at an end with loads or a driving boundary, before any reflection returns."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from dembound.bar.scene import end_supports
 from dembound.casefile.bar import BarCase
 
 MOMENTS = 500
-"""Number of times at which this wave is computed."""
+"""Number of times at which the wave is computed."""
 
 
 def entering_pressure(case: BarCase, side: str, time: np.ndarray, *, loads: bool = True) -> np.ndarray:

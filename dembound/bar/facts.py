@@ -22,7 +22,7 @@ ERROR = 0.01
 """Error of the phase speed that the shortest wavelength may have without a warning."""
 
 PERCENT = f"{100.0 * ERROR:g} %"
-"""`ERROR` in percent, as text."""
+"""`ERROR` as a percentage."""
 
 
 def bar_facts(scene: BarScene, time_step: float) -> Entries:

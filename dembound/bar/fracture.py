@@ -1,7 +1,7 @@
 """Place and time of spalls, from the steps in which bonds broke.
 
-Without a fracture energy a bar is cracked where local damage has reached 0.3; with one it has spalled where nothing
-bears tension across a plane any more.
+Without a fracture energy a bar is cracked where local damage has reached 0.3; with one it has spalled where all bonds
+across a plane have broken.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,8 +18,9 @@ from dembound.methods.bonds import Bonds
 class Spall:
     """One place where local damage has reached 0.3 (L section 1.2), or where cracks are open.
 
-    time : s, at which this first happened; start : m, range of the cracked nodes at that time; end : m, their range at
-    the end of the run. began : s, when the first bond across it began to open; None without a fracture energy.
+    time : s, at which this first happened; start : m, range of the cracked nodes at that time; end : m, range of the
+    cracked nodes at the end of the run. began : s, when the first bond across the place began to open; None without a
+    fracture energy.
     """
 
     time: float
@@ -33,7 +34,7 @@ class Spall:
         return self.time if self.began is None else self.began
 
     def describe(self) -> dict[str, Any]:
-        """The breaks as plain JSON values, rounded to twelve digits, as further digits are errors of rounding."""
+        """The breaks as plain JSON values, rounded to twelve digits."""
         ranges = {"start": self.start, "end": self.end}
         times = {"time": self.time} | ({} if self.began is None else {"began": self.began})
         return {key: _short(time) for key, time in times.items()} | {
@@ -82,9 +83,9 @@ def _damaged(since: np.ndarray, positions: np.ndarray, time_step: float) -> Iter
 
 
 def _open_cracks(bonds: Bonds, positions: np.ndarray, time_step: float) -> Iterator[Spall]:
-    """Spalls from the planes across which all bonds have broken; those nearer than the horizon are one.
+    """Spalls from the planes across which all bonds have broken; planes closer than the horizon are one spall.
 
-    What is between them is shorter than the bonds that broke.
+    The material between such planes is shorter than the bonds that broke.
     """
     began, since = opened_planes(bonds)
     planes = np.flatnonzero(since >= 0)
@@ -101,7 +102,10 @@ def _open_cracks(bonds: Bonds, positions: np.ndarray, time_step: float) -> Itera
 
 
 def opened_planes(bonds: Bonds) -> tuple[np.ndarray, np.ndarray]:
-    """Steps (n − 1,) in which the first bond across each plane began to open and the last one broke; −1 for not yet."""
+    """Steps (n − 1,) in which the first bond across each plane began to open, and in which the last one broke.
+
+    Else −1.
+    """
     opening = bonds.opening
     length = np.maximum(opening["row"] + 1, 1)
     broken = opening.of(bonds.spring_broken, bonds.bond_broken)
@@ -119,7 +123,10 @@ def opened_planes(bonds: Bonds) -> tuple[np.ndarray, np.ndarray]:
 
 
 def crack_strain_rates(bonds: Bonds) -> dict[str, float] | None:
-    """Strain rates (1/s), the slowest and the fastest, of bonds that have broken; None without a law of rates."""
+    """Strain rates (1/s), the slowest and the fastest, of bonds that have broken.
+
+    None without a rate-dependent strength.
+    """
     broken = bonds.opening.of(bonds.spring_broken, bonds.bond_broken) >= 0
     if not bonds.opening.has_rates or not broken.any():
         return None
@@ -128,7 +135,7 @@ def crack_strain_rates(bonds: Bonds) -> dict[str, float] | None:
 
 
 def breaks_at_ends(found: Sequence[Spall], ends: Mapping[str, float]) -> dict[str, Spall]:
-    """Breaks that began at an end whose node is held: there the bar has come off its support, and no piece off the bar.
+    """Breaks that began at an end whose node is held: there the bar has come off its support and did not spall.
 
     ends : side -> place (m) of those ends.
     """

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 SPALL_PLACE, SPALL_TIME = "spall place", "spall time"
-"""Names of what is found about the first spall."""
+"""Names of the findings about the first spall."""
 
 
 class Bars(Kind[BarCase, BarScene]):
@@ -85,7 +85,7 @@ class Bars(Kind[BarCase, BarScene]):
         return storage_of(scene)
 
     def facts(self, scene: BarScene, time_step: float) -> Entries:
-        """The bar, its method and what acts on it."""
+        """The bar, its method, boundaries and loads in words."""
         return bar_facts(scene, time_step)
 
     def warnings_before(self, scene: BarScene, time_step: float) -> list[str]:
@@ -101,11 +101,14 @@ class Bars(Kind[BarCase, BarScene]):
         return summarise_bar(scene, run, record)
 
     def work(self, run: Run) -> int:
-        """Forces of springs and bonds computed; without horizons one for every node, less one, and step."""
+        """Number of computed forces of springs and bonds; without horizons n − 1 in every step."""
         return part_of(run).bond_updates
 
     def findings(self, scene: BarScene, run: Run, inside: Box | None = None) -> dict[str, Finding]:
-        """Middle (m) and time (s) of the first spall, if there is one there; with a fracture energy when it began."""
+        """Middle (m) and time (s) of the first spall, if there is one.
+
+        With a fracture energy the time when it began.
+        """
         for spall in sorted(spalls_of(scene, run)[0], key=lambda spall: spall.reached):
             place = 0.5 * sum(spall.start)
             if inside is None or inside[0] <= place <= inside[2]:

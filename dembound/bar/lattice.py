@@ -24,7 +24,7 @@ def lattice_of(bonds: Bonds, part: Range, time_step: float) -> Lattice:
 def even_lattices(stages: Iterable[Bonds], ranges: Iterable[Range], time_step: float) -> Iterator[Lattice]:
     """The infinite rows of all stages of a method in all ranges; time_step s.
 
-    Without those in which a zone of other bonds ends in the middle of a range, where the row is not even.
+    Stages in which a zone of other bonds ends in the middle of a range are left out, as the row is not uniform there.
     """
     for bonds, part in product(stages, ranges):
         if math.isclose(sum(bonds.shares(part)), 1.0, rel_tol=10.0**-DIGITS):

@@ -19,16 +19,16 @@ from dembound.bar.layers import EndLayer
 from dembound.boundaries.layer import Layer
 
 LONG = Layer(nodes=1500, power=3.0, reflection=1e-12)
-"""A layer that returns nothing that counts."""
+"""A layer whose own reflection is negligible."""
 
 BETWEEN = 100
 """Nodes between the layers."""
 
 RUNS = 0.01
-"""Part of the motion under the force with which a wave at least passes at the layer."""
+"""Smallest amplitude of the wave at the layer, over the motion under the force."""
 
 WIDEST = 30
-"""Longest bonds, in spacings, for which this is computed; the time grows with the square."""
+"""Longest bonds, in spacings, for which the reflection is computed; the time grows with the square."""
 
 
 def returned(layer: EndLayer, frequency: float, time_step: float) -> float:

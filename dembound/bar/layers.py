@@ -38,7 +38,7 @@ from dembound.motion.part import Tie
 from dembound.motion.state import Arrays
 
 ENDS = ("left", "right")
-"""The ends of a bar."""
+"""Names of the ends of a bar."""
 
 MOST_DECAY = 4.0
 """Largest rate of a node times the time step with which the energy cannot grow."""
@@ -103,18 +103,18 @@ class EndLayer:
         return np.where((len(self.inner) <= outer) & (outer < self.count), self.stiffness[:, None], 0.0)
 
     def endless(self, duration: float) -> EndLayer:
-        """The layer without decay, with so many nodes that nothing comes back within so many s."""
+        """The layer without decay, with so many nodes that nothing comes back within a time (s)."""
         count = 100 + math.ceil(duration * self.speed / self.spacing)
         return replace(self, layer=Layer(count, power=1.0, reflection=1.0))
 
     @property
     def ground(self) -> np.ndarray:
-        """(b + N,) N/m of springs to the ground, by which attenuation is matched, too."""
+        """(b + N,) N/m of springs to the ground, which match the attenuation."""
         return self.mass * self.drag_rate * self.node_rates
 
     @property
     def _depth(self) -> np.ndarray:
-        """(b + N,) depths of the nodes below the end, in spacings."""
+        """(b + N,) distances of the nodes beyond the end, in spacings."""
         return np.arange(self.count) - (len(self.inner) - 1.0)
 
     def bands(self) -> np.ndarray:

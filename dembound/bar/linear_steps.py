@@ -1,6 +1,6 @@
 """The steps of a linear bar and its layers as numpy arrays: its motion under single forces.
 
-Bonds of bar and layers obey one pair of equations, those of kernels/bar_layer.py; in the bar the rates of decay are
+Bonds of bar and layers obey the same pair of equations (kernels/bar_layer.py); in the bar the rates of decay are
 zero, and the dashpots of supported nodes stand in place of attenuation:
 
     f ← keep f + gain (v_j − v_i) ,    v ← keep v + mobility (F − ground u) .

@@ -6,14 +6,14 @@ from typing import Any
 from dembound.words import percent, with_unit
 
 GAINED = 1e-3
-"""Share of the energy that breaking bonds may add instead of removing it; above it the run reports it."""
+"""Share of the energy above which a run reports energy that breaking bonds added instead of removing it."""
 
 LISTED = 3
 """Number of spalls that are printed one by one."""
 
 
 def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
-    """Changes of method, place and time of breaks and spalls, and which of these results converge."""
+    """Changes of method, places and times of breaks and spalls, and which of these results converge."""
     facts = [f"{used['law']} from {with_unit(used['from'], 's')}" for used in summary["laws"][1:]]
     facts += [
         f"broke at the {side} end ({summary['boundaries'][side]['type']}), {with_unit(broken['time'], 's')}"

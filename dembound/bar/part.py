@@ -1,4 +1,4 @@
-"""The part of a bar: the bonds its method creates, and changes when springs reach a given stretch."""
+"""The part of a bar: its bonds, which the method creates, and changes when springs reach a given stretch."""
 
 import numpy as np
 
@@ -23,7 +23,7 @@ class BarPart(Part):
     Parameters
     ----------
     scene : the bar; time_step : Δt in s.
-    first : bonds to begin with; by default those with which the method begins.
+    first : bonds to begin with; by default the first bonds of the method.
     through : of the scene's layers, see kernels.tables.BarLayers.
 
     Attributes

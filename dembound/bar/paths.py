@@ -41,8 +41,8 @@ SAMPLES = 400
 def front_of_bar(scene: BarScene, time_step: float) -> Front:
     """The fastest waves of a bar that is stepped by time_step (s), at any stage of its method.
 
-    With bonds up to m spacings Δx long, phase speeds are c(1 − (kΔx)²((m² + 1)/2 − ν²)/24): a row that disperses alike
-    has at most the spacing Δx√((m² + 1)/2).
+    With bonds up to m spacings Δx long, phase speeds are c(1 − (kΔx)²((m² + 1)/2 − ν²)/24): a row of nodes bonded to
+    neighbours only that has the same dispersion has at most the spacing Δx√((m² + 1)/2).
     """
     ranges = scene.rod.ranges
     speed = max(part.speed for part in ranges)

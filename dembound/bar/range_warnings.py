@@ -16,7 +16,7 @@ ALIKE = 1e-3
 """Relative difference up to which values of Δx/c count as equal."""
 
 UNLIKE_SECTIONS = 100.0
-"""Ratio of the sections of neighbours above which it is taken for a mistake: at 100 hardly 4 % of a force passes."""
+"""Ratio of the sections of neighbours above which a warning is given: at 100 hardly 4 % of a force passes."""
 
 
 def range_warnings(case: BarCase, time_step: float) -> Iterator[str]:
@@ -28,7 +28,7 @@ def range_warnings(case: BarCase, time_step: float) -> Iterator[str]:
 
 
 def _sections(case: BarCase) -> Iterator[str]:
-    """Warnings about sections left to the default while others are given, and neighbours of very unlike sections."""
+    """Warnings about sections left to the default while others are given, and very different neighbouring sections."""
     parts, names = case.bar.parts, [each.name for each in case.bar.range]
     given = [part.section is not None or part.diameter is not None for part in parts]
     reported = set()
@@ -63,7 +63,7 @@ def _bonded_impacts(case: BarCase) -> Iterator[str]:
 def never_closing(case: BarCase) -> dict[str, str]:
     """Contacts that never close within the run, by the name of the range on their right, each with a warning.
 
-    Until something sends waves, ranges fly as they are; where something does within the run, none is foreseen.
+    Ranges fly at constant velocity until something sends waves; if waves are sent within the run, none is predicted.
     """
     pairs, duration = list(itertools.pairwise(case.bar.range)), case.run.duration
     if case.load or case.driving or not pairs or _held_in_flight(case):
@@ -100,7 +100,7 @@ def _held_in_flight(case: BarCase) -> bool:
 
 
 def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
-    """Impacts: their fronts of one step swing unless the time step is the Δx/c of all ranges."""
+    """Impacts: velocities behind their fronts oscillate unless the time step is the Δx/c of all ranges."""
     if not any(each.velocity for each in case.bar.range):
         return
     steps = np.array([part.length / part.cells / part.speed for part in case.bar.parts])
@@ -120,7 +120,7 @@ def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
 
 
 def monitors_in_gaps(scene: BarScene) -> Iterator[str]:
-    """Monitors that are where no bar is: between two ranges that do not touch yet."""
+    """Monitors in the gap between two ranges that do not touch yet."""
     for monitor in scene.case.monitor:
         for left, right in scene.rod.touching:
             margin = ROUNDING * right.end
@@ -133,7 +133,7 @@ def monitors_in_gaps(scene: BarScene) -> Iterator[str]:
 
 
 def monitors_between_sections(scene: BarScene) -> Iterator[str]:
-    """Warnings about monitors between two bonded ranges of different sections, whose stress is that of neither."""
+    """Warnings about monitors at a bonded interface of different sections; their stress is force over mean section."""
     names, ranges = [each.name for each in scene.case.bar.range], scene.rod.ranges
     for monitor, node in scene.monitors.items():
         for number, (left, right) in enumerate(itertools.pairwise(ranges[: len(names)])):

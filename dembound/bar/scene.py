@@ -27,7 +27,7 @@ class BarScene(BarBody):
     def system(self, time_step: float, first: Bonds | None = None) -> System:
         """The bar and its layers at rest, to be stepped by time_step (s).
 
-        first : bonds to begin with; by default those with which the method begins.
+        first : bonds to begin with; by default the first bonds of the method.
         """
         ties = [LayerTie(list(self.layers.values()), self.count, time_step)] if self.layers else []
         part = BarPart(self, time_step, first, ties[0].through if ties else None)
@@ -35,7 +35,7 @@ class BarScene(BarBody):
 
 
 def build_bar(case: BarCase) -> BarScene:
-    """Place a bar's nodes and support them; raises CaseError when a run needs more RAM than there is."""
+    """Place a bar's nodes and support them; raises CaseError when a run needs more RAM than is free."""
     must_fit_here(case)
     bar = case.bar
     rod = _rod(bar).continued(*(case.method.horizon_beyond if case.side(side).layer else 0 for side in ENDS))
@@ -79,7 +79,7 @@ def bar_medium(case: BarCase, side: str) -> BoundaryMedium:
 
 
 def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge], layers: Mapping[str, EndLayer]) -> Supports:
-    """The support table: rows of both ends, of all loads, and the attenuation of the nodes they or layers act on."""
+    """The support table: both ends, all loads, and the attenuation of nodes that are supported or tied to layers."""
     builder = SupportBuilder(held=HELD)
     for side, table in case.boundary.items():
         builder.side = side

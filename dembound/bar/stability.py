@@ -6,7 +6,7 @@ from dembound.errors import CaseError
 
 
 def own_step(scene: BarScene, limit: float) -> float:
-    """The time step (s) of the case at a stability limit (s): a share of it, or the one given, even above it."""
+    """The time step (s) of the case: a share of the stability limit (s), or the given step, even above the limit."""
     run = scene.case.run
     if run.courant is not None:
         return run.courant * unit_step(scene)

@@ -15,7 +15,7 @@ CHANGING, CONSTANT = 32.0, 8.0
 
 
 def storage_of(scene: BarScene) -> Storage:
-    """Bytes on disk of a bar: in the record of a snapshot motion, stress and damage; a line between two nodes."""
+    """Bytes on disk of the results of a bar."""
     nodes, lengths = float(scene.count), max(scene.case.method.largest_horizon, 1)
     output = scene.case.output
     vtu = mesh_bytes(1.0, CHANGING + CONSTANT + 4.0 * output.peaks, 1.0, 2, 4.0)

@@ -15,13 +15,13 @@ from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
 
 LATER_SPALLS = "spalls after the first do not converge as bar.spacing decreases: their number and places depend on it"
-"""Added where a bar without a fracture energy has spalled more than once."""
+"""Note in the summary where a bar without a fracture energy has spalled more than once."""
 
 AT_ONE_HORIZON = (
     "spalls after the first converge as bar.spacing decreases if the method is peridynamics and its horizon mΔx "
     "remains the same; else their number and places may depend on bar.spacing"
 )
-"""Added where one with a fracture energy has."""
+"""Note in the summary where a bar with a fracture energy has spalled more than once."""
 
 
 OF_DISKS = {"beta_s", "matched_p", "matched_s", "half_mass"}
@@ -76,7 +76,7 @@ def part_of(run: Run) -> BarPart:
 def describe_bar(scene: BarScene) -> dict[str, Any]:
     """The bar in numbers: lengths m, area m², moduli Pa, speed m/s; strength and stretch null where nothing breaks.
 
-    Of a bar with ranges, these numbers for each of them, its length, and its smallest strength.
+    A bar with ranges has these numbers for each range, its length, and its smallest strength.
     """
     bar, ranges = scene.case.bar, scene.rod.ranges
     if not bar.range:

@@ -11,7 +11,7 @@ from dembound.motion.trial import Trial, at_rest, left_out
 
 
 def trials_of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
-    """A bar with the bonds of every stage of its method, and how it differs from the case, one sentence each.
+    """For every stage of its method a bar with its bonds, and a sentence on how it differs from the case.
 
     Raises the errors of building a scene.
     """

@@ -32,14 +32,18 @@ LIKELY = (100.0, 10_000.0)
 """Slowest and fastest waves (m/s) of bars of solids, from soft rubber to hard ceramics."""
 
 BLURRED = 0.8
-"""Share of its peak that a load spread over nodes must let in; peridynamic bars need one on as many as the horizon.
+"""Share of its peak that must remain of a load spread over nodes.
 
-A harmonic wave 5.6 times as long as them keeps 0.80 of it, one of eight times 0.90; a pulse (1 − cos)/2 3.8 times.
+Peridynamic bars need a load on as many nodes as the horizon has. A harmonic wave 5.6 times as long as the loaded part
+keeps 0.80 of its peak, one of eight times 0.90; a pulse (1 − cos)/2 keeps 0.80 if it is 3.8 times as long.
 """
 
 LONGEST = 0.25
-"""Horizon over EG_f/σ_t² up to which a crack opens at one plane: at 0.2 it takes 1.00 to 1.04 of its fracture energy,
-at 0.4 up to 1.3, at 0.8 up to 1.8 under a pulse of 2.6 strengths."""
+"""Horizon over EG_f/σ_t² up to which a crack opens at one plane.
+
+Under a pulse of 2.6 strengths a crack dissipates 1.00 to 1.04 of its fracture energy at 0.2, up to 1.3 at 0.4, and up
+to 1.8 at 0.8.
+"""
 
 
 def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
@@ -66,7 +70,7 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
 
 
 def _unlikely_speeds(case: BarCase) -> Iterator[str]:
-    """Moduli and densities that are likely, but give waves of no rock, metal or plastic."""
+    """Moduli and densities that are likely, but together give a wave speed that no rock, metal or plastic has."""
     given = [case.bar, *case.bar.range]
     if any(line for table in given for line in unlikely_in("", table, case)):
         return
@@ -115,7 +119,7 @@ def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
 
 
 def _long_bonds_across_cracks(case: BarCase) -> Iterator[str]:
-    """Horizons so long that a crack spreads over several planes."""
+    """Horizons so long that a crack opens over several planes."""
     for part in case.bar.parts:
         horizon = case.method.largest_horizon * part.spacing
         if part.fracture_energy is None or case.method.largest_horizon == 1:
@@ -139,7 +143,7 @@ def _dashpots_at_soft_ends(case: BarCase) -> Iterator[str]:
 
 
 def _loads_at_dashpots(case: BarCase) -> Iterator[str]:
-    """Loads on ends that absorb: what enters is the part that dashpots or a layer beyond leave to the bar."""
+    """Loads on ends that absorb: dashpots or a layer beyond take a part of the load, and only the rest enters."""
     for load in case.load:
         end, supports = case.bar.end(load.side), end_supports(case, load.side)
         impedance = end.density * end.speed * end.area
@@ -154,11 +158,11 @@ def _loads_at_dashpots(case: BarCase) -> Iterator[str]:
 
 
 def _loads_spread_too_far(case: BarCase) -> Iterator[str]:
-    """Loads on so many nodes that their waves are blurred: of the peak less enters.
+    """Loads on so many nodes that they smooth their waves and reduce the peak.
 
-    A force at a distance x from a free end sends half of itself away from it and half towards it, which returns as the
-    same after 2x/c. All forces within W together send the mean of f(t) within ± W/c, of a frequency ω the share
-    sin(ωW/c)/(ωW/c). An end that absorbs keeps what runs towards it: ± W/2c.
+    A force at a distance x from a free end sends half of its wave away from the end and half towards it, which returns
+    with the same sign after 2x/c. Forces within W together send the mean of f(t) over ± W/c, which keeps the share
+    sin(ωW/c)/(ωW/c) of a frequency ω. An end that absorbs returns nothing, so that the mean is over ± W/2c.
     """
     for load in case.load:
         end, wave, absorbs = case.bar.end(load.side), case.wave[load.wave], not case.side(load.side).is_free
@@ -176,7 +180,7 @@ def _loads_spread_too_far(case: BarCase) -> Iterator[str]:
 
 
 def _too_tough(case: BarCase) -> Iterator[str]:
-    """A fracture energy above the energy of all waves that enter: no crack can open all the way."""
+    """A fracture energy above the energy of all waves that enter: no crack can open completely."""
     bar = case.bar
     if bar.range or bar.fracture_energy is None or not (case.load or case.driving):
         return
@@ -196,7 +200,7 @@ def _too_tough(case: BarCase) -> Iterator[str]:
 
 
 def _unmatched_dashpots(scene: BarScene) -> Iterator[str]:
-    """Dashpots that send back much of a wave; the matched factor of a bar is 1."""
+    """Dashpots that reflect much of a wave; the matched factor of a bar is 1."""
     for side, edge in scene.edges.items():
         table = scene.case.side(side)
         beta = table.factors_at(edge, bar_medium(scene.case, side)).get("p", 1.0)
@@ -252,8 +256,8 @@ def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
     """Times of the pressure's crest at the loaded end and of the break near the other end, less L/c; s.
 
     A pressure p(t) on the loaded end gives the tension p(s − y/c) − p(s + y/c) at the distance y from the free end,
-    with s the time since the front arrived there. A time is None where the event does not occur: no pressure, too small
-    a pressure, or an initial tension so large that the bar breaks before the front arrives. Both are None where the
+    with s the time since the front arrived there. A time is None where the event does not occur: no pressure, too low a
+    pressure, or an initial tension so large that the bar breaks before the front arrives. Both times are None where the
     loaded end has springs.
     """
     bar, side = case.bar, case.loaded

@@ -26,7 +26,7 @@ NOTHING = 0.05
 """Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
 
 SWINGING = 0.3
-"""Energy of changes within steps over the largest kinetic energy from which a run is warned of; fronts have 0.01."""
+"""Energy of changes within steps over the largest kinetic energy, above which a warning is given; fronts have 0.01."""
 
 
 def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
@@ -47,10 +47,10 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
 
 
 def _swings(case: BarCase, file: h5py.File) -> Iterator[str]:
-    """A warning about velocities in snapshots that swing from step to step, as after impacts at the step limit.
+    """A warning about velocities in snapshots that oscillate from step to step, as after impacts at the step limit.
 
-    Snapshots have velocities of half steps. Monitors have the mean of two, and the stress of a node is the mean over
-    both its springs, in which the swing cancels.
+    Snapshots have velocities of half steps. Monitors have the mean of two half steps, and the stress of a node is the
+    mean over both its springs; in these means the oscillation cancels.
     """
     if "energy" not in file or not any(each.interface == "contact" for each in case.bar.range):
         return
@@ -68,7 +68,7 @@ def _swings(case: BarCase, file: h5py.File) -> Iterator[str]:
 
 
 def _open_contacts(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
-    """Contacts between ranges that have never been closed, so nothing has passed them; not those foreseen."""
+    """Contacts between ranges that have never been closed, although the warnings before the run did not predict it."""
     foreseen = never_closing(case)
     for number, (left, right) in enumerate(zip(case.bar.range[:-1], case.bar.range[1:], strict=True), start=2):
         if right.name in summary["open_contacts"] and right.name not in foreseen:
@@ -121,7 +121,7 @@ def _pull(case: BarCase, side: str, until: float) -> float:
 
 
 def _pushing(case: BarCase) -> Iterator[tuple[str, str, str, str, str]]:
-    """Loads and driven ends that can move: key, description, side, name of the wave, and what keeps the bar whole."""
+    """Loads and driven ends that can move: key, description, side, name of the wave, a change that avoids the break."""
     horizon, finer = case.method.largest_horizon, "take a smaller bar.spacing"
     for load in case.load:
         cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else finer
@@ -134,7 +134,7 @@ def _pushing(case: BarCase) -> Iterator[tuple[str, str, str, str, str]]:
 def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
     """A breakable bar whose recorded tension is far below its strength.
 
-    No warning where one before the run has already reported it.
+    No warning where a warning before the run has already reported it.
     """
     strength = case.bar.least_strength
     foreseen = [*stress_beside_strength(case), *ends_too_soon(case)]

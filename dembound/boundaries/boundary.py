@@ -24,8 +24,8 @@ class Boundary(Table):
     is_periodic : whether the side is connected to the opposite side.
     is_mirror : whether the side is a mirror plane.
     is_outside : whether the ground beyond the side is a continuum that is computed, too.
-    may_halve : whether the side's particles may be half cells, see `with_half_cells`.
-    needs_column : whether the side needs a free-field column, which moves with the waves of the ground.
+    may_halve : whether the side's particles may be half cells.
+    needs_column : whether the side needs a free-field column.
     beyond_dashpots : text for reports, naming what `dashpots_alone` leaves out.
 
     Notes
@@ -82,7 +82,7 @@ class Boundary(Table):
         return {}
 
     def factors_at(self, edge: Edge, medium: BoundaryMedium) -> dict[Motion, float]:
-        """The factors β of the side's dashpots as numbers; where the motion is held "matched" is 1."""
+        """The factors β of the side's dashpots as numbers; "matched" is 1 where the motion is held."""
         matched = medium.matched(edge) if "matched" in self.factors.values() else {}
         return {
             motion: factor if factor != "matched" else 1.0 if math.isnan(matched[motion]) else matched[motion]
@@ -99,27 +99,27 @@ class Boundary(Table):
 
     @property
     def is_artificial(self) -> bool:
-        """Whether the side stands in for ground or rock beyond it; by default if that is a continuum."""
+        """Whether the side represents ground or rock beyond it; by default true if that is a continuum."""
         return self.is_outside
 
     @property
     def may_move(self) -> bool:
-        """Whether the side may be farther away: by default an artificial one through which no waves enter."""
+        """Whether the side may be moved away: by default true of artificial sides through which no waves enter."""
         return self.is_artificial and not self.waves
 
     @property
     def absorber(self) -> str:
-        """The region beyond the side that returns next to nothing, in words; empty where waves may come back."""
+        """Name of the region beyond the side that reflects next to nothing; empty where waves may come back."""
         return "a continuum" if self.is_outside else "a matched layer" if self.layer else ""
 
     @property
     def absorbs(self) -> bool:
-        """Whether the side absorbs at least a part of the waves that reach it."""
+        """Whether the side absorbs at least part of the waves that reach it."""
         return bool(self.factors or self.absorber)
 
     @property
     def layer(self) -> Layer | None:
-        """The layer of nodes that follows an end of a bar; by default none."""
+        """The absorbing layer of nodes beyond an end of a bar; by default none."""
         return None
 
     @property
@@ -132,10 +132,10 @@ class Boundary(Table):
         return self
 
     def equal_supports(self, own: Place, other: Place) -> "Boundary | None":
-        """The side on one place with supports as strong per length as those of this table on another place.
+        """The side at one place with supports as strong per length as those of this table at another place.
 
-        Springs, dampers and forces of waves count. None, the default, where the type cannot tell: the table is then
-        used unchanged if it is as strong, and refused otherwise.
+        Springs, dampers and forces of waves are compared. None, the default, if the type does not compute it: the table
+        is then used unchanged if it is as strong, and refused otherwise.
         """
         return None
 
@@ -162,7 +162,7 @@ class Boundary(Table):
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """The side in numbers for reports: key -> value, SI units; matched_p and matched_s are β0, null where held.
 
-        By default also the numbers among the keys of all classes that have no such method of their own.
+        The default includes the numbers among the keys of all classes that do not define this method.
         """
         matched = medium.matched(edge) if self.factors else {}
         own = {

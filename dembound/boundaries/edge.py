@@ -15,7 +15,7 @@ class BoundaryMedium:
     density kg/m³, bulk; p_wave_speed, s_wave_speed m/s, nominal; mirror_stiffness: diameters (k,) m -> stiffness of
     the contact and bond between disks at the side and their mirror images, normal (k,) N/m and bending (k,) N·m/rad.
     own_speeds: c_p and c_s of plane waves along the side's normal, m/s, nan where the motion is held; None if they are
-    the nominal ones.
+    the nominal speeds.
     """
 
     density: float

@@ -22,7 +22,7 @@ LEVEL = 1e-6
 
 
 def outer_row(positions: np.ndarray, radii: np.ndarray, side: str) -> np.ndarray:
-    """Indices of the particles in the outermost row at `side`, sorted along it; parameters as for `exposed`.
+    """Indices of the particles in the outermost row at `side`, sorted along it; parameters of `exposed`.
 
     If the disks of a side form one row, this is the whole side. `exposed` may also return disks at a corner: every
     second row of a hexagonal packing extends beyond the others.
@@ -70,7 +70,7 @@ def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float |
 
 
 def _lines_of_sight(begin: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers (k,) of disks and of the lines of sight that meet them; the ends (m,) of each in spacings of lines."""
+    """Numbers (k,) of disks and of the lines of sight that meet them; ends (m,) of the disks in spacings of lines."""
     first, last = np.ceil(begin).astype(np.int64), np.floor(end).astype(np.int64)
     counts = last - first + 1
     before = np.cumsum(counts) - counts

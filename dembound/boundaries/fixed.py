@@ -19,14 +19,14 @@ class Fixed(Boundary):
 
     @property
     def is_artificial(self) -> bool:
-        """The value of artificial."""
+        """The value of the key ``artificial``."""
         return self.artificial
 
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:
-        """The prescribed components: all three."""
+        """All three components."""
         return (0, 1, 2)
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """Prescribe zero velocity for all three components."""
+        """Prescribe zero velocity."""
         for component in range(3):
             supports.add(edge.nodes, component, prescribed=True)

@@ -19,5 +19,5 @@ class Free(Boundary):
 
     @property
     def is_artificial(self) -> bool:
-        """The value of artificial."""
+        """The value of the key ``artificial``."""
         return self.artificial

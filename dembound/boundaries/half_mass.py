@@ -6,7 +6,7 @@ lattice. So the contacts between them, which resist the rotation of the disks un
 
 The last disk of such a row, at a corner, is also a particle of the side across. There only half of its diameter is
 inside the scene, so that dashpots, springs and mirror contacts of that side are halved as well: the row has the
-impedance ρcD/2. With whole ones a side across of N disks between two sides of half cells has N/(N − 1) times the
+impedance ρcD/2. With whole diameters there a side of N disks between two sides of half cells has N/(N − 1) times the
 impedance of the scene and reflects −1/(2N − 1) of a P wave.
 """
 
@@ -32,7 +32,7 @@ def mass_factor(count: int, edges: Mapping[str, Edge], boundary: Mapping[str, Bo
 
 
 def with_shares(count: int, edges: Mapping[str, Edge], boundary: Mapping[str, Boundary]) -> dict[str, Edge]:
-    """The sides of `count` particles with their shares: a half for those in a row of half cells of another side."""
+    """The sides with the shares of their particles: a half for those in a row of half cells of another side."""
     shared = {}
     for side, edge in edges.items():
         others = {name: other for name, other in edges.items() if name != side}

@@ -10,8 +10,8 @@ import numpy as np
 class Layer:
     """Nodes beyond an end that absorb.
 
-    nodes : their number N; power : p of the profile; reflection : R0, the part of a wave that comes back in theory from
-    the layer's outer end.
+    nodes : their number N; power : p of the profile; reflection : R0, the theoretical reflection from the layer's outer
+    end.
     """
 
     nodes: int

@@ -1,4 +1,4 @@
-"""An absorbing end of a bar: more nodes beyond it, in which waves decay without being reflected.
+"""An absorbing end of a bar: a layer of nodes beyond it, in which waves decay without being reflected.
 
 The layer has the spacing and the bonds of the bar. Velocities of nodes and forces of bonds decay at the same rate d(x),
 at every frequency, so that the impedance remains that of the bar (a perfectly matched layer, Berenger 1994); on nodes
@@ -49,12 +49,12 @@ class MatchedLayer(Drivable):
 
     @property
     def is_artificial(self) -> bool:
-        """Always, as the layer stands in for more of the bar."""
+        """True, as the layer represents more of the bar."""
         return True
 
     @property
     def layer(self) -> Layer:
-        """The layer."""
+        """The absorbing layer."""
         reflection = usual_reflection(self.nodes) if self.reflection is None else self.reflection
         return Layer(self.nodes, self.power, reflection)
 
@@ -93,7 +93,7 @@ class MatchedLayer(Drivable):
 
 
 def usual_reflection(nodes: int) -> float:
-    """R0 = 10^−(4 + N/20), not below 1e-12, with which about as much returns from the outer end as from the profile.
+    """R0 = 10^−(4 + N/20), at least 1e-12: the outer end and the profile then reflect about the same.
 
     Measured with pulses of 20 spacings and p = 3, finite differences and peridynamics (docs/evidence/bar_ends.md): 1e-6
     for 40 nodes, 1e-8 for 80.

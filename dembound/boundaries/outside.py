@@ -22,10 +22,10 @@ class Outside(Drivable):
     type: Literal["outside"]
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """Mistakes: sides that a continuum cannot be beside, and waves that cannot enter through it.
+        """Mistakes: neighbouring sides that do not go with a continuum, and waves that cannot enter through it.
 
-        Its own edges next to those of the body are free, periodic, mirror planes, or go on, so the sides of the body
-        there must do the same.
+        The continuum's own edges next to those of the body are free, periodic, mirror planes, or go on, so the sides of
+        the body there must be of the same type.
         """
         yield from super().problems(side, tables)
         boundary = tables["boundary"]
@@ -56,7 +56,7 @@ class Outside(Drivable):
 def _first_beside(side: str, boundary: Mapping[str, Any]) -> str | None:
     """The first side with a continuum that this side cannot be beside; None if there is none.
 
-    A free field is the ground beyond all sides, so it is beside none of them.
+    A free field is the ground beyond all sides and has no continuum beside it.
     """
     table = boundary.get(side)
     if table is None or table.is_free or table.is_periodic or table.is_mirror or table.is_outside:
@@ -66,7 +66,7 @@ def _first_beside(side: str, boundary: Mapping[str, Any]) -> str | None:
 
 
 def _not_beside(side: str, table: Boundary, outside: str, other: str) -> str:
-    """The mistake of a side that cannot be beside another one with a continuum, whose type is `outside`."""
+    """Message about a side that cannot be beside another side of the type `outside`."""
     if table.needs_column:
         return (
             f'boundary.{side}.type: is "{table.type}", which cannot be in a case with boundary.{other} = "{outside}"; '
@@ -77,7 +77,7 @@ def _not_beside(side: str, table: Boundary, outside: str, other: str) -> str:
 
 
 def _goes_on(side: str, tables: Mapping[str, Any]) -> bool:
-    """Whether the ground goes on beyond a side of its box of disks, for which the box has a mistake of its own."""
+    """Whether the ground goes on beyond a side of its box of disks; the box has its own error message for this."""
     ground, packing = tables.get("ground"), tables.get("packing")
     if not (ground and ground.size and packing):
         return False
@@ -85,6 +85,6 @@ def _goes_on(side: str, tables: Mapping[str, Any]) -> bool:
 
 
 def _has_column(tables: Mapping[str, Any]) -> bool:
-    """Whether the ground beyond a continuum rests under forces of its own: by a static stage or a load on all of it."""
+    """Whether the ground beyond a continuum is loaded at rest: by a static stage or a load on all of it."""
     loads = [load for load in tables["load"] if load]
     return bool(tables.get("static")) or any(load.is_everywhere for load in loads)

@@ -1,4 +1,4 @@
-"""A periodic side: it is connected to the opposite side, which is periodic too."""
+"""A periodic side, connected to the opposite one."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal

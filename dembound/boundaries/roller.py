@@ -18,7 +18,7 @@ class Roller(Boundary):
 
     @property
     def is_artificial(self) -> bool:
-        """The value of artificial."""
+        """The value of the key ``artificial``."""
         return self.artificial
 
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:

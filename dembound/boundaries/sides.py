@@ -10,7 +10,7 @@ Motion = Literal["p", "s"]
 """Kind of wave: P moves particles along the normal of the side it reaches, S across it."""
 
 Factor = float | Literal["matched"]
-"""Factor β of a side's dashpots as given: a number, or that with which plane waves along the normal are absorbed."""
+"""Factor β of a side's dashpots as given: a number, or "matched" to absorb plane waves along the normal."""
 
 OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 """Side -> the side across the scene."""
@@ -22,7 +22,7 @@ def normal_axis(side: str) -> int:
 
 
 def is_far(side: str) -> bool:
-    """Whether a side is at the far end of its axis, as the right and the top are."""
+    """Whether a side is at the far end of its axis: right or top."""
     return side in ("right", "top")
 
 

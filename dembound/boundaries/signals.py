@@ -1,4 +1,4 @@
-"""Time functions: of drives of the support table, and of waves that enter through a side."""
+"""Time functions of the drives of the support table and of waves that enter through a side."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -11,14 +11,14 @@ Signal = Callable[[np.ndarray], np.ndarray]
 
 
 class Signals(Protocol):
-    """Signals that are computed together."""
+    """Signals whose values are computed together."""
 
     @property
     def count(self) -> int:
         """Number q of the signals."""
 
     def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Values (k, q) at times (k,) s of steps; velocities that ties see are half a step (s) behind."""
+        """Values (k, q) at times (k,) s of steps; velocities for ties are taken half a step (s) earlier."""
 
 
 @dataclass(frozen=True)

@@ -64,9 +64,9 @@ class SupportBuilder:
     ) -> None:
         """Add one row per node, each node once, for one component; numbers or arrays (k,).
 
-        incident : velocity of a wave that enters through the dashpot, by a force 2·damping·incident (Z eq. 6); in place
-        of drive and signal. Rows added to the same degree of freedom become one, with all their drives. Held components
-        are left out.
+        incident : velocity of a wave that enters through the dashpot, by a force 2·damping·incident (Z eq. 6); it
+        replaces drive and signal. Rows added to the same degree of freedom become one, with all their drives. Held
+        components are left out.
         """
         if component in self.held or len(nodes) == 0:
             return
@@ -92,7 +92,8 @@ class SupportBuilder:
     ) -> None:
         """Add forces (N, or N·m) with a signal each on components (k,) of nodes (k,), each degree of freedom once.
 
-        sides : side -> nodes (m,) on which the forces are of this side; by default all are of the present one.
+        sides : side -> nodes (m,) on which forces count as those of this side; by default all count for the present
+        side.
         """
         first = len(self._signals)
         self._signals += [OneOf(forces, number) for number in range(forces.count)]
@@ -105,7 +106,7 @@ class SupportBuilder:
         self.side = present
 
     def add_power(self, side: str, power: Signal) -> None:
-        """Add the power (W) of waves that enter through a side only by forces, for its energies."""
+        """Add the power (W) of waves that enter through a side by forces only, for the side's energies."""
         self._power[side] = self._number_of_signal(power)
 
     def _number_of_signal(self, signal: Signal) -> int:
@@ -125,7 +126,7 @@ class SupportBuilder:
         prescribed: bool = False,
         incident: bool = False,
     ) -> None:
-        """Append rows, one per node (k,), as one call."""
+        """Append one row per node (k,); together they are one call."""
         columns: dict[str, float | np.ndarray] = {
             "node": nodes,
             "component": component,
@@ -155,8 +156,8 @@ class SupportBuilder:
     def table(self) -> Supports:
         """Merge rows on the same degree of freedom and sort them by node.
 
-        Dampings, stiffnesses and drives add; a prescribed row replaces all others, of two prescribed rows the moving
-        one wins, of two moving ones the first, and of two at rest the row of the side along whose normal it is.
+        Dampings, stiffnesses and drives add. A prescribed row replaces all others. Of two prescribed rows the moving
+        one is kept, of two moving ones the first, and of two at rest the row along the normal of its side.
         """
         node, component, signal = (self._column(name, np.int64) for name in ("node", "component", "signal"))
         damping, follow, stiffness, drive = (
@@ -182,7 +183,7 @@ class SupportBuilder:
         )
 
     def _shares(self, kept: np.ndarray) -> Shares:
-        """Shares of the rows added by sides that are kept (a,)."""
+        """Shares of the rows that sides added and that are kept (a,)."""
         columns = {
             name: self._column(name, kind)[kept]
             for kind, names in (

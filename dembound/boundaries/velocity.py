@@ -16,7 +16,7 @@ class Velocity(Driven):
     type: Literal["velocity"]
 
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:
-        """The axes held: both."""
+        """Both axes."""
         return (0, 1)
 
     def at_rest(self) -> Boundary:

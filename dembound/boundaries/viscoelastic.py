@@ -85,13 +85,13 @@ class Springs(Boundary):
         return np.outer(factors, self.shear_modulus(medium) * edge.widths / self.distances(edge))
 
     def equal_supports(self, own: Place, other: Place) -> Self:
-        """The side with factors α that give equally strong springs per length."""
+        """The side with factors α that give springs as strong per length as those at another place."""
         mine, theirs = (self.shear_modulus(medium) * edge.diameter_sum_ratio for edge, medium in (own, other))
         ratio = theirs / mine
         return self.model_copy(update={"alpha_n": self.alpha_n * ratio, "alpha_s": self.alpha_s * ratio})
 
     def stiffest(self, side: str, box: Box) -> Boundary:
-        """The side with the distance of the source from its nearest point, where its springs are stiffest."""
+        """The side with the source's distance from its nearest point everywhere, where springs are stiffest."""
         if self.source is None:
             return self
         nearest = [min(max(place, box[axis]), box[2 + axis]) for axis, place in enumerate(self.source)]

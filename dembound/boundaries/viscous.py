@@ -51,16 +51,16 @@ class Dashpots(Boundary):
 
     @property
     def is_artificial(self) -> bool:
-        """Always, as dashpots stand in for the medium beyond."""
+        """True, as dashpots represent the medium beyond."""
         return True
 
     @property
     def half_cells(self) -> bool:
-        """The value of half_mass."""
+        """The value of the key ``half_mass``."""
         return self.half_mass
 
     def with_half_cells(self, half: bool) -> Self:
-        """The side with this value of half_mass."""
+        """The side with this value of ``half_mass``."""
         return self.model_copy(update={"half_mass": half}) if self.may_halve else self
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
@@ -72,7 +72,7 @@ class Dashpots(Boundary):
             yield f"boundary.{side}.half_mass: needs a side of disks in one row; pattern {packing.pattern} {has}"
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
-        """The factors, and whether masses are halved."""
+        """The factors β, and whether masses are halved."""
         return {**super().describe(edge, medium), "half_mass": self.half_mass}
 
     def dampings(self, edge: Edge, medium: BoundaryMedium) -> np.ndarray:
@@ -102,7 +102,7 @@ class ViscousInput(Dashpots, Driven):
     type: Literal["viscous_input"]
 
     def at_rest(self) -> Boundary:
-        """The side with the same dashpots and no wave."""
+        """A viscous side with the same dashpots and without a wave."""
         return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:

@@ -7,7 +7,7 @@ from dembound.boundaries.sides import Motion
 from dembound.words import with_unit
 
 FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
-"""Keys of the factors of dashpots, and their symbols."""
+"""Keys of the factors of dashpots -> their symbols."""
 
 IN_WORDS = {
     *("type", "particles", "length", "diameter_min", "diameter_mean", "diameter_max", "diameter_sum_ratio"),
@@ -24,11 +24,11 @@ IN_WORDS = {
         "distance_max",
     ),
 }
-"""Keys of a side that are printed in another way, or by the caller."""
+"""Keys of a side that other texts print."""
 
 
 TOO_MUCH = 0.2
-"""Share of the amplitude of a plane wave along its normal that an absorbing side may send back without a warning."""
+"""Reflected share of the amplitude of a plane wave along the normal above which an absorbing side gives a warning."""
 
 
 def reflected(impedance: complex, matched: complex) -> complex:
@@ -37,7 +37,7 @@ def reflected(impedance: complex, matched: complex) -> complex:
 
 
 def poor_factor(motion: Motion, share: float, beta: float, matched: float, wave: str | None) -> str:
-    """A warning that a factor β sends back a share of the amplitude; wave : name of the one entering there, or None."""
+    """A warning that a factor β reflects a share of the amplitude; wave : name of the wave that enters, or None."""
     enters = f" and lets in {2.0 * beta / (matched + beta):.2g} times wave {wave}" if wave else ""
     return (
         f"sends back {100.0 * share:.0f} % of the amplitude of {motion.upper()} waves along its normal{enters}: "
@@ -61,13 +61,13 @@ def _beside_matched(side: Mapping[str, Any], key: str) -> str:
 
 
 def _others(side: Mapping[str, Any]) -> str:
-    """Text with all other numbers; types of other packages may have some."""
+    """All other numbers in words; types of other packages may have some."""
     others = {key: value for key, value in side.items() if key not in IN_WORDS}
     return "".join(f", {key} = {f'{value:g}' if isinstance(value, float) else value}" for key, value in others.items())
 
 
 def _springs_in_words(side: Mapping[str, Any]) -> str:
-    """The springs of the side, if it has any."""
+    """The springs of the side in words, if it has any."""
     if "alpha_n" not in side:
         return ""
     nearest, farthest = side["distance_min"], side["distance_max"]

@@ -10,7 +10,7 @@ from dembound.outside.gll import Rule
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """Cells side by side, the columns or the rows of a mesh; places are those from where the first one begins.
+    """The columns or the rows of a mesh; places are distances (m) from the beginning of the first one.
 
     Attributes
     ----------
@@ -80,5 +80,5 @@ class Axis:
         return depth
 
     def cell_at(self, places: np.ndarray) -> np.ndarray:
-        """The cell (k,) at each of these places (k,) m, on an edge that before it; beyond the ends that at the end."""
+        """The cell (k,) at each of the places (k,) m: the one before on an edge, the end cell beyond the ends."""
         return np.searchsorted(self.edges[1:-1], places)

@@ -53,7 +53,7 @@ class ElementBlocks:
 
     @property
     def layers(self) -> int:
-        """Number of blocks that absorb, the last ones."""
+        """Number of blocks that absorb; they are the last."""
         return int(np.count_nonzero(self.kinds))
 
     @cached_property
@@ -82,9 +82,9 @@ class ElementBlocks:
 
     @cached_property
     def _shared(self) -> tuple[np.ndarray, int]:
-        """The nodes (s,) of rims that move, and how many of them are of elastic elements only, which come first.
+        """The nodes (s,) of rims that move, and how many of them belong to elastic elements only; these come first.
 
-        Within each group they are sorted by the number of elements they belong to.
+        Both groups are sorted by the number of elements of a node.
         """
         count = np.zeros(self.mesh.count, dtype=np.int64)
         absorbing = np.zeros(self.mesh.count, dtype=np.bool_)
@@ -137,7 +137,7 @@ class ElementBlocks:
         )
 
     def _entries(self, nodes: np.ndarray, shared: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Places at which the forces on every shared node are stored, see `Blocks`; nodes (B, R, 8) of the rims."""
+        """Where the forces on every shared node are stored, see `Blocks`; nodes (B, R, 8) of the rims."""
         place = np.arange(nodes.size).reshape(nodes.shape)
         place = 2 * place - place % LANES  # eight along x, then eight along y
         rank = np.full(self.mesh.count + 1, -1)  # the last one is that of lanes without an element

@@ -49,7 +49,7 @@ class GridBody:
 
     @cached_property
     def mass_for_limit(self) -> np.ndarray:
-        """(n,) kg, less than the mass where the delay τ acts: M⁻¹K then bounds the time step with it.
+        """(n,) kg, less than the mass where the delay τ acts, so that M⁻¹K bounds the time step with the delay.
 
         With gradients of u + τv central differences are stable up to ω²(Δt² + 2τΔt) = 4, so that ω² counts 1 + 2τ/Δt
         times.
@@ -77,7 +77,7 @@ class GridBody:
         )
 
     def law(self, time_step: float) -> Grid:
-        """The arrays of its law for time steps Δt (s), its layers at rest."""
+        """The arrays of its law for time steps Δt (s), with layers at rest."""
         return self.bundle(absorber_of(self.blocks, self.medium, self.absorption, time_step))
 
     @cached_property

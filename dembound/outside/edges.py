@@ -13,7 +13,7 @@ def is_free(mesh: Mesh, side: str) -> bool:
 
 
 def elements_at(mesh: Mesh, side: str) -> np.ndarray:
-    """The elements (k,) with an edge on a side; at the top the highest ones of columns that the box does not end."""
+    """The elements (k,) with an edge on a side; at the top the highest of each column that does not end at the box."""
     axis, end = divmod(SIDES.index(side), 2)
     column, place = mesh.elements[:, 0], mesh.elements[:, axis]
     if end == 0:

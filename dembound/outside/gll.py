@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 ORDERS = range(3, 7)
-"""Orders of elements that the step limit and the absorbing layer are tested for."""
+"""Orders of elements for which the step limit and the absorbing layer are tested."""
 
 
 class Rule:

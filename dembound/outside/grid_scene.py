@@ -89,7 +89,7 @@ class GridScene(Scene):
 
     @property
     def threads(self) -> int:
-        """Threads its steps use."""
+        """Number of threads of its steps."""
         return thread_count_for(self.count)
 
     @cached_property

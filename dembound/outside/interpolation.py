@@ -17,7 +17,8 @@ class Interpolation(NamedTuple):
 def located(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The element (k,) of a mesh nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside.
 
-    Above the free surface beside the box the highest element there, and beyond periodic sides the element at the image.
+    Above the free surface beside the box it is the highest element there, beyond periodic sides the element at the
+    image.
     """
     places = np.asarray(points) - mesh.origin
     places = np.where(mesh.periodic, places % mesh.size, places)

@@ -9,10 +9,10 @@ time ∂u becomes ∂u/κ + ψ with a convolution variable ψ ← Bψ + A∂u at
 
     B = exp(−(σ/κ + α)Δt),  A = σ(B − 1)/(κ(σ + κα)).
 
-With spectral elements this alone grows slowly. It decays if gradients are those of u + τv, with τ = kΔt q². Layers
-along one direction of a periodic mesh, which nothing absorbs along the other one, grow slowly even so: waves of the
-length of the period. There derivatives along the layer are stretched, too, with a part of σ (Meza-Fajardo &
-Papageorgiou 2008, Bull. Seism. Soc. Am. 98, 1811–1836); waves that run straight into the layer do not meet this.
+With spectral elements motion in such a layer grows slowly. It decays if gradients are those of u + τv, with τ = kΔt q².
+In periodic meshes, in which nothing absorbs along the period, waves of the length of the period still grow slowly.
+There derivatives along the layer are stretched, too, with a part of σ (Meza-Fajardo & Papageorgiou 2008, Bull. Seism.
+Soc. Am. 98, 1811–1836), which does not affect waves at normal incidence.
 """
 
 from dataclasses import dataclass
@@ -27,8 +27,8 @@ class Absorption:
     Attributes
     ----------
     reflection : R0, amplitude that a P wave keeps on its way through the layer and back at normal incidence, in the
-        continuum. shift : α0 over c_p/(2 L_inner). delay : k, see above; 0 grows in long runs. along : the part of σ
-        for derivatives along layers of periodic meshes.
+        continuum. shift : α0 over c_p/(2 L_inner). delay : k in τ = kΔt q²; with 0 motion grows in long runs. along :
+        the part of σ for derivatives along layers of periodic meshes.
     """
 
     reflection: float = 1e-4
@@ -41,7 +41,9 @@ USUAL = Absorption()
 """Settings with which waves of all angles up to 60° are absorbed, and noise decays."""
 
 LONG_WAVES = 0.01
-"""The shift for a layer that waves only reach straight: of longer ones less returns, and a body settles later."""
+"""The shift for layers that waves only reach at normal incidence: long waves are reflected less, and a body settles
+later.
+"""
 
 
 @dataclass(frozen=True)

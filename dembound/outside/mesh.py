@@ -13,7 +13,7 @@ from dembound.outside.gll import Rule
 from dembound.table import Box
 
 WHOLE = 1e-9
-"""Part of an element by which a length may exceed a whole number of elements."""
+"""Part of an element by which a length may exceed a whole number of elements without another one."""
 
 
 class Around(NamedTuple):
@@ -45,9 +45,8 @@ class Mesh:
     order : of the elements, N − 1.
     widths, heights : of the columns from left to right, and of the rows from the bottom, m.
     origin : lower left corner, m.
-    box : first column, first row, and those after the last ones, of the elements left out; None: none.
-    levels : in the columns left and right of the box the first rows that are left out, too, as all above them; None:
-        none.
+    box : first column, first row, column after the last and row after the last of the elements left out; None: none.
+    levels : in the columns left and right of the box the first rows that are left out, with all above them; None: none.
     layer : how many of the columns and rows absorb at each side.
     periodic : whether the first column (row) follows the last one.
     mirror : 1 for each side whose edge is a plane of symmetry.
@@ -104,7 +103,7 @@ class Mesh:
         rows : heights of the rows beside the box from the bottom, m; those below have that of the first one. None: of
             equal height.
         surface : height y of a free surface above the box, m; None: the box reaches it, or there is a margin or layer.
-        others : attributes of a mesh; levels : numbers of the rows beside the box that there are at left and right.
+        others : attributes of a mesh; levels : numbers of rows beside the box at left and right.
 
         Raises ValueError if the box is empty, or the surface is below its top or has a margin or layer below it.
         """
@@ -183,7 +182,7 @@ class Mesh:
 
     @cached_property
     def _shapes(self) -> tuple[np.ndarray, np.ndarray]:
-        """The widths and heights that elements have, (S, 2) m ascending, and which of them each element has, (E,)."""
+        """The different widths and heights of elements, (S, 2) m ascending, and the number (E,) of each element's."""
         shapes, each = np.unique(self.element_sizes, axis=0, return_inverse=True)
         return shapes, each.ravel()
 
@@ -298,7 +297,7 @@ class Mesh:
         return (self.depth == 1.0).any(axis=1)
 
     def on_mirrors(self, axis: int) -> np.ndarray:
-        """Nodes (k,) on planes of symmetry across an axis, ascending, but for held ones."""
+        """Nodes (k,) on planes of symmetry across an axis, ascending, without held ones."""
         line, ends = self.crossing[:, axis], (0, self.axes[axis].lines - 1)
         there = [line == end for end, plane in zip(ends, self.mirror.along(axis), strict=True) if plane]
         return np.flatnonzero(np.any(there, axis=0) & ~self.held) if there else np.zeros(0, dtype=np.int64)
@@ -316,6 +315,6 @@ class Mesh:
 
 
 def divided(length: float, largest: float) -> tuple[float, ...]:
-    """The sizes of as few equal parts of a length as have at most the largest one, m."""
+    """The sizes (m) of the fewest equal parts of a length that are not larger than `largest`."""
     count = math.ceil(length / largest - WHOLE)
     return (length / count,) * count if count else ()

@@ -1,4 +1,4 @@
-"""The static field of a force or hole beside elements: it varies within its distance from them, whatever the waves.
+"""The static field of a force or hole beside elements; it varies over their distance, at any length of waves.
 
 Measured in boxes of 3 to 36 m × 3 to 36 m of disks (D = 0.25, 0.5, 1 m, pattern A, ν = 0.25) round circles and squares
 with half sides of 0.2 to 0.8 of the box's, under a pressure and in P and S waves of 4 Hz; with one to four elements a
@@ -16,32 +16,38 @@ import numpy as np
 from dembound.table import Box
 
 FORCES = {3: 2.0, 4: 3.0, 5: 3.5, 6: 4.0}
-"""By order: side of elements over the distance of a force from them, with errors of 0.1 %.
+"""By order: side of elements over their distance from a force, with errors of 0.1 %.
 
 Elements with sides of 2.35 times the distance have errors of 0.15, 0.04, 0.013 and 0.010 %, which rise with the third
 power of the side.
 """
 
 HOLES = {3: 6e-2, 4: 2e-2, 5: 1e-2, 6: 4e-3}
-"""By order: error beside elements as wide as a box round a hole under a pressure; 0.75 of that round circles, up to
-1.8 times round squares. The error with two elements a side is smaller by 2 to the power of the order and one
-more."""
+"""By order: error beside elements as wide as a box round a hole under a pressure.
+
+Round circles 0.75 times, round squares up to 1.8 times as large. The error with two elements a side is smaller by 2 to
+the power of the order plus one.
+"""
 
 WIDER = 2.5
-"""Power of the side with which it grows where elements are wider than that: 10 and 22 % with two and three times."""
+"""Power of the side with which this error grows where elements are wider than the box: 10 % at twice, 22 % at three
+times its width.
+"""
 
 PASSED = 1.5
-"""Error beside a hole which waves pass, over k L²/(gap + L), the scattered motion: the wave number k times half the
-length L of the hole, times the share of it that reaches the elements. It falls with a power of the side that is
-smaller by two. Largest errors round holes that S waves pass, with kL of 0.1 to 0.4 and L/(gap + L) of 0.2 to 0.8,
-are 0.5 to 1.5 times that with one element a side (90 %), 0.4 to 1.1 times with two."""
+"""Error beside a hole which waves pass, over the scattered motion k L²/(gap + L): the wave number k times half the
+length L of the hole, times the share of it that reaches the elements. The error falls with a power of the side that is
+smaller by two. Largest errors round holes that S waves pass, with kL of 0.1 to 0.4 and L/(gap + L) of 0.2 to 0.8, are
+0.5 to 1.5 times this value with one element a side (90 %), 0.4 to 1.1 times with two.
+"""
 
 TIES = 0.2
 """Part of the field of a hole under a pressure returned by ties at a distance d, over (D/d)²."""
 
 INWARD, OUTWARD = 2, 4
-"""Powers of the distance with which the error under a pressure grows up to the elements and falls beyond, over the
-motion there."""
+"""Powers of the distance with which the error over the local motion under a pressure grows up to the elements and falls
+beyond.
+"""
 
 
 class NearField(NamedTuple):
@@ -58,7 +64,7 @@ class NearField(NamedTuple):
 
     @property
     def distance(self) -> float:
-        """Distance (m) of elements from a force, or from what the field of a hole has in its inside."""
+        """Distance (m) of elements from a force, or their gap to a hole plus half its shorter side."""
         return self.gap + 0.5 * min(self._sides)
 
     @property
@@ -84,7 +90,7 @@ class NearField(NamedTuple):
         return largest * width ** (steep if width < 1.0 else WIDER)
 
     def largest_side(self, order: int, accuracy: float) -> float:
-        """Largest side (m) of elements with this error, infinite for waves that do not vary: the reverse of `error`."""
+        """Largest side (m) of elements with this error, infinite for waves that do not vary: the inverse of `error`."""
         if self.source == "force":
             return FORCES[order] * self.distance * math.cbrt(1e3 * accuracy)
         largest, steep = self._widest(order)
@@ -97,7 +103,7 @@ class NearField(NamedTuple):
         return TIES * (diameter / self.distance) ** 2 if is_known else 0.0
 
     def part_at(self, place: np.ndarray) -> float:
-        """The error at a place (2,) m over the largest."""
+        """The error at a place (2,) m over the largest error."""
         if self.source != "pressure" or self.distance == 0.0:
             return 1.0
         low, high = np.array(self.place[:2]), np.array(self.place[2:])

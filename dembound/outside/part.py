@@ -41,7 +41,7 @@ class GridPart(Part):
         self._refuse(np.zeros(0, dtype=np.int64) if supported is None else supported)
 
     def _refuse(self, supported: np.ndarray) -> None:
-        """Raise ValueError for supported nodes that cannot be."""
+        """Raise ValueError for nodes that cannot be supported."""
         mesh = self.body.mesh
         inside = mesh.nodes[mesh.absorbs.any(axis=1), 1:-1, 1:-1]
         for nodes, where in ((inside, "inside an element that absorbs"), (np.flatnonzero(mesh.held), "on a held edge")):
@@ -53,12 +53,12 @@ class GridPart(Part):
         return self._law
 
     def react(self, why: int, steps: int, state: State) -> None:
-        """Do nothing, as the law never changes."""
+        """Do nothing: the law never changes."""
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Strain energy (J) at displacements (3, slots) of the elements that do not absorb.
 
-        What those that absorb have taken is counted as damping, once it has reached them.
+        Energy that reaches elements that absorb is counted as damping.
         """
         blocks = self._law.blocks
         energy = np.empty(blocks.blocks - blocks.layers)
@@ -66,7 +66,7 @@ class GridPart(Part):
         return float(np.sum(energy)), 0.0
 
     def take_cracks(self, steps: int) -> Cracks:
-        """None: it does not break."""
+        """None, as a continuum does not break."""
         return NO_CRACKS
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
@@ -87,7 +87,7 @@ class GridPart(Part):
 def stress(body: GridBody, displacement: np.ndarray) -> np.ndarray:
     """Stress (n, 3) Pa of every node: σ_xx, σ_yy, σ_xy at displacements (2, n) m, tension positive.
 
-    The mean over its elements, weighted by area; in layers without convolution variables.
+    The mean over the node's elements, weighted by area; in layers convolution variables are left out.
     """
     mesh = body.mesh
     derivative = mesh.rule.derivative

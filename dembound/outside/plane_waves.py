@@ -23,17 +23,18 @@ from dembound.outside.medium import Medium
 WaveKind = Literal["p", "sv"]
 
 EVANESCENT = 1e-7
-"""Imaginary part of s_y over the largest size of the four, from which on a wave decays along y; and difference of two,
-below which they coincide, as they do at the critical angle. Rounding makes such roots differ by the root of 1e-16."""
+"""Imaginary part of s_y over the largest |s_y| from which on a wave decays along y, and difference of two s_y below
+which they coincide, as at the critical angle. Rounding makes coinciding roots differ by the root of 1e-16.
+"""
 
 NO_WAVE = 1e-10
 """Amplitude over that of the incident wave below which a reflected wave is rounding."""
 
 GRAZING = 90.0
-"""Degrees from the vertical at which a wave runs along the surface."""
+"""Angle (degrees) from the vertical at which a wave runs along the surface."""
 
 SEARCHED = 1e-9
-"""Degrees to which critical angles are found."""
+"""Accuracy (degrees) of critical angles."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +77,8 @@ def traction_of(medium: Medium, sx: float, sy: float) -> np.ndarray:
 def incident_wave(medium: Medium, kind: WaveKind, angle: float) -> ElasticPlaneWave:
     """The wave of unit amplitude whose normal is at an angle (degrees) from the vertical, to the right if positive.
 
-    "p" moves along its normal, forwards if positive, "sv" across it, to the right where it runs straight up. In media
-    that are not isotropic these are the faster and the slower wave, which move nearly so.
+    "p" moves along its normal, forwards if positive, "sv" across it, to the right where it runs straight up. In
+    anisotropic media these are the faster and the slower wave, which move nearly in these directions.
     """
     x, y = np.sin(np.radians(angle)), np.cos(np.radians(angle))
     speeds, polarisations = medium.plane_waves((x, y))
@@ -126,8 +127,8 @@ def reflected_waves(
 
     None also where the energy of the incident wave runs down, as that of flat P waves in anisotropic media may.
 
-    mass : on the surface, kg/m². In the first order in ω·mass/(ρc) a wave is then A g + A′ ġ, which is the sum of two
-    with A/2 ± A′/ε whose delays differ by ε, the travel time of waves through as much of the medium as has that mass.
+    mass : on the surface, kg/m². In the first order in ω·mass/(ρc) a reflected wave is A g + A′ ġ: the sum of two waves
+    with A/2 ± A′/ε whose delays differ by ε, the travel time of waves through a thickness of the medium with this mass.
     """
     sx, sy = incident.slowness
     waves = downgoing(medium, sx)

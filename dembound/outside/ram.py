@@ -19,7 +19,7 @@ class GridSizes:
 
     @classmethod
     def of(cls, mesh: Mesh) -> GridSizes:
-        """The numbers of a mesh, computed without its arrays, so that elements may be far too small."""
+        """The numbers of a mesh, computed without its arrays, so that any number of elements is possible."""
         nodes = elements = elastic = 1
         left_out_nodes = left_out = 0 if mesh.box is None else 1
         for axis, cells in enumerate(mesh.cells):
@@ -86,7 +86,7 @@ def header_bytes(z: GridSizes) -> float:
 def snapshot_bytes(z: GridSizes) -> float:
     """Bytes of a snapshot: motion, its change since the start (72), what is not yet in the file (72), and stress.
 
-    For the stress displacements, derivatives, strains and stresses at the points of all elements (13 numbers), with
+    The stress needs displacements, derivatives, strains and stresses at the points of all elements (13 numbers), with
     weights and their product.
     """
     return 144.0 * z.nodes + 8 * 15 * z.points * z.elements

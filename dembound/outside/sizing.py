@@ -28,27 +28,27 @@ LEAST_SPACING = 1.25
 LEAST_LATTICE, LEAST_RANDOM = 0.31, 0.7
 """Smallest side of elements over their order squared, in diameters, of a lattice and of random packings.
 
-The nodes next to the ends of an element are so much closer and lighter, and with random packings the ties also act on
-the gradients there: steps are 15 to 45 % shorter with such elements than with large ones, with sides 0.6 times as long
-by a half, and in random packings to a quarter.
+Nodes at the ends of an element of high order are close together and light, and with random packings the ties also act
+on the gradients there: steps are 15 to 45 % shorter with elements of this side than with large ones, with sides 0.6
+times as long by a half, and in random packings to a quarter.
 """
 
 NODES = {3: 7.0, 4: 6.0, 5: 6.0, 6: 6.0}
 """By order: nodes per wavelength of the shortest S wave that elements still transmit.
 
-They return shorter waves, so the error of a pulse is the root of their share of its energy. From errors of
+Elements reflect shorter waves, so the error of a pulse is the root of the share of its energy in them. From errors of
 cosine pulses between 17 % and 0.02 % follow 3 to 5 nodes with any order. Ricker wavelets, which have hardly any shorter
 waves, need as many as are given here for an error of 0.1 %."""
 
 WITHIN = 0.4
-"""Part of the depth of layers that counts as distance from the source, where waves run along the layers.
+"""Part of the depth of layers that is added to the distance from the source where waves run along the layers.
 
 Measured with a tunnel (radius 20 m, ν = 0) 75, 150 and 225 m below the surface, layers that begin 10 to 90 m beside a
 box of 60 m round it, and pulses of 0.1, 0.25 and 0.5 s, both P and S: errors of 13 to 0.1 % are 0.4 to 2.4 times those
 of `grazing_error`."""
 
 FLATTEST = 0.9
-"""Largest cosine of the angle of incidence that is asked for: two depths to the side."""
+"""Largest required cosine of the angle of incidence: a distance of two depths to the side."""
 
 LAYER_ERRORS = {
     3: {2: 4.3e-2, 3: 7e-3, 4: 1.4e-3, 5: 4e-4, 6: 2e-4},
@@ -58,8 +58,8 @@ LAYER_ERRORS = {
 }
 """By order and number of absorbing elements: error of displacements, which is larger than that of velocities.
 
-It does not depend on the length of the waves: layers of 0.2 to 3 wavelengths of S waves at the cut-off frequency have
-the same errors. With R0 = 1e-4, or 1e-5 where that gives less."""
+The error does not depend on the length of the waves: layers of 0.2 to 3 wavelengths of S waves at the cut-off frequency
+have the same errors. R0 is 1e-4, or 1e-5 if it gives the smaller error."""
 
 LASTING = 2e-5
 """Missing displacement at a time t under a force that stays, over (α0 t)².
@@ -85,9 +85,9 @@ class Signal(NamedTuple):
 def energies(signal: Signal, lowest: float = math.inf) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (m,) Hz and the energies (m,) of velocities at them, in any unit.
 
-    For a force those of the body waves of a plane medium, whose velocities are √ω times its spectrum. Of a wave that
-    stays constant in the end, only its rise counts. lowest : frequency (Hz) from which on they are the energies of
-    displacements, smaller by its square over that of the frequency.
+    The body waves of a force in a plane medium have velocities of √ω times its spectrum. Only the rise of a wave that
+    stays constant is included. lowest : frequency (Hz) above which the energies are those of displacements, which are
+    (lowest/frequency)² times as large.
     """
     wave = signal.wave
     length = (wave.peak_time() if wave.stays else wave.duration()) - wave.start
@@ -108,7 +108,7 @@ def jumps(signal: Signal) -> bool:
 
 @lru_cache(maxsize=256)
 def cutoff(signal: Signal, share: float = SHARE) -> float:
-    """Frequency (Hz) above which there is a share of the energy of velocities; infinite for a wave that jumps."""
+    """Frequency (Hz) above which a given share of the energy of velocities lies; infinite for a wave that jumps."""
     if jumps(signal):
         return math.inf
     frequency, energy = energies(signal)
@@ -131,8 +131,8 @@ def shortest_wave(signals: Sequence[Signal], medium: Medium, share: float = SHAR
 def mean_frequency(signal: Signal, lowest: float = math.inf) -> float:
     """RMS frequency (Hz) of velocities, infinite for a wave that jumps.
 
-    lowest : of displacements in a run as long as 1/lowest, as the velocity over 2π times the displacement, RMS; of a
-    force see `energies`.
+    lowest : the result is for displacements in a run as long as 1/lowest: RMS velocity over 2π times RMS displacement.
+    A force has the spectrum of `energies`.
     """
     if jumps(signal):
         return math.inf
@@ -157,7 +157,7 @@ def wave_number(signals: Sequence[Signal], medium: Medium, lowest: float = math.
 
 
 def element_size(signals: Sequence[Signal], medium: Medium, order: int, accuracy: float) -> float:
-    """Largest side (m) of elements that pass on all but a share accuracy² of the energy of waves."""
+    """Largest side (m) of elements that transmit all but a share accuracy² of the energy of waves."""
     return order * shortest_wave(signals, medium, accuracy**2) / NODES[order]
 
 
@@ -167,13 +167,13 @@ def least_size(order: int, diameter: float, *, is_random: bool) -> float:
 
 
 def layer_count(order: int, accuracy: float) -> int:
-    """Number of elements that absorb, one behind the other, with at most half of that error, or the most measured."""
+    """Number of absorbing elements behind each other for at most half of `accuracy`, or the largest measured number."""
     errors = LAYER_ERRORS[order]
     return min((count for count, error in errors.items() if error <= 0.5 * accuracy), default=max(errors))
 
 
 def inner_length(time: float, speed: float, shift: float, accuracy: float) -> float:
-    """Least larger side (m) within the layers, with which half of the accuracy is missing at a time (s) of a force.
+    """Least value (m) of the larger side within the layers for which `missing` is half of `accuracy` at a time (s).
 
     speed : of P waves, m/s. shift : of the layers, see layer.py.
     """
@@ -181,14 +181,14 @@ def inner_length(time: float, speed: float, shift: float, accuracy: float) -> fl
 
 
 def missing(time: float, speed: float, shift: float, inner: float) -> float:
-    """Share of the displacement that is missing at a time (s) of a lasting force: the reverse of `inner_length`."""
+    """Share of the displacement that is missing at a time (s) of a lasting force: the inverse of `inner_length`."""
     return LASTING * (0.5 * shift * speed * time / inner) ** 2
 
 
 def offset(depth: float, ratio: float, reflection: float, accuracy: float) -> float:
-    """Least distance sideways (m) at which layers absorb what comes back from a free surface, see `grazing_error`.
+    """Least distance sideways (m) at which layers absorb reflections of a free surface, see `grazing_error`.
 
-    It counts from a hole or force at this depth (m) under the surface.
+    The distance counts from a hole or force at a depth (m) below the surface.
     """
     share = min(math.log(accuracy) / math.log(reflection) * ratio, FLATTEST)
     return depth * share / math.sqrt(1.0 - share**2)
@@ -206,7 +206,7 @@ def grazing_error(depth: float, ratio: float, reflection: float, beside: float) 
 def reflection(accuracy: float) -> float:
     """R0: a tenth of the accuracy, as waves lose less of their amplitude at oblique incidence.
 
-    Displacements in the body then have an error of a twentieth of it.
+    Displacements in the body then have an error of a twentieth of the accuracy.
     """
     return 0.1 * accuracy
 
@@ -216,7 +216,7 @@ def element_error(
 ) -> float:
     """Error of velocities with elements of this side (m), for the worst signal: the inverse of `element_size`.
 
-    lowest : frequency (Hz) from which on it is the error of displacements, see `energies`.
+    lowest : frequency (Hz) above which it is the error of displacements, see `energies`.
     """
     passed = order * slowest(medium) / (NODES[order] * side)
     errors = [1.0]
@@ -227,6 +227,6 @@ def element_error(
 
 
 def layer_error(order: int, layers: int) -> float:
-    """Error of displacements with this number of absorbing elements, or with the next smaller known number."""
+    """Error of displacements with this number of absorbing elements, or with the next smaller measured number."""
     errors = LAYER_ERRORS[order]
     return errors[max(count for count in errors if count <= layers)]

@@ -12,7 +12,7 @@ from dembound.outside.mesh import Mesh
 from dembound.table import Box
 
 ROUNDING = 1e-9
-"""Distance over the size of the mesh up to which places are the same."""
+"""Distance over the size of the mesh up to which places are regarded as equal."""
 
 NO_DEPTH: Mapping[str, float] = {}
 
@@ -51,7 +51,7 @@ def traction_in(mesh: Mesh, region: Box, depth: Mapping[str, float | np.ndarray]
 
 
 class _Part(NamedTuple):
-    """A traction of 1 N/m on one side: nodes (q, N), forces on them (q, N) N, and as in `Traction`."""
+    """A traction of 1 N/m on one side: nodes (q, N), forces on them (q, N) N; other attributes of `Traction`."""
 
     node: np.ndarray
     force: np.ndarray

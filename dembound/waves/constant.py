@@ -1,4 +1,4 @@
-"""A velocity that is switched on and remains constant."""
+"""A velocity that rises from zero and remains constant."""
 
 import math
 from typing import ClassVar, Literal

@@ -17,11 +17,10 @@ from dembound.waves.wave import NonZero, Wave
 NO_COLUMNS = "is not two columns of numbers, separated by blanks or semicolons, in a .csv file by commas"
 
 MOST_SAMPLES = 2**20
-"""Largest number of even samples of a spectrum; a file with very uneven times would have any number of them."""
+"""Largest number of even samples for a spectrum; very uneven times could need far more."""
 
 JUMP = 4.0
-"""Spacing of two samples, in neighbouring floating-point numbers, up to which they are a jump, which rounding may
-move."""
+"""Spacing of two samples, in units of the last place, up to which they are a jump."""
 
 
 class FileWave(Wave):
@@ -33,7 +32,7 @@ class FileWave(Wave):
     Notes
     -----
     Validation passes the case file's folder as the context ``{"folder": Path}``; without one relative paths are taken
-    from the current folder. Texts of files by path that are passed as "files" replace these files.
+    from the current folder. Texts by path that are passed as "files" replace files.
     """
 
     type: Literal["file"]
@@ -185,7 +184,7 @@ def samples_of(text: str, path: Path, quantity: str = "values") -> np.ndarray:
 
 
 def _numbers(text: str, is_csv: bool) -> tuple[list[tuple[int, str]], str | None]:
-    """The lines with numbers of a text, each with its own, with decimal points, and the separator of their columns.
+    """The lines with numbers of a text with their line numbers, with decimal points, and the separator of columns.
 
     The separator None stands for blanks.
     """
@@ -209,7 +208,7 @@ def header_of(text: str) -> str:
 
 
 def _misfit(lines: Sequence[tuple[int, str]], separator: str | None) -> str:
-    """The number of the first line that differs from the first one or has no numbers, in words; it is not quoted."""
+    """Number of the first line that differs from the first one or has no numbers, in words; its text is not quoted."""
     columns = len(lines[0][1].split(separator))
     for number, line in lines:
         fields = line.split(separator)
@@ -251,7 +250,7 @@ def _problem(samples: np.ndarray, quantity: str) -> str:
 
 
 def _shortest(times: np.ndarray) -> float:
-    """The shortest time (s) between two samples that is no jump, as between two neighbouring numbers."""
+    """The shortest time (s) between two samples that is not a jump."""
     steps = np.diff(times)
     resolved = steps[steps > JUMP * np.spacing(np.abs(times[1:]))]
     return float(resolved.min() if resolved.size > 0 else steps.min())

@@ -14,47 +14,48 @@ from dembound.waves.unit_names import units_in
 from dembound.words import percent
 
 FEWEST = 20
-"""Samples below which a table is one of single points, joined by straight lines."""
+"""Number of samples below which a table is taken for single points, joined by straight lines."""
 
 EVEN = 0.9
-"""Share of equal steps from which a table is a record that was sampled."""
+"""Share of equal steps above which a table is taken for a sampled record."""
 
 LONGER = 3.0
-"""Times the usual step from which a step is a gap."""
+"""Step over the usual step from which on it is a gap."""
 
 LOUD = 0.05
-"""Share of the peak that is motion, no noise."""
+"""Share of the peak above which values are motion rather than noise."""
 
 FEWEST_TURNS = 6
-"""Changes of sign from which a record oscillates."""
+"""Number of changes of sign from which on a record oscillates."""
 
 FLAT = 3
-"""Equal samples at the peak from which on it is clipped."""
+"""Number of equal samples at the peak from which on it is clipped."""
 
 RISE = (0.01, 0.5)
-"""Last step before such samples over the peak: smaller ones round a crest off, larger ones are of square waves."""
+"""Last step before equal samples over the peak: smaller steps belong to a round crest, larger ones to square waves."""
 
 LOST = 0.1
-"""Largest loss of the mean frequency by straight lines between samples: sinc²(f Δt)."""
+"""Largest loss at the mean frequency by straight lines between samples: 1 − sinc²(f Δt)."""
 
 OUTSTANDING = 5.0
-"""Times the others from which a change, or a drift, is no motion."""
+"""Ratio to other changes above which a change, or a drift, is not motion."""
 
 WIDE = 0.6
-"""Step over the peak from which it is no change between two levels of a load, within a record that does not
-oscillate."""
+"""Step over the peak above which it is not a change between two levels of a load in a record that does not
+oscillate.
+"""
 
 TENTHS = 10
-"""Parts of a record in the last of which its motion is over."""
+"""Number of parts of a record; its motion is over in the last one."""
 
 NET = 0.25
-"""Displacement that an offset of the last tenth makes over the record, over the largest displacement."""
+"""Displacement by an offset of the last tenth over the whole record, over the largest displacement."""
 
 WORDS = {
     "accelerations": r"acc|accel|accelerations?",
     "displacements": r"disp|displ|displacements?",
 }
-"""Words of a header that say that its values are no velocities."""
+"""Words of a header that say that its values are not velocities."""
 
 READ_AS = {"m/s": "velocities", "Pa": "pressures", "N": "forces", "m/s²": "accelerations"}
 """Unit in which values are read -> their quantity."""
@@ -63,8 +64,8 @@ READ_AS = {"m/s": "velocities", "Pa": "pressures", "N": "forces", "m/s²": "acce
 def doubts_of_header(header: str, read: str, factor: float) -> Iterator[str]:
     """Contradictions between the header of a file and its use, in words.
 
-    header : the lines above the numbers. read : unit in which values are taken, of `READ_AS`. factor : by which they
-    are multiplied to be in it; one other than ±1 is regarded as the change of units.
+    header : the lines above the numbers. read : unit in which values are taken, one of `READ_AS`. factor : of the
+    values; one other than ±1 is regarded as a conversion to this unit.
     """
     marked, bare, unknown = units_in(header, read)
     quantity, of_velocity, unchanged = READ_AS[read], read == "m/s", abs(factor) == 1.0
@@ -96,7 +97,7 @@ def _quantity_in_words(header: str) -> tuple[str, str] | None:
 
 
 def doubts_of_samples(times: np.ndarray, values: np.ndarray) -> Iterator[str]:
-    """Signs of lost samples, a clipped peak and others in a record (k,) at times (k,) s, in words."""
+    """Signs of lost samples, a clipped peak and other errors in a record (k,) at times (k,) s, in words."""
     steps = np.diff(times)
     usual, peak = float(np.median(steps)), float(np.abs(values).max())
     if len(times) < FEWEST or np.isclose(steps, usual, rtol=0.01).mean() < EVEN:
@@ -126,7 +127,7 @@ def doubts_of_samples(times: np.ndarray, values: np.ndarray) -> Iterator[str]:
 
 
 def _clipped(values: np.ndarray, peak: float) -> Iterator[str]:
-    """Several flat crests at the peak."""
+    """A message about several flat crests at the peak."""
     at_peak = np.concatenate([[False], np.abs(values) >= (1.0 - 1e-9) * peak, [False]])
     begins, ends = np.flatnonzero(~at_peak[:-1] & at_peak[1:]), np.flatnonzero(at_peak[:-1] & ~at_peak[1:])
     rise = np.array([abs(values[b] - values[b - 1]) / peak if b > 0 else 1.0 for b in begins])
@@ -136,7 +137,7 @@ def _clipped(values: np.ndarray, peak: float) -> Iterator[str]:
 
 
 def _coarse(mean: float, step: float) -> Iterator[str]:
-    """A message if samples are too far apart (s) for straight lines between them, by the mean frequency, Hz."""
+    """A message if samples are too far apart (s) for straight lines at the mean frequency (Hz)."""
     loss = 1.0 - float(np.sinc(mean * step)) ** 2
     if loss > LOST:
         yield (
@@ -156,7 +157,7 @@ def _spike(times: np.ndarray, values: np.ndarray, peak: float) -> Iterator[str]:
 
 
 def _jump(times: np.ndarray, values: np.ndarray, peak: float, *, oscillates: bool) -> Iterator[str]:
-    """Steps far beyond all others: one of a record that oscillates, or one or two within the motion of any other.
+    """A message about steps far larger than all others: one if the record oscillates, else up to two in the motion.
 
     A pulse may begin or end with a step, from or to rest, and square waves have more than two steps.
     """
@@ -177,12 +178,12 @@ def _jump(times: np.ndarray, values: np.ndarray, peak: float, *, oscillates: boo
 
 
 def _at_largest(changes: np.ndarray, within: np.ndarray) -> int:
-    """The place of the largest change (k − 1,) of those that are within the motion."""
+    """Index of the largest of the changes (k − 1,) within the motion."""
     return int(np.where(within, changes, 0.0).argmax())
 
 
 def _offset(times: np.ndarray, values: np.ndarray) -> Iterator[str]:
-    """A mean at the end that makes up much of the displacement, and of which oscillations are no cause."""
+    """A message about a mean at the end that causes much of the displacement and is not due to oscillations."""
     displacement = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(times))])
     first = len(values) - max(FLAT, len(values) // TENTHS)
     mean, largest = float(values[first:].mean()), float(np.abs(displacement).max())

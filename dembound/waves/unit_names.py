@@ -1,6 +1,6 @@
 """Units as headers of files spell them: cm/s, cm/sec, cm s^-1, cm.s⁻¹ and "centimetres per second" are one.
 
-A unit is read as a product of powers of named ones, so that no list of spellings is needed.
+A unit is read as a product of powers of named units.
 """
 
 import re
@@ -31,11 +31,11 @@ QUANTITIES: dict[Powers, tuple[str, float]] = {
     (0, 0, 1): ("forces", STANDARD_GRAVITY),  # "kg" and "kg/cm²" are those of weights
     (-2, 0, 1): ("pressures", STANDARD_GRAVITY),
 }
-"""Quantity of a unit of these powers, and its size in SI."""
+"""Powers of m, s and kg -> quantity and size in SI."""
 
 
 def _all(powers: Powers, **sizes: float) -> dict[str, tuple[float, Powers]]:
-    """Names of units, several for one separated by _or_, with their sizes and powers."""
+    """Names of units with their sizes and powers; synonyms are separated by _or_."""
     return {name: (size, powers) for names, size in sizes.items() for name in names.split("_or_")}
 
 
@@ -66,10 +66,10 @@ OTHERS = {
     **dict.fromkeys(("count", "counts", "cts", "digits", "lsb"), "counts"),
     **dict.fromkeys(("strain", "ue", "uε", "ustrain", "microstrain", "ε", "um/m", "m/m"), "strains"),
 }
-"""Names of units of what no case takes -> what they measure."""
+"""Names of units of quantities that cases do not have -> the quantity."""
 
 CLEAR = frozenset(re.findall(r"\S+", "kpa mpa gpa kbar psi ksi kine kines knots kmh kph mph ips fps gal gals kgf dyn "))
-"""Units of one word that no other word is."""
+"""Units of one word that cannot be anything else."""
 
 COMPONENTS = frozenset(("NS", "EW", "UD", "N-S", "E-W", "U-D"))
 """Directions of components; "ns" are nanoseconds."""
@@ -115,8 +115,8 @@ def unit_named(text: str, read: str = "") -> Named | None:
 def units_in(header: str, read: str) -> tuple[list[Named], list[Named], list[str]]:
     """The units in the lines of a header: in brackets or behind a name and ``_``; of bare words; unknown ones.
 
-    Unknown ones are looked for in the brackets of the last line and of lines that have a known unit, as names of
-    columns have; directions and sentences are no units.
+    Unknown units are searched in the brackets of the last line and of lines with a known unit; directions and sentences
+    are not units.
     """
     marked, bare, unknown = [], [], []
     lines = [line for line in header.splitlines() if line.strip()]
@@ -139,13 +139,13 @@ def _plain(text: str) -> str:
 
 
 def _may_be_unit(text: str) -> bool:
-    """Whether a text in brackets may be a unit: no direction, number or sentence."""
+    """Whether a text in brackets may be a unit: not a direction, number or sentence."""
     word = text.strip().lower()
     return bool(re.search(r"[a-zµμε%]", word)) and word not in NO_UNITS and (" " not in word or "/" in word)
 
 
 def _behind_names(line: str, read: str) -> list[Named]:
-    """Units behind names and "_", as in vel_cm_s; single letters are indices, but those of s, m and g."""
+    """Units behind names and "_", as in vel_cm_s; single letters other than s, m and g are indices."""
     found = []
     for each in _SUFFIX.finditer(line):
         parts = [part for part in each[1].split("_") if part.lower() != "per"]
@@ -158,7 +158,7 @@ def _behind_names(line: str, read: str) -> list[Named]:
 
 
 def _bare(line: str, read: str) -> list[Named]:
-    """Units among the words of a line: compound ones, such as cm/s, and those that nothing else is called."""
+    """Units among the words of a line: compound ones, such as cm/s, and words that cannot be anything else."""
     joined = _SPLIT_POWER.sub(r"\1.\2", re.sub(r"\s+per\s+|\s*/\s*", "/", line.translate(_SIGNS)))
     found = []
     for word in re.split(r"[\s,;:\"'=]+", joined):

@@ -30,7 +30,7 @@ class Wave(Table, ABC):
 
     Attributes
     ----------
-    stays : whether the velocity remains constant for good.
+    stays : whether the velocity remains constant in the end.
     """
 
     stays: ClassVar[bool] = False
@@ -81,7 +81,7 @@ class Wave(Table, ABC):
     def doubts(self, read: str, factor: float) -> Iterator[str]:
         """Probable errors of a measured history, in words; by default none.
 
-        read : unit of its values times the factor: m/s at a side, with factor 1; else that of a load, such as Pa.
+        read : unit of its values times the factor: m/s at a side, with factor 1; for a load the load's, such as Pa.
         """
         return iter(())
 
@@ -95,7 +95,10 @@ class Wave(Table, ABC):
         return self.dominant_period()
 
     def _require_resolved(self, latest: float, scale: float, key: str) -> None:
-        """Raise ValueError for a time (s) at which rounding loses changes on a scale (s); key : the message's."""
+        """Raise ValueError for a time (s) at which rounding loses changes on a scale (s).
+
+        Key : named in the message.
+        """
         if latest > LATEST * scale > 0.0:
             most = f"must be at most {LATEST:g} times the {scale:g} s within which the wave varies"
             raise ValueError(f"{key} is {latest:g}, {most}, or rounding changes it")
