@@ -10,7 +10,7 @@ ReferenceName = Literal["exact", "extended", "finer", "finest"]
 End = Literal["break", "end"]
 
 MOST_REPEATS = 1000
-"""Largest number of timed runs: the fastest of a few is that of many, to some per cent."""
+"""Largest number of timed runs: the fastest of a few is as fast as that of many, to some per cent."""
 
 
 class ChartChoice(Table):

@@ -9,11 +9,11 @@ from dembound.casefile.output import Output
 from dembound.casefile.run import Run
 
 MOST_MONITORS = 1000
-"""Largest number of monitors; a record of them is searched for damage in seconds, see `results.structure`."""
+"""Largest number of monitors: their records are checked for damage within seconds, see `results.structure`."""
 
 
 def unknown_waves(named: Iterable[tuple[str, str]], waves: Mapping[str, object]) -> Iterator[str]:
-    """Keys that name a wave the case does not define; named: each key with the name in it."""
+    """Keys that name a wave the case does not define; named : key -> name of the wave."""
     for place, name in named:
         if name not in waves:
             defined = f"defined: {choices(name, waves)}" if waves else "none is defined"
@@ -21,7 +21,7 @@ def unknown_waves(named: Iterable[tuple[str, str]], waves: Mapping[str, object])
 
 
 def driving_waves(sides: Mapping[str, Boundary | None]) -> Iterator[tuple[str, str]]:
-    """Keys of sides that name a wave, each with the name in it."""
+    """Keys of sides that name a wave -> its name."""
     for side, table in sides.items():
         for motion, name in table.waves.items() if table else ():
             yield f"boundary.{side}.wave_{motion}", name
@@ -36,13 +36,13 @@ def repeated_names(key: str, tables: Sequence[Any]) -> Iterator[str]:
 
 
 def too_many(monitors: Sequence[Any]) -> Iterator[str]:
-    """More monitors than a record is searched for."""
+    """Too many monitors."""
     if len(monitors) > MOST_MONITORS:
         yield f"monitor: there are {len(monitors):,}, must be {MOST_MONITORS:,} or less; snapshots have all places"
 
 
 def never_silent(run: Run, monitors: Sequence[Any]) -> Iterator[str]:
-    """A run that ends with the silence of monitors, but has none, or is shorter than the silence."""
+    """A run that ends with its monitors at rest, but has no monitors or is shorter than the time at rest."""
     if run.until == "silent" and not monitors:
         yield f'run.until: is "{run.until}", but the case has no monitor; give a [[monitor]]'
     if run.silent_for is not None and run.silent_for > run.duration:
@@ -50,7 +50,7 @@ def never_silent(run: Run, monitors: Sequence[Any]) -> Iterator[str]:
 
 
 def never_estimated(output: Output, monitors: Sequence[Any]) -> Iterator[str]:
-    """Errors of monitors that are asked for, where there is none."""
+    """A request for errors at monitors in a case without monitors."""
     if output.estimate and not monitors:
         yield "output.estimate: is true, but the case has no monitor whose error could be estimated; give a [[monitor]]"
 

@@ -1,6 +1,6 @@
-"""Changes of keys in the TOML text of a case that keep all else: comments, order, blank lines, the line of the schema.
+"""Changes of keys in the TOML text of a case that keep comments, order, blank lines and the line of the schema.
 
-Lines are replaced, inserted and removed; what is on one line, or in one value of several lines, is edited by tomlkit.
+Lines are replaced, inserted and removed; tomlkit edits within one line, or within one value of several lines.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,15 +14,14 @@ from dembound.casefile.statements import Place, Statement, lines_of, statements_
 from dembound.casefile.toml import parsed
 
 ROUNDS = 3
-"""After the first, tables that have lost their last key are written as empty ones, which may take a second one."""
+"""Largest number of passes: later ones write tables that have lost their last key as empty tables."""
 
 
 def edited(text: str, changes: Mapping[str, Any]) -> str:
-    """The text with the values at dotted keys replaced, added, or with None left out, as by `keys.applied`.
+    """The text with the values at dotted keys replaced, added, or with None left out, see `keys.applied`.
 
-    Lines that hold nothing of these keys remain as they are. A value that is a table or a list is compared with the
-    present one, so that only what differs is written. New keys are placed below the others of their table, new tables
-    at the end of the table they are in.
+    All other lines remain. A value that is a table or a list is compared with the present one, and only differences are
+    written. New keys are placed below the others of their table, new tables at the end of the table they are in.
 
     Raises CaseError for a text that is not TOML, and for keys that lead to no table.
     """
@@ -120,7 +119,7 @@ class _Page:
         self._within(place, lambda table, key: table.__setitem__(key, _inline(value)))
 
     def remove(self, place: Place) -> None:
-        """Remove a key, or a table with all that is in it; comments below its last key belong to the next table."""
+        """Remove a key, or a table with its contents; comments below its last key belong to the next table."""
         statement = self.value_at(place)
         if statement is not None and statement.place != place:
             self._within(place, lambda table, key: table.__delitem__(key))
@@ -208,7 +207,7 @@ class _Page:
         self.lines[at:at] = [line.rstrip("\r\n") + self.ending for line in lines]
 
     def _put_first(self, line: str) -> None:
-        """Insert a key of no table, where there is none yet: above the first header."""
+        """Insert the first key outside tables: above the first header."""
         headers = [each.begin for each in self.statements]
         at = self._above(headers[0]) if headers else len(self.lines)
         self._put(at, [line, self.ending] if headers else [line])

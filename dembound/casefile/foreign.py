@@ -1,10 +1,10 @@
-"""Names of keys in other codes (PFC, UDEC, FLAC, YADE, LAMMPS, SPECFEM) and in textbooks, and what to write instead."""
+"""Names of keys in other codes (PFC, UDEC, FLAC, YADE, LAMMPS, SPECFEM) and textbooks, with the keys to use instead."""
 
 import re
 from collections.abc import Collection
 
 _MORE = "; see docs: start/from_pfc"
-"""Ends a line about which that page says more."""
+"""Reference to the page with more information, at the end of a line."""
 
 _EMOD = "write emod, Pa: the normal stiffness of a contact is k_n = emod, N/m for each metre of thickness"
 _PB_EMOD = "write pb_emod, Pa: a bond has pb_kn = pb_emod/(R1 + R2), Pa/m"
@@ -22,7 +22,7 @@ _IN_SITU = f"[static] has stress = [sxx, syy, sxy], Pa, tension positive: it rep
 _VELOCITY = "give wave_p (along the normal) or wave_s (across it) the name of a [wave.NAME]"
 
 Advice = tuple[tuple[str, str], ...]
-"""Advice by key that a table may have; the first key that the table allows decides, "" stands for all others."""
+"""Advice by key of the table: the first key that the table allows is used, "" stands for all others."""
 
 _MODULUS: Advice = (
     ("youngs_modulus", "write youngs_modulus, Pa"),
@@ -277,7 +277,7 @@ NAMES: dict[tuple[str, ...], Advice] = {
     ),
     ("pressure_amplitude", "p0", "load_pressure"): (("pressure", "write pressure, Pa"),),
 }
-"""Foreign names -> what to write."""
+"""Foreign names -> advice."""
 
 BY_NAME = {name: advice for names, advice in NAMES.items() for name in names}
 
@@ -311,7 +311,7 @@ def translated(name: str, keys: Collection[str]) -> str | None:
 
 
 def own_type(name: object, types: Collection[str]) -> str | None:
-    """The type that a foreign name of a type stands for, if it is one of these."""
+    """The type with a foreign name, if it is one of the allowed types."""
     found = TYPE_OF.get(_plain(name)) if isinstance(name, str) else None
     return found if found in types else None
 

@@ -1,7 +1,7 @@
 """A JSON schema (draft 2020-12) of the case file, with which editors complete and check it.
 
-It contains the rules for single keys: names, types, units, limits, defaults. Rules between keys or between tables are
-checked by `dembound check`.
+It contains the rules for single keys: names, types, units, limits, defaults. `dembound check` also checks rules between
+keys and tables.
 
 Where a table has one of several types, ``if`` and ``then`` choose the type, so that editors mark the mistake itself.
 With ``oneOf`` they would report the whole table as invalid. Completions are taken from an additional ``anyOf``, which
@@ -25,7 +25,7 @@ Json = dict[str, Any]
 
 
 def json_schema(schemas: Sequence[Schema]) -> Json:
-    """The schema of case files of any of these kinds, of which the first whose tables occur in the file is used."""
+    """The schema of case files of several kinds; the first kind whose tables occur in the file is used."""
     made, shared = TypeAdapter.json_schemas(
         [(id(kind), "validation", kind) for schema in schemas for kind in _kinds(schema)]
     )

@@ -1,4 +1,4 @@
-"""Dotted keys of cases: where they lead in the tables of a case, and tables with some of them changed."""
+"""Dotted keys of cases: their places in the tables, and tables with some keys changed."""
 
 from collections.abc import Mapping
 from copy import deepcopy

@@ -30,7 +30,7 @@ SMALL_PART = 0.1
 """Share of its peak that a wave must reach within the run; below it only the first rise of the wave is simulated."""
 
 MISSED = 0.05
-"""Share of its peak by which a wave may vary before t = 0, where no run has it; the noise before a trigger is less."""
+"""Share of its peak by which a wave may vary before t = 0, which no run simulates; noise before a trigger is less."""
 
 WEAK, STRONG = 1e-4, 1e3
 """Stresses over the strength, below and above which one of them is probably in another unit.
@@ -47,10 +47,10 @@ mostly wrong units.
 """
 
 FASTEST_GROUND = 5.0
-"""Velocity (m/s) that no ground has had: the largest recorded in an earthquake are 3 to 4 m/s."""
+"""Velocity (m/s) above those of the ground: the largest recorded in an earthquake are 3 to 4 m/s."""
 
 OF_GROUND = 100.0
-"""Frequency (Hz) up to which a wave is one of the ground; pulses of laboratories and of blasts nearby have higher ones.
+"""Frequency (Hz) up to which a wave is taken for ground motion; laboratory pulses and blasts nearby are higher.
 
 The motion of an earthquake has up to some 20 Hz, that of a blast at a distance, at some cm/s, up to 100 Hz.
 """
@@ -68,7 +68,7 @@ def waves_used(case: Case) -> set[str]:
 
 
 def is_quasi_static(case: Case, name: str, travel: float) -> bool:
-    """Whether a wave is only a constant velocity of grips, in a run far longer than a wave's way through the scene.
+    """Whether a wave is only a constant velocity of grips, in a run far longer than a wave's travel time.
 
     The waves sent by its start, also those too short for the discretisation, then have a stress ρcv below 1/`SLOW`
     of the stress ρc²u/L that the grips reach at the end of the run, u = vt.
@@ -98,7 +98,7 @@ def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
 
 
 def _too_early(wave: Wave) -> Iterator[str]:
-    """A warning about a record with a part before the run, in words; none for a velocity that is steady before."""
+    """A warning about a record that varies before the run; none for a velocity that is steady until then."""
     begin = wave.begin()
     if not begin < 0.0:
         return
@@ -165,7 +165,7 @@ def grip_stress(
 
 
 def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, key: str) -> Iterator[str]:
-    """Warnings about stresses many times the strength, or the largest of all if it is a tiny part of the strength.
+    """Warnings about stresses many times the strength, or about a largest stress that is a tiny part of it.
 
     stresses : table -> description of the stress, and its value in Pa. strength : Pa. key : of the strength.
     """
@@ -189,7 +189,7 @@ def large_velocity(place: str, velocity: float, speed: float, reason: str, waves
 
 
 def fast_ground(place: str, wave: Wave) -> Iterator[str]:
-    """A wave that enters with a frequency of motions of the ground, and a velocity beyond all of them."""
+    """A warning about an entering wave with frequencies of ground motion and a velocity above all recorded ones."""
     frequency = wave.dominant_frequency()
     if wave.peak() > FASTEST_GROUND and 0.0 < frequency < OF_GROUND:
         yield (
@@ -211,7 +211,7 @@ def large_stress(place: str, what: str, stress: float, modulus: float, reason: s
 
 
 def sampling_warnings(case: Case) -> Iterator[str]:
-    """An interval of histories in which waves change."""
+    """A warning about an interval of histories that is too long for the waves."""
     used, interval = waves_used(case), case.output.history_interval
     scales = {name: wave.time_scale() for name, wave in case.wave.items() if name in used and not wave.stays}
     if scales and interval * SAMPLES_IN_PERIOD > (shortest := min(scales.values())) > 0.0:

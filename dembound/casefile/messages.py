@@ -140,7 +140,7 @@ def _stray(key: str, keys: Collection[str], others: Mapping[str, Collection[str]
 
 
 def _meant(value: object, names: Collection[str]) -> str:
-    """The name that a foreign or mistyped one stands for, in brackets after a blank; empty if there is none."""
+    """The name meant by a foreign or mistyped one, in brackets after a blank; empty if there is none."""
     if not isinstance(value, str):
         return ""
     own = own_type(value, names)
@@ -156,7 +156,7 @@ def _join(path: str, key: str, message: str, keys: Iterable[str]) -> str:
 
 
 def unknown(what: str, name: str, known: Collection[str]) -> str:
-    """Message for an unknown name: what to write for one of another code, or the known names."""
+    """Message for an unknown name: the key to use for a name from another code, or the known names."""
     if what in ("key", "table") and (instead := translated(name, known)):
         return f"unknown {what}; {instead}"
     return f"unknown {what}; allowed: {choices(name, known)}"

@@ -17,13 +17,13 @@ from dembound.table import as_toml, every_key
 from dembound.waves import Wave
 
 MOST_LINES = 10
-"""Most lines in which Python shows a case."""
+"""Largest number of lines in which Python shows a case."""
 
 WIDTH = 100
-"""Most characters of such a line."""
+"""Largest number of characters in a line of a case."""
 
 NAMING = ("name", "type")
-"""Keys that stand for a table among several."""
+"""Keys that identify a table among several."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -38,8 +38,8 @@ class Case:
     load, monitor : in the order of the file.
     run, output, chart, sweep : the tables of these names.
     name : of the results; the file's name without folder and ending, unless another one is given.
-    origin : the first of these names, which it keeps; by it a run finds that it would replace another case's results.
-    silent : waves that stand for none, as inputs of a library without a record: they begin after the run.
+    origin : the first of these names, which it keeps; a run checks by it that it does not replace another case's
+    results. silent : waves without motion during the run, as inputs of a library without a record.
     folder : where relative paths in the case start.
     text : the TOML text the case was read from; for a case made in another way, an equivalent text. checked : the
     tables that have been read from `text` and checked against each other, by field.
@@ -103,7 +103,7 @@ class Case:
 
     @property
     def file(self) -> Path | None:
-        """The file of its name in its folder; None where there is none, as of a case that was made otherwise."""
+        """The file of its name in its folder; None if there is no such file."""
         path = self.folder / f"{self.name}.toml"
         return path if path.is_file() else None
 
@@ -114,7 +114,7 @@ class Case:
 
     @property
     def entering(self) -> set[str]:
-        """Names of the waves that enter from outside, through driven sides or otherwise."""
+        """Names of the waves that enter from outside, through driven sides or at an angle."""
         return {name for waves in self.driving.values() for name in waves.values()}
 
 

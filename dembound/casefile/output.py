@@ -5,13 +5,13 @@ from typing import Literal
 from dembound.table import Table, quantity
 
 MOST_SNAPSHOTS = 10_000
-"""Largest number of snapshots: a movie of them lasts minutes, and each is a file for ParaView.
+"""Largest number of snapshots: they make a movie of minutes, and each is a file for ParaView.
 
 Most commands go through all snapshots of a record, which takes 1 ms each and more.
 """
 
 ParaView = Literal["vtu", "vtkhdf", "both"]
-"""Snapshots for ParaView: one VTU file each with a PVD file of their times, all in one VTKHDF file, or both."""
+"""Formats of snapshots for ParaView: one VTU file each with a PVD file of their times, one VTKHDF file, or both."""
 
 
 class Output(Table):

@@ -156,7 +156,7 @@ class _Reader:
         return self._named(path, raw, kind)
 
     def _staged(self, path: str, raw: object, kind: TypeAdapter[Any], side: TypeAdapter[Any]) -> Any | None:
-        """A table with sides of its own. They are validated one by one, and an invalid one is None in it."""
+        """A table with its own sides, which are validated one by one; an invalid side is None."""
         if not isinstance(raw, Mapping):
             return self._valid(path, raw, kind)
         sides = self._sides(f"{path}.boundary", raw.get("boundary", {}), side, self.schema.sides)

@@ -10,7 +10,7 @@ SILENT_KEYS = ("silent_level", "silent_for")
 
 
 class Run(Table):
-    """Simulated time and time step, and whether the run ends once nothing moves any more."""
+    """Simulated time and time step, and whether the run ends when all monitors are at rest."""
 
     duration: float = quantity(..., unit="s", help="simulated time", gt=0.0)
     time_step: Annotated[float, Field(gt=0.0)] | Literal["auto"] = quantity(

@@ -60,7 +60,7 @@ def _statements(lines: list[str]) -> Iterator[Statement]:
 
 
 def _table_of(header: str, counts: dict[Place, int]) -> Place:
-    """The place of the table that a header begins; counts : headers so far of the tables of each list."""
+    """The place of the table that a header begins; counts : headers so far of each list of tables."""
     keys = _only_keys(tomllib.loads(header))
     in_list = header.strip().startswith("[[")
     place: Place = ()

@@ -10,7 +10,7 @@ Action = Literal["run", "calibrate"]
 Method = Literal["impedance", "ratio", "homogenised"]
 
 MOST_PROCESSES = 10_000
-"""Largest number of members at once: that of the cores of a large cluster."""
+"""Largest number of members at once: the cores of a large cluster."""
 
 
 class Sweep(Table):

@@ -28,7 +28,7 @@ def parsed(text: str, source: str = "") -> dict[str, Any]:
 
 
 def allowed(data: dict[str, Any], source: str = "") -> dict[str, Any]:
-    """The tables of a TOML text, without values that `parsed` refuses, for which it raises CaseError."""
+    """The tables of parsed TOML; raises CaseError for values that `parsed` refuses."""
     if problems := list(_problems(data)):
         raise CaseError(problems, source)
     return data
@@ -49,7 +49,7 @@ def value_of(text: str, key: str) -> Any:
 
 
 def _parsed(text: str, source: str) -> dict[str, Any]:
-    """The tables of a text, whatever is in them; errors as of `parsed`."""
+    """The tables of a text with any values; raises the errors of `parsed`."""
     try:
         text.encode()
         return tomllib.loads(text)

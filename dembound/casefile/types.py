@@ -26,7 +26,7 @@ WAVES = with_registered("dembound.waves", Wave, waves.TYPES)
 
 
 def _usable(found: Mapping[str, Law]) -> dict[str, Law]:
-    """Laws by name, without history-dependent ones that name no linear law of the same stiffness."""
+    """Laws by name, without history-dependent laws that name no linear law of the same stiffness."""
 
     def is_usable(law: Law) -> bool:
         at_rest = found.get(law.linear)

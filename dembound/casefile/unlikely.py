@@ -1,6 +1,6 @@
-"""Warnings about numbers that are probably in another unit, of the wrong sign, or of another quantity.
+"""Warnings about numbers that probably have another unit, the wrong sign, or are another quantity.
 
-Every number of a case is compared with the likely sizes of its meaning (`dembound.meanings`), whichever table it is in.
+Every number of a case is compared with the likely sizes of its meaning (`dembound.meanings`).
 """
 
 import math
@@ -16,10 +16,10 @@ from dembound.table import Table
 from dembound.words import with_unit
 
 LIGHTEST = 1.6
-"""Least acceleration (m/s²) that is regarded as gravity: that of the moon."""
+"""Least acceleration (m/s²) that is regarded as gravity: on the moon."""
 
 DAMPED = "94 % are left after one wavelength at 0.1, 49 % at 0.3, 0.2 % at 0.7"
-"""Peaks of three cycles at 50 m along a row of disks of 1 m, over those without damping; a cycle is 50 m long."""
+"""Peaks of three cycles of 50 m after 50 m along a row of disks of 1 m with local damping, over those without."""
 
 GRAVITY_IN = ((1.0, "g"), (9810.0, "mm/s²"), (981.0, "cm/s²"), (0.00981, "km/s²"))
 """The acceleration of gravity in other units."""
@@ -56,7 +56,7 @@ def _with_wave(numbers: tuple[float, ...], means: Meaning, unit: str, table: Tab
 
 
 OF_STRENGTH = {"pressure of a load"}
-"""Meanings that are compared with a strength, where there is one."""
+"""Meanings that are compared with the strength, if the case has one."""
 
 
 def meaning_of(table: Table | type[Table], name: str) -> tuple[str | None, str]:
@@ -158,4 +158,4 @@ RULES: dict[str, Callable[[tuple[float, ...], Table, Case], str | None]] = {
     "stress to reach": _pulls,
     "acceleration": _not_downwards,
 }
-"""Meaning -> rule that compares numbers with others of the case, and returns a warning or None."""
+"""Meaning -> rule that compares a number with other numbers of the case and returns a warning or None."""

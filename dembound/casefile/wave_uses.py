@@ -7,7 +7,7 @@ from dembound.casefile.model import Case
 from dembound.words import percent
 
 CUT = 0.02
-"""Share of its peak by which a history may jump at its ends; of 0.02 the waves that the jump sends have 1/2500."""
+"""Share of its peak by which a history may jump at its ends; a jump of 0.02 sends waves with 1/2500 of the energy."""
 
 
 def wave_use_warnings(case: Case) -> Iterator[str]:
@@ -41,7 +41,7 @@ def _two_quantities(case: Case) -> Iterator[str]:
 
 
 def _doubts(case: Case) -> Iterator[str]:
-    """Measured histories whose units or samples are probably wrong, where they are used."""
+    """Warnings about measured histories whose units or samples are probably wrong, by use."""
     for name, wave in case.wave.items():
         velocities, _ = users_of(case, name)
         uses = [("m/s", 1.0)] if velocities else [_read_as(load) for load in case.load if load.wave == name]

@@ -41,15 +41,15 @@ def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schem
 
 @lru_cache(maxsize=32)
 def _tables(text: str) -> dict[str, Any]:
-    """The tables of a text, not to be changed: a search changes one case a thousand times."""
+    """The tables of a text, cached and not to be changed: a search changes one case a thousand times."""
     return parsed(text)
 
 
 def to_toml(case: Case, folder: Path | None = None) -> str:
     """The case's TOML text, for a file in `folder` (its own folder when None).
 
-    The text is the one the case was read from, with its comments; relative paths are rewritten where they have to, to
-    refer to the same files from another folder.
+    The text is the one the case was read from, with its comments; relative paths are rewritten so that they refer to
+    the same files from another folder.
     """
     here, there = case.folder.resolve(), (folder or case.folder).resolve()
     moved = {

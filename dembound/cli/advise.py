@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from dembound.casefile import Case
 
 WIDTH = 80
-"""Most characters in a line of the tables."""
+"""Largest number of characters in a line of the tables."""
 
 
 class Truth(StrEnum):
-    """What errors are those of."""
+    """The motion with which a case is compared."""
 
     disks = "disks"
     rock = "rock"
@@ -96,7 +96,7 @@ def advise_cases(
 
     All other lines of the case remain, comments too.
 
-    Nothing is run but small scenes with larger disks; see docs/tasks/trust_a_result.md.
+    Only small scenes with larger disks are run; see docs/tasks/trust_a_result.md.
     """
     from dembound.accuracy.advise import BOUNDS, advise
 
@@ -126,7 +126,7 @@ def advise_cases(
 
 
 def bound_of(error: str | None) -> float | None:
-    """The bound that ``--error`` gives, None without it; raises CaseError for a text that is no share from 0 to 1."""
+    """The error bound given by ``--error``, None without it; raises CaseError unless it is a share from 0 to 1."""
     if error is None:
         return None
     text = error.strip()
@@ -148,9 +148,9 @@ def name_within(name: str, bound: float) -> str:
 def chosen(
     case: Case, bound: float, keep: Sequence[str] | None, changes: Sequence[str] | None, longest: float | None = None
 ) -> Case:
-    """The case with the cheapest choice that keeps an error bound, which is printed.
+    """The case with the cheapest choice that keeps an error bound; prints the choice.
 
-    keep, longest : as of the options; changes : those of ``--set``, whose keys are kept, too.
+    keep, longest : values of the options; changes : of ``--set``, whose keys are also kept.
 
     Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `advise`.
     """

@@ -36,12 +36,12 @@ EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
 CANNOT_WRITE = 5
 
 COLLECT_EVERY = 100_000
-"""New objects after which Python searches for unused cycles: nearly all objects are those of packages, and remain."""
+"""Number of new objects after which Python searches for unused cycles: most objects belong to packages and remain."""
 
 
 @contextmanager
 def _one_line_at_signals() -> Iterator[None]:
-    """End with one line, and the exit code of the signal; typer itself would end silently, with 130 after any."""
+    """End with one line and the exit code of the signal."""
     try:
         yield
     except KeyboardInterrupt as stop:
@@ -50,7 +50,7 @@ def _one_line_at_signals() -> Iterator[None]:
 
 
 MORE = "More"
-"""Panel of the help with the commands that are not the usual steps of work."""
+"""Panel of the help for less usual commands."""
 
 ORDER = (
     *("new", "check", "run", "advise", "plot", "report", "calibrate", "chart", "sweep"),
@@ -58,11 +58,11 @@ ORDER = (
     *("resume", "rerun", "library", "respond"),
     *("estimate", "compare", "signals", "view", "movie", "gauge", "hopkinson", "cache"),
 )
-"""All commands in the order of work: the usual steps, then those of `MORE`."""
+"""All commands in the order of work: the usual steps, then the panel `MORE`."""
 
 
 class _Commands(TyperGroup):
-    """All commands; signals end them as by `_one_line_at_signals`, also while options are read."""
+    """All commands; signals end them with one line, also while options are read."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of the commands, as the help lists them."""
@@ -173,7 +173,7 @@ def changed(case: Case, changes: list[str] | None, name: str | None) -> Case:
 def text_for(target: Path, path: Path, case: Case, changes: Sequence[str] | None) -> str:
     """The text of a case file with the changes of ``--set``, for a file in the folder of another one.
 
-    case : that of the file, changed.
+    case : the changed case of the file.
     """
     from dembound.casefile import to_toml
     from dembound.casefile.edit import edited
@@ -207,7 +207,7 @@ def _setting(text: str) -> tuple[str, Any]:
 
 
 def prepare_computing(threads: int | None) -> None:
-    """Set the number of threads, as far as there are that many, and have compiling reported."""
+    """Set the number of threads, at most the available ones, and report compiling."""
     from dembound.cli.compiling import report_compiling
 
     report_compiling()
@@ -221,9 +221,9 @@ def prepare_computing(threads: int | None) -> None:
 
 
 def _show_only_own_warnings() -> None:
-    """Show none of Python's warnings but those about types of other packages, unless Python's option -W asks for them.
+    """Show only Python warnings about types of other packages, unless Python's option -W requests others.
 
-    Those of numpy and matplotlib are about code, which a user cannot mend.
+    Warnings of numpy and matplotlib concern code, which a user cannot mend.
     """
     warnings.showwarning = _in_one_line
     if not sys.warnoptions:
@@ -272,7 +272,7 @@ def main() -> None:
 
 
 def _print_failure(error: Exception, lines: Sequence[str]) -> None:
-    """Print what has failed, and the notes of commands about what can be done."""
+    """Print the failure and the notes of commands on remedies."""
     with suppress(OSError):  # the exit code remains where nothing can be printed
         for line in (*lines, *getattr(error, "__notes__", ())):
             err.print(line, style="red")

@@ -30,7 +30,7 @@ LEAST = 1e-8
 """Share of energy below which numbers are rounding errors."""
 
 NEAR_GAP = 1.25
-"""Frequency of a gap of the packing over the highest one measured, below which it is named."""
+"""Frequency of a gap of the packing over the highest measured one below which the gap is reported."""
 
 
 @app.command("boundary", rich_help_panel=MORE)
@@ -61,7 +61,7 @@ def boundary(
     table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,
 ) -> None:
-    """Compute the energy that sides return, by angle and frequency.
+    """Compute the energy that sides reflect, by angle and frequency.
 
     Nothing is run. With several sides, pictures and tables have their names.
     """
@@ -137,7 +137,7 @@ def _percent(share: float) -> str:
 
 
 def _sentences(found: Measured) -> list[str]:
-    """What is sent back of each arrival, beside matched factors and a continuum."""
+    """The reflected share of each arrival, compared with matched factors and a continuum."""
     lines = []
     beside: dict[str, Reflections] = {}
     if found.matched is not None:
@@ -177,5 +177,5 @@ def _curves(found: Measured) -> list[Curves]:
 
 
 def _totals(beside: dict[str, Reflections], kind: str) -> dict[str, np.ndarray]:
-    """Energies sent back in all, by waves of one type."""
+    """Total reflected energies of waves of one type."""
     return {name: each.total(kind) for name, each in beside.items() if kind in each.kinds}  # type: ignore[arg-type]

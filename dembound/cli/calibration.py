@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from dembound.studies.calibration import Calibration
 
 CALIBRATED = "_calibrated"
-"""Ending of the name of a calibrated case."""
+"""Suffix of the name of a calibrated case."""
 
 OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
 

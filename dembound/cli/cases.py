@@ -74,7 +74,7 @@ def run(
 
     All case files are read before the first is run, so a mistake in the last one is found at once.
 
-    With --error each is run with the cheapest choice that is as accurate, as dembound advise finds it.
+    With --error each is run with the cheapest choice of dembound advise for this error.
 
     Its results are then in NAME_1pct, for an error of 0.3 % in NAME_0_3pct, unless --name is given.
     """
@@ -182,7 +182,7 @@ def _require_another_folder(record: Path, output: Path, name: str) -> None:
 
 
 def _print_replaced(case: Case, output: Path) -> None:
-    """Print which results a run of the case will replace."""
+    """Print the results that a run of the case will replace."""
     from dembound.results.folder import Folder
     from dembound.running import replaced_in_words
 
@@ -200,7 +200,7 @@ def _run(
 ) -> None:
     """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s.
 
-    estimated : whether its errors are estimated though the case does not ask for it.
+    estimated : whether to estimate its errors even if the case does not request it.
     """
     from dembound.results.folder import Folder
     from dembound.running import run_case
@@ -211,7 +211,7 @@ def _run(
 
 
 def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:
-    """Do some work on the results of a folder, with its progress; if it ends early, print what is left of it."""
+    """Run work on the results in a folder, with its progress; if it ends early, print its partial results."""
     from dembound.cli.progress import progress_of
 
     try:
@@ -238,7 +238,7 @@ def _print_results(folder: Path, *, estimated: bool) -> None:
 
 
 def _left_of(folder: Path) -> list[str]:
-    """What is left in the partial folder of a run that ended early, and how to continue it."""
+    """The results in the partial folder of a run that ended early, and how to continue it."""
     left = [f"histories so far are in {folder}"] if (folder / "run.h5").is_file() else []
     if (folder / "checkpoint.npz").is_file():
         left.append(f"to continue: dembound resume {folder}")

@@ -118,7 +118,7 @@ def chart(
 
 
 def _print(charted: Charted) -> None:
-    """Print a line for every choice, what was left out, and the cheapest ones."""
+    """Print a line for every choice, the choices left out, and the cheapest ones."""
     failures = [f"{line.choice.name}: failed, {line.outcome.failure}" for line in charted.lines if line.outcome.failure]
     for text in (*charted.left_out, *failures):
         err.print(f"{charted.case.name}: {text}")

@@ -1,4 +1,4 @@
-"""Shows that kernels are being compiled, which takes much longer than loading compiled ones."""
+"""A message while kernels are being compiled, which takes much longer than loading compiled ones."""
 
 import time
 from collections.abc import Callable
@@ -32,7 +32,7 @@ class Compilation(event.Listener):
         self._shown: Status | None = None
 
     def note(self) -> str:
-        """What is being done, with its seconds up to now; empty if nothing is being compiled."""
+        """ "compiling" and its seconds up to now; empty if nothing is being compiled."""
         return f"compiling the solver, {self._spent + self.now() - self._began:.0f} s" if self._open else ""
 
     def on_start(self, event: event.Event) -> None:
@@ -67,7 +67,7 @@ def _is_own(event: event.Event) -> bool:
 
 
 COMPILATION = Compilation()
-"""That of this process."""
+"""The compilation of this process."""
 
 
 @cache

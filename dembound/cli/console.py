@@ -1,4 +1,4 @@
-"""Where commands print: texts appear as they are, without markup, and with their control characters as escapes."""
+"""Consoles of commands: texts appear unchanged, without markup, and control characters as escapes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def compact_table(*columns: Column | str, **looks: Any) -> Table:
 
 
 class _UntilClosed(io.FileIO):
-    """An output that drops all that comes after its reader has ended, as ``head`` does, or after the first error."""
+    """An output that drops all text after its reader has ended, as ``head`` does, or after the first error."""
 
     is_over = False
 
@@ -62,7 +62,7 @@ class _UntilClosed(io.FileIO):
 
 
 class _Readable(io.TextIOWrapper):
-    """An output without characters that hide or reorder text, whoever prints it."""
+    """An output without characters that hide or reorder text."""
 
     def write(self, text: str) -> int:
         """The number of characters."""
@@ -70,7 +70,7 @@ class _Readable(io.TextIOWrapper):
 
 
 def flush() -> None:
-    """Print what is still to be printed; raises OSError where this is not possible."""
+    """Print buffered text; raises OSError where this is not possible."""
     if sys.stdout is not None:  # as it is where it has been closed
         sys.stdout.flush()
 

@@ -1,4 +1,4 @@
-"""What a run ends with: its results in words, the peaks at its monitors, its files, and the next command."""
+"""The lines printed after a run: its results in words, the peaks at its monitors, its files, and the next command."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Any
 from dembound.words import columns, in_one_unit
 
 MOST_MONITORS = 10
-"""Monitors whose peaks are printed."""
+"""Largest number of monitors whose peaks are printed."""
 
 FILES = ("run.h5", "summary.json", "histories.png", "histories_stress.png", "scene.png", "paraview")
-"""What a run may have written into its folder, apart from what continues it, in the order in which it is listed."""
+"""Results in the folder of a run in the order of the list, without files for continuing it."""
 
 
 def ending(folder: Path, summary: Mapping[str, Any], *, estimated: bool = False) -> Iterator[str]:
-    """The lines after a run whose results are in a folder; those that begin with its name are for scripts, too.
+    """The lines after a run with results in a folder; scripts may read the lines that begin with its name.
 
-    estimated : whether its errors are estimated anyway.
+    estimated : whether its errors will be estimated, so that the command for it is not printed.
     """
     from dembound.kinds import kind_of_record
     from dembound.results.summary import end_in_words
@@ -38,7 +38,7 @@ def ending(folder: Path, summary: Mapping[str, Any], *, estimated: bool = False)
 
 
 def peaks(monitors: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """A table of the largest velocity at each monitor but twins in a free field: its size, its component, its time."""
+    """A table of the largest velocity at each monitor: its size, component and time; without twins in a free field."""
     from dembound.casefile.disks.monitor import FREE_FIELD
 
     own = [name for name in monitors if not name.endswith(FREE_FIELD)]

@@ -49,7 +49,7 @@ def estimate(
 
 
 def print_estimate(folder: Path) -> None:
-    """Print the estimate of a run that is over; if there can be none, why."""
+    """Print the error estimate of a completed run, or why there is none."""
     from dembound.accuracy.estimate import estimate_results
 
     try:
@@ -59,7 +59,7 @@ def print_estimate(folder: Path) -> None:
 
 
 def _show(folder: Path, found: Budget) -> None:
-    """Print an estimate, and draw its band into the picture of the histories if the run has drawn one."""
+    """Print an estimate, and draw its band into the run's picture of the histories, if there is one."""
     from dembound.accuracy.table import lines_of, next_step
     from dembound.plot.histories import plot_histories
     from dembound.plot.style import save

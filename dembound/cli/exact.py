@@ -25,7 +25,7 @@ def exact(
 
     Known are Lamb's and Garvin's problem, and a circular hole under a pressure or under a plane wave.
 
-    It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
+    The solution is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
     """
     from dembound.accuracy.of_disks.exact import write_exact
 

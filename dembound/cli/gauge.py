@@ -103,7 +103,7 @@ def gauge(
 
 
 def _sources(known: BarMetadata | None, speed: float | None, attenuation: float | None) -> list[str]:
-    """Where speed and attenuation are from unless from peaks, and what the results have if another one is given."""
+    """Sources of speed and attenuation other than peaks, and the values in the results if others are given."""
     from dembound.gauge.gauge_io import differs
 
     there = (None, None) if known is None else (known.speed, known.attenuation)

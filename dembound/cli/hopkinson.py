@@ -57,7 +57,7 @@ class BarOptions:
     ] = False
 
     def setup(self, signal: SignalOptions, second_gauge: float | None) -> Setup:
-        """The setup of the test; raises CaseError for data that cannot be, and unless the specimen has one size."""
+        """The setup of the test; raises CaseError for impossible data, and unless the specimen has exactly one size."""
         from dembound.gauge.hopkinson.pulses import Setup, circle_area
 
         areas = [self.specimen_area] if self.specimen_area is not None else []
@@ -84,7 +84,7 @@ class BarOptions:
 
 @dataclass(frozen=True)
 class PulseOptions:
-    """Where the pulses are in the signals, and a second gauge that separates them."""
+    """The times of the pulses in the signals, and a second gauge that separates them."""
 
     second: Annotated[
         Path | None,

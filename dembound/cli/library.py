@@ -64,7 +64,7 @@ def respond(
 ) -> None:
     """Write histories under records from a library, without a run.
 
-    They are those of a direct run with the record as a file wave, to rounding, and are plotted and compared like it.
+    They equal a direct run with the record as a file wave, to rounding, and are plotted and compared like a run.
     """
     from dembound.results.folder import Folder
     from dembound.results.reader import understood
@@ -93,7 +93,7 @@ def respond(
 
 
 def _print_load_factor(name: str, found: LoadFactor, count: int) -> None:
-    """Print the load factor of a record, and of how many contacts it is."""
+    """Print the load factor of a record, and the number of its contacts."""
     of = f"of {count} contact{'s' * (count > 1)} between monitors alone, not of all contacts"
     if found.factor == float("inf"):
         out.print(f"{name}: no limit at any multiple of the record; {of}")

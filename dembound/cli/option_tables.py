@@ -10,9 +10,9 @@ from typing import Any, get_type_hints
 
 
 def with_tables(command: Callable[..., None]) -> Callable[..., None]:
-    """A command for typer, in whose options every parameter that is a dataclass stands as that class's fields.
+    """A command for typer in which the fields of every dataclass parameter are options.
 
-    The annotations of these fields are those of typer's options. The command itself gets one object of the class.
+    The fields are annotated as options of typer. The command gets one object of the class.
     """
     hints = get_type_hints(command, include_extras=True)
     tables: dict[str, type] = {

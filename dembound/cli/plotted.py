@@ -1,4 +1,4 @@
-"""Options of commands that draw histories; what the command plot shows: what does not go together, and the picture."""
+"""Options of commands that draw histories, checks of their combinations, and the picture."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class SceneField(StrEnum):
 
 @dataclass(frozen=True)
 class Plotted:
-    """What a plot shows, by the options of the command; without any the histories of all monitors."""
+    """What a plot shows by its options; without options the histories of all monitors."""
 
     quantity: Quantity | None
     component: Component | None
@@ -89,7 +89,7 @@ class Plotted:
     table: Path | None
 
     def problems(self, kind: str, count: int) -> Iterator[str]:
-        """What does not go together, for so many results of a kind."""
+        """Options that exclude each other, for a number of results of a kind."""
         pictures = {"--field": self.field, "--energy": self.energy, "--boundary": self.boundary}
         choices = {"--component": self.component, "--monitor": self.monitor}
         asked = [option for option, value in pictures.items() if value]

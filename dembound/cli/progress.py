@@ -36,7 +36,7 @@ def progress_of(name: str) -> Iterator[Progress]:
 
 
 class _Compiling(ProgressColumn):
-    """What is being compiled, and for how long."""
+    """The note on compiling in a bar of progress."""
 
     def render(self, task: Task) -> Text:
         """The note of the process."""

@@ -69,7 +69,7 @@ def plot(
 ) -> None:
     """Draw histories of runs, or a field or the energies of one (PNG).
 
-    Histories of several runs are drawn over each other, and so are the passes of several calibrations.
+    Histories of several runs, and passes of several calibrations, are drawn over each other.
 
     With free-field sides, a monitor's twin in the free-field column is drawn as a dashed line.
     """
@@ -170,13 +170,14 @@ def compare_histories(
 ) -> None:
     """Print the errors of histories against those of a reference run.
 
-    RMS is that of the difference of vectors in % of the reference's, largest the largest difference in % of its peak.
+    RMS is the RMS difference of vectors in % of the reference's RMS; largest is the largest difference in % of its
+    peak.
 
     End and reference are the values of both at the end, along the component with the largest motion.
 
-    All twins in a free-field column have one line, that of the one with the largest RMS.
+    All twins in a free-field column have one line, for the twin with the largest RMS.
 
-    Where waves enter a run later or earlier than the reference, by its disks and sides, this shift is taken off.
+    If waves enter a run later or earlier than the reference because of other disks or sides, the shift is subtracted.
     """
     from dembound.results.compare import compare
     from dembound.results.reader import understood

@@ -20,7 +20,7 @@ FILE, BRIDGE, CLEANING = "Text files", "Strain gauges", "Baseline and filters"
 
 @dataclass(frozen=True)
 class SignalOptions:
-    """How signals are read from text files, made strains or stresses, and cleaned."""
+    """How signals are read from text files, converted to strains or stresses, and cleaned."""
 
     time_column: Annotated[
         str | None,
@@ -83,7 +83,7 @@ class SignalOptions:
     ] = None
 
     def reading(self, column: str | None = None) -> Reading:
-        """How a column of a file is read; raises CaseError for options of a bridge without meaning."""
+        """How a column of a file is read; raises CaseError for impossible options of a bridge."""
         from dembound.gauge.reading.signal import Reading
 
         return Reading(column, self.time_column, self.time_unit, self.unit, self._bridge(), self.scale)
@@ -103,7 +103,7 @@ class SignalOptions:
         return Bridge(self.gauge_factor, cast("Wiring", self.bridge), self.excitation, self.gain, self.poisson)
 
     def treatment(self) -> Treatment | None:
-        """What is removed from a signal; None if all is as by default.
+        """Baseline and frequencies to remove from a signal; None for the defaults.
 
         Raises CaseError for a band beside a low or high pass.
         """

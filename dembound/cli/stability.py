@@ -41,7 +41,7 @@ def stability(
 ) -> None:
     """Measure the largest stable time step of a scene, by noise.
 
-    Also whether the energy of noise grows at its own step.
+    Also checks whether the energy of noise grows at the case's own step.
 
     Loads and waves are left out. Ends with exit code 3 if the case's own step is not stable.
     """

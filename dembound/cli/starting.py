@@ -65,7 +65,7 @@ def _case_file(path: Path) -> Path:
 
 
 def _starting_point(name: str) -> str:
-    """The text of a starting point; the error for the name of a case says how it is copied."""
+    """The text of a starting point; for the name of a case the error says how to copy it."""
     try:
         return starting_point(name)
     except CaseError as error:

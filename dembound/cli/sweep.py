@@ -28,14 +28,14 @@ FAILED = 3
 
 
 MOST_ROWS = 40
-"""Rows of the table that is printed."""
+"""Largest number of rows of the printed table."""
 
 MOST_WARNINGS = 10
-"""Distinct warnings of members that are printed."""
+"""Largest number of distinct warnings of members that are printed."""
 
 
 class SweepAction(StrEnum):
-    """What is done with every member."""
+    """The action for every member."""
 
     run = "run"
     calibrate = "calibrate"
@@ -74,9 +74,9 @@ def sweep(
 ) -> None:
     """Run or calibrate a case for many values of its keys.
 
-    Values are given by --vary, or by sweep.vary in the case. Means are over members that differ in seeds alone.
+    Values are given by --vary, or by sweep.vary in the case. Means are over members that differ only in seeds.
 
-    What is done is not repeated: the same command continues a sweep, and more values add members to it.
+    Complete members are not repeated: the same command continues a sweep, and more values add members to it.
     """
     from dembound.accuracy.choice import parsed
     from dembound.studies.sweep.members import changes_of, members_of
@@ -119,7 +119,7 @@ def sweep(
 
 @contextmanager
 def _shown(name: str) -> Iterator[Report]:
-    """Shows how far a sweep is: a bar on a terminal, else a line every ten seconds."""
+    """Shows the progress of a sweep: a bar on a terminal, else a line every ten seconds."""
     began = said = time.monotonic()
 
     def say(standing: Standing) -> None:
@@ -136,7 +136,7 @@ def _shown(name: str) -> Iterator[Report]:
 
 
 def _in_words(standing: Standing, elapsed: float) -> str:
-    """How far a sweep is after so many seconds, in one line."""
+    """The progress of a sweep after a number of seconds, in one line."""
     now = standing.done + standing.failed - standing.kept
     left = standing.members - standing.done - standing.failed
     parts = [f"{standing.done} of {standing.members} members done"]
@@ -147,7 +147,7 @@ def _in_words(standing: Standing, elapsed: float) -> str:
 
 
 def _duration(seconds: float) -> str:
-    """A time in the unit that suits it."""
+    """A time in s, min or h."""
     for unit, size in (("h", 3600.0), ("min", 60.0)):
         if seconds >= 2.0 * size:
             return f"{seconds / size:.0f} {unit}"

@@ -1,9 +1,9 @@
 """The baseline of a signal, recorded where no wave passes the gauge: an offset, a drift, and mains hum.
 
 It is fitted by least squares to the *quiet* samples: those before the trigger and between passages of the pulse. As
-these are known only once the baseline is, the first fit is one of least absolute deviations to all samples, which
-passages hardly change as long as they take less than half of the time; after it quiet samples and fit take turns. Of a
-record with a longer wave only an offset is fitted, to its beginning.
+these are known only with the baseline, the first fit is one of least absolute deviations to all samples, which passages
+hardly change if they take less than half of the time; then selection of quiet samples and fit alternate. In a record
+with longer waves only an offset is fitted, to its beginning.
 """
 
 from dataclasses import dataclass
@@ -26,28 +26,28 @@ LEAST = 0.003
 """Largest baseline, over the largest value, that is not removed: it changes α by some parts in a thousand."""
 
 SIGNIFICANT = 5.0
-"""Least size of a baseline in its standard errors."""
+"""Least size of a baseline over its standard error."""
 
 QUIET = 0.01
-"""Largest deviation of quiet samples from the baseline, over the largest value; with noise more."""
+"""Largest deviation of quiet samples from the baseline, over the largest value; noise increases it."""
 
 MOST_QUIET_NOISE = 5.0
 """The largest noise of a quiet part, in standard deviations of the smoothed noise."""
 
 FEWEST_QUIET = 20
-"""Quiet samples that a baseline needs at least."""
+"""Least number of quiet samples for a baseline."""
 
 SPREAD = 0.5
 """Part of the record that quiet samples must extend over for a drift or hum to be fitted."""
 
 ROUNDS = 4
-"""Iterations of fit and selection of quiet samples; the second changes little already."""
+"""Iterations of fit and selection of quiet samples; the second already changes little."""
 
 BEGINNING = 20
 """Inverse of the part of the record whose median is the offset where it has no other quiet samples."""
 
 TRIED = 4000
-"""Samples of the first fit, which are enough for a few terms."""
+"""Number of samples of the first fit, enough for a few terms."""
 
 
 class Terms(NamedTuple):
@@ -78,7 +78,7 @@ class Baseline:
 def find_baseline(
     time: np.ndarray, values: np.ndarray, *, drift: bool = True, mains: tuple[float, ...] = MAINS
 ) -> Baseline | None:
-    """The baseline of a signal; None where no quiet samples show one.
+    """The baseline of a signal; None without quiet samples.
 
     Of offset, drift and hum only significant terms are fitted, of five standard errors or more. A record whose
     quiet samples are only at its beginning gives an offset only.
@@ -134,8 +134,8 @@ def quiet_samples(values: np.ndarray) -> np.ndarray:
 def _hums(time: np.ndarray, mains: tuple[float, ...]) -> list[Terms]:
     """Sines and cosines of the mains and of their harmonics of which the record has a period.
 
-    In a record of less than a period all mains are the same slow curve, and only the first is used; none in a record of
-    less than a twentieth.
+    In a record of less than a period all mains are the same slow curve, and only the first is used; in a record of less
+    than a twentieth of a period none is used.
     """
     length, found = float(time[-1] - time[0]), []
     for frequency in mains if max(mains, default=0.0) * length > 1.0 else mains[:1]:

@@ -19,14 +19,19 @@ ENDED = 0.2
 """Share of its largest compression below which a pulse has ended when its reflection returns."""
 
 LARGEST_OF_NOISE = 3.0
-"""Standard deviations of noise that the largest of some tens of values has: of so many a strength is the largest."""
+"""Expected largest of some tens of noise values, in standard deviations: a strength is the largest of so many
+values.
+"""
 
 FEWEST = 3
 """Samples of a history from which its noise is estimated."""
 
 
 class Estimate(NamedTuple):
-    """A value from a line through `points` points, and its standard error, for three or more; without points: given."""
+    """A value from a line through `points` points, with a standard error for three or more.
+
+    Given, if without points.
+    """
 
     value: float
     error: float = np.nan
@@ -71,7 +76,7 @@ def wave_speed(peak_times: np.ndarray, length: float, weights: np.ndarray | None
 def attenuation(peak_times: np.ndarray, peak_heights: np.ndarray, speed: float) -> Estimate:
     """Coefficient α in 1/m of σ = σ_0 e^(−αx), x = ct (L eq. 19, β there): the slope of the heights' logarithms.
 
-    Each is weighted by its height, as the same noise changes the logarithm of a small height more.
+    Logarithms are weighted by height, as noise changes those of small heights more.
 
     Parameters
     ----------
@@ -94,7 +99,7 @@ def incident_pulse(
     time, stress : (k,) s and any unit.
     gauge, length : place of the gauge and length of the bar, m.
     speed : c, m/s.
-    end : that time in s; by default when the pulse's front comes back from the free end.
+    end : time in s up to which the history is used; by default when the pulse's front comes back from the free end.
 
     Raises CaseError when there is no compression, the end comes before it, or, without an end, the pulse has not ended
     when its front comes back; and for fewer than three samples.
@@ -143,10 +148,10 @@ def near_free_end(
 def nominal_strength(
     time: np.ndarray, stress: np.ndarray, gauge: float, length: float, speed: float, position: float
 ) -> tuple[float, float]:
-    """Largest tension that ever occurs where the bar spalls, `position` in m, without attenuation; and its time in s.
+    """Largest tension at the spall (`position`, m) at any time, without attenuation; and its time in s.
 
     Exact for a pulse of straight lines between its samples: the largest sum occurs at one of them, or at one of the
-    image. Other arguments as for `near_free_end`.
+    image. See `near_free_end` for other arguments.
     """
     moments = np.concatenate([time + delay for delay in _delays(gauge, length, speed, position)])
     (there,) = near_free_end(time, stress, gauge, length, speed, np.array([position]), moments)
@@ -154,7 +159,7 @@ def nominal_strength(
 
 
 def path_via_free_end(gauge: float, length: float, position: Any) -> Any:
-    """Path length in m, of the shape of the position, from a gauge to the free end and back: (L − x_g) + (L − x)."""
+    """Path length (m) from a gauge to the free end and back to a position (any shape): (L − x_g) + (L − x)."""
     return 2.0 * length - gauge - position
 
 
@@ -174,7 +179,7 @@ def pull_back_strength(time: np.ndarray, velocity: np.ndarray, density: float, s
     time, velocity : (k,) of the free end, s, evenly spaced, and m/s, positive outwards.
     density, speed, length : kg/m³, c in m/s, and L of the bar in m.
 
-    Is nan where the velocity has no maximum with a minimum after it.
+    The result is nan if the velocity has no maximum with a minimum after it.
     """
     if not velocity.max() > 0.0:
         return np.nan
@@ -200,10 +205,10 @@ def rise(values: np.ndarray) -> tuple[int, int]:
 
 
 def _delays(gauge: float, length: float, speed: float, position: Any) -> tuple[Any, Any]:
-    """Times in s, of the shape of the position, from the gauge to there: directly, and via the free end."""
+    """Travel times in s from the gauge to a position (any shape): directly, and via the free end."""
     return (position - gauge) / speed, path_via_free_end(gauge, length, position) / speed
 
 
 def _pulse(time: np.ndarray, stress: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """A pulse at other times, zero before and after."""
+    """A pulse interpolated at other times, zero before and after."""
     return np.interp(at, time, stress, left=0.0, right=0.0)

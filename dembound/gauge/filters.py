@@ -8,13 +8,13 @@ import numpy as np
 from dembound.errors import CaseError
 
 ORDER = 4
-"""Order of the Butterworth filters in one direction; both together have 3 dB twice at the corner, 6 dB."""
+"""Order of the Butterworth filters in one direction; both directions together have 6 dB at the corner."""
 
 QUALITY = 10.0
 """Frequency of a notch over its width at 3 dB."""
 
 PERIODS = 3.0
-"""Periods that a record must have at least of every frequency of a filter."""
+"""Least number of periods of every filter frequency in a record."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Filters:
         return values, notes
 
     def _problems(self, rate: float, count: int) -> Iterator[str]:
-        """Corners that this record does not have."""
+        """Corners that are impossible in this record."""
         corners = [("--low-pass", self.low_pass), ("--high-pass", self.high_pass)]
         corners += [("--notch", notch) for notch in self.notches]
         for option, corner in corners:

@@ -31,7 +31,7 @@ class Strength:
 
 
 class Misfit(NamedTuple):
-    """A part of the passages that contradicts all returns: its name, its value, theirs, and what noise explains.
+    """A part of the passages that contradicts all returns: its name, its value, theirs, and the difference by noise.
 
     `of` is "wave speed", in m/s, or "attenuation", in 1/m.
     """
@@ -47,8 +47,8 @@ class Misfit(NamedTuple):
 class Findings:
     """Estimates from a gauge: wave speed in m/s, attenuation in 1/m, strengths in Pa; None where not estimated.
 
-    `peaks` are the tension peaks from which speed or attenuation are estimated, None if both were given; `parts` what
-    parts of the passages give; `misfits` the parts that contradict them; `warnings` say what is doubtful.
+    `peaks` are the tension peaks from which speed or attenuation are estimated, None if both were given; `parts` the
+    results of parts of the passages; `misfits` parts that contradict the peaks; `warnings` doubts about results.
     """
 
     peaks: Peaks | None

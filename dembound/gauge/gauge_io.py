@@ -43,7 +43,7 @@ class Gauge:
     time, stress : (k,) s and Pa, or the unit measured, tension positive; position : from the loaded end, m; length :
     the bar's, m; density : kg/m³, or None; metadata : data of the bar from a record, None for a text file; unit : Pa,
     V, strain, or empty if unknown; modulus : E in Pa of strains, None for ρc²; noise : of a measured signal; notes :
-    what was done to it; recorded : (k,) a measured signal before that, in any unit.
+    what was done to it; recorded : (k,) the measured signal before treatment, in any unit.
     """
 
     time: np.ndarray
@@ -96,7 +96,7 @@ def read_gauge(
     ----------
     path : the file.
     monitor : its name in the record; may be left out if there is only one between the ends. position, length, density,
-    modulus : as for `Gauge`; the first three by default from the record. reading : how a text file is read.
+    modulus : attributes of `Gauge`; the first three by default from the record. reading : how a text file is read.
     treatment : baseline and filters to remove from its signal, by default the baseline; from a record only filters
     apply.
     may_be_clipped : accept a text file's signal with a plateau.
@@ -155,7 +155,7 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
 
     Parameters
     ----------
-    path : the gauge's file, as for `read_gauge`.
+    path : the gauge's file.
     free_end : a monitor in it if it is a record, which must be at the end opposite the loaded one, and this end must be
     free; else the path of a text file of two columns.
 

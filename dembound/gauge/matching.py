@@ -1,6 +1,6 @@
-"""Times and heights of passages of one pulse, from its whole shape: a matched filter.
+"""Times and heights of passages of one pulse from its shape: a matched filter.
 
-Noise shifts the crest of a peak much more than the whole of it. Each passage is therefore fitted by a·g(t − τ), with g
+Noise shifts the crest of a peak much more than its shape. Each passage is therefore fitted by a·g(t − τ), with g
 the first tension peak of the smoothed history; noise σ then leaves an error σ/√(Σ ġ²)/a of a time and σ/√(Σ g²) of a
 height, sums over all samples of the peak.
 """
@@ -10,7 +10,7 @@ import numpy as np
 from dembound.gauge.peaks import CREST, Peaks, smooth, width_of
 
 FOOT = 0.1
-"""Height over the crest's at which the shape of a peak ends: where its surroundings have more noise than signal."""
+"""Height over the crest's at which the shape of a peak ends."""
 
 RANGE = 0.5
 """Largest shift of a passage from its crest, in widths of the first one."""
@@ -49,6 +49,6 @@ def matched(time: np.ndarray, values: np.ndarray, peaks: Peaks) -> Peaks:
 
 
 def _extent(values: np.ndarray, crest: int) -> tuple[int, int]:
-    """First sample of the peak around a crest, and the one behind its last."""
+    """First sample of the peak around a crest, and the one after its last."""
     low = np.flatnonzero(values < FOOT * values[crest])
     return int(low[low < crest].max(initial=-1)) + 1, int(low[low > crest].min(initial=len(values)))

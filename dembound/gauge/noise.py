@@ -1,8 +1,8 @@
 """Standard errors by noise and an uncertain baseline of a signal.
 
-The *bootstrap*: noise as it was before the first wave, drawn in blocks so that its colour remains, and baselines drawn
-from the fit's covariance are added to the signal again and again, and everything is estimated anew. The scatter of the
-estimates is their standard error.
+The *bootstrap*: noise from before the first wave, drawn in blocks to keep its spectrum, and baselines drawn from the
+fit's covariance are added to the signal many times, and everything is estimated anew. The scatter of the estimates is
+their standard error.
 """
 
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ MOST_DRAWS, FEWEST_DRAWS = 200, 40
 """Number of draws: of 200 a standard error is known to 5 %, of 40 to 11 %."""
 
 SAMPLES = 1_000_000
-"""Samples in all draws together, which limits their number in long records."""
+"""Largest number of samples in all draws, which limits the draws in long records."""
 
 BLOCKS = 4
 """Least number of blocks in the noise before the first wave."""
@@ -65,7 +65,7 @@ def rounding(values: np.ndarray, digit: float, random: np.random.Generator) -> n
 def undithered(values: np.ndarray) -> tuple[np.ndarray, float]:
     """A signal (k,) smoothed over an eighth of its largest passage, and the step of its digitiser.
 
-    The step is 0 without one, and where noise is larger than half of it, which then has the rounding in it.
+    The step is 0 without a digitiser, and where noise is larger than half of it: the noise then includes rounding.
     """
     step = digit(values)
     if white_noise(values) > 0.5 * step:
@@ -76,8 +76,8 @@ def undithered(values: np.ndarray) -> tuple[np.ndarray, float]:
 def noise_of(values: np.ndarray, baseline: Baseline) -> Noise:
     """The noise of a signal (k,) from which its baseline, if worthwhile, is removed.
 
-    From samples before the first wave if there are a hundred, else from all quiet samples. A baseline that was
-    not removed is one more uncertain function.
+    From samples before the first wave if there are a hundred, else from all quiet samples. A baseline that was not
+    removed adds an uncertain function.
     """
     quiet = np.flatnonzero(baseline.quiet)
     residuals = values[: baseline.before] if baseline.before >= 100 else values[quiet]

@@ -1,4 +1,4 @@
-"""Checks that one pulse that runs to and fro explains all passages of a gauge on a bar.
+"""Checks that one pulse that runs to and fro explains all passages at a gauge on a bar.
 
 Wave speed and attenuation follow from the tension peaks, and once more from parts of the record: the first two of these
 peaks, those behind the first, the compressions between them, and the path from the first compression to its reflection.
@@ -22,7 +22,7 @@ RISEN, FREE_OF_WAVES = 0.2, 0.1
 before it."""
 
 STRONG = 10.0
-"""Least height of a passage in standard deviations of noise: a lower one is found where noise makes it too high."""
+"""Least height of a passage in standard deviations of noise: lower ones are overestimated."""
 
 
 class PartialFit(NamedTuple):
@@ -64,7 +64,7 @@ def parts(
 
 
 def first_passages(time: np.ndarray, stress: np.ndarray) -> Peaks | None:
-    """The first compression and its reflection, by their whole shape; None where the pulse does not end in between.
+    """The first compression and its reflection, fitted by shape; None where the pulse does not end in between.
 
     time, stress : (k,) s, evenly spaced, and any unit.
     """
@@ -114,13 +114,13 @@ def speed_of_fronts(time: np.ndarray, stress: np.ndarray, position: float, lengt
 
 
 def _front(time: np.ndarray, values: np.ndarray) -> float | None:
-    """Time at which a history (k,) rises above a fifth of its largest value before it first has half of that."""
+    """Time at which a history (k,) last rises above a fifth of its largest value before it first reaches half of it."""
     below = np.flatnonzero(values[: rise(values)[1]] < RISEN * values.max())
     return float(time[below[-1]]) if len(below) else None
 
 
 def _some(peaks: Peaks, chosen: np.ndarray) -> Peaks:
-    """The peaks of which this (k,) or a shorter array is true."""
+    """The peaks selected by a mask (k,), which may be shorter."""
     places = np.flatnonzero(chosen)
     return Peaks(peaks.time[places], peaks.height[places])
 

@@ -11,7 +11,7 @@ NOISE_FACTOR = 5.0
 """Least height of a peak in standard deviations of the noise: noise alone reaches it in one of some 10⁶ samples."""
 
 LEVELS = 1.5
-"""Least height of a peak in steps of the digitiser: one is what rounding makes of any change."""
+"""Least height of a peak in steps of the digitiser: rounding alone makes one step."""
 
 FEW_LEVELS = 8
 """Samples per distinct value above which a history comes from a digitiser."""
@@ -67,8 +67,8 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
 def denoised(values: np.ndarray, deviations: float = 1.0) -> np.ndarray:
     """A history (k,) smoothed by parabolas over a range chosen by its noise; without noise it is not changed.
 
-    deviations : loss of a crest by smoothing, in standard deviations of noise. A largest value, which noise raises by
-    more than one of these, allows a larger loss.
+    deviations : loss of a crest by smoothing, in standard deviations of noise. For a largest value, which noise raises
+    by more than that, a larger loss is allowed.
     """
     sizes = np.abs(values)
     return smooth(values, _worthwhile_reach(deviations * white_noise(values) / sizes.max(), width_of(sizes)))
@@ -95,7 +95,7 @@ def first_fall(values: np.ndarray) -> float:
 def _turns(values: np.ndarray, least: float) -> list[int]:
     """Samples of tops and bottoms in turn, beginning with a top, whose prominences are at least `least` > 0.
 
-    One is found where the history has gone back by `least` from its extreme since the one before.
+    A turn is found where the history has gone back by `least` from its extreme since the turn before.
     """
     found, sense, place, extreme = [], -1.0, 0, float(values[0])  # the first is the depth before the first top
     for here, value in enumerate(values.tolist()):

@@ -12,61 +12,61 @@ from dembound.meanings import MEANINGS
 from dembound.words import percent, with_unit
 
 LONGEST = 100.0
-"""Length of a bar, m, above which millimetres were meant."""
+"""Length of a bar, m, above which it was probably given in millimetres."""
 
 SLOWEST, FASTEST = 100.0, 10_000.0
-"""Wave speeds of solids, m/s: rubber is slower, no bar is faster but one of diamond or beryllium."""
+"""Wave speeds of solids, m/s: rubber is slower, and only diamond and beryllium are faster."""
 
 COARSE, FEW = 5, 10
 """Samples of the largest wave, at half its height, below which it is refused, and below which a warning is given."""
 
 SHARE_CLIPPED, LEAST_CLIPPED = 0.1, 5
-"""Equal samples at a largest value from which they are taken for clipped, over the wave's width, and their number."""
+"""Equal samples at a largest value above which it is taken for clipped: over the wave's width, and their number."""
 
 ABRUPT = 8.0
-"""Fall beside a crest, in steps of the digitiser, that indicates clipping; a crest that bends by itself falls by
-four."""
+"""Fall beside a crest, in steps of the digitiser, that indicates clipping; a round crest falls by four."""
 
 OWN = 0.95
-"""Largest height of a wave that comes back, over a plateau before it, that is not cut where that was."""
+"""Largest height of a returning wave over a plateau before it, for which the return cannot be clipped."""
 
 SCATTER = 10.0
-"""Largest difference of two estimates of the wave speed in their standard errors."""
+"""Largest difference of two estimates of the wave speed, in standard errors."""
 
 CLOSE, FAR = 0.01, 0.2
-"""Relative differences of two wave speeds that are never too large, and that are refused."""
+"""Relative differences of two wave speeds: always accepted, and refused."""
 
 PART_SPEED, PART_DECAY, PART_FALL = 0.003, 0.05, 0.005
-"""Relative differences of wave speed and attenuation by parts of the passages, and difference of the latter, 1/m, from
-which a warning is due."""
+"""Relative differences of wave speed and attenuation by parts of the passages, and difference of attenuations (1/m),
+above which a warning is given.
+"""
 
 CAUSES = "look for another impact, lost samples, a jump of the baseline, an amplifier at its limit, AC coupling"
-"""Possible causes where passages are not those of one pulse."""
+"""Possible causes if passages do not belong to one pulse."""
 
 NOISY = 0.015
-"""Noise over the height of a wave from which strengths get a warning: it has raised them by 2 to 3 % there."""
+"""Noise over the height of a wave above which strengths get a warning: noise has then raised them by 2 to 3 %."""
 
 TIED = 2.0
-"""Ratio of E and ρc² up to which both may be of one bar: measured ones differ by some per cent."""
+"""Ratio of E and ρc² up to which both may belong to one bar: measured values differ by some per cent."""
 
 APART = 0.05
 """Relative difference of E and ρc² that causes a warning, as it affects all stresses."""
 
 LARGEST_STRAIN = 0.05
-"""Strain that no bar of a test has: steel bars yield at 1 %."""
+"""Strain that no bar reaches in a test: steel bars yield at 1 %."""
 
 UNCERTAIN_SPEED, UNCERTAIN_DECAY = 0.01, 0.2
-"""Relative standard errors of wave speed and attenuation from which a warning is due."""
+"""Relative standard errors of wave speed and attenuation above which a warning is given."""
 
 
 def implausible_length(length: float) -> Iterator[str]:
-    """Message about a length, m, that is one in mm."""
+    """Message about a length, m, that is probably in mm."""
     if LONGEST < length < np.inf:
         yield f"--length: is {length:g} m, must be at most {LONGEST:g} m; positions and lengths are in m, not mm"
 
 
 def implausible_size(option: str, value: float | None, means: str, unit: str) -> Iterator[str]:
-    """Message about an option whose value, in its unit, has no likely size of its meaning (`dembound.meanings`)."""
+    """Message about an option whose value, in its unit, has an unlikely size for its meaning (`dembound.meanings`)."""
     if value is not None and np.isfinite(value) and (doubt := MEANINGS[means].doubt(value, unit)):
         yield f"{option}: {doubt}"
 
@@ -92,7 +92,7 @@ def implausible_modulus(modulus: float | None, density: float | None, speed: flo
 
 
 def differing_modulus(modulus: float | None, density: float | None, speed: float) -> Iterator[str]:
-    """Message about a modulus E, Pa, that is some way from ρc²; density : ρ, kg/m³, None if unknown; speed : c, m/s."""
+    """Message about a modulus E, Pa, that differs from ρc²; density : ρ, kg/m³, None if unknown; speed : c, m/s."""
     if modulus is not None and density is not None and abs(apart := modulus / (density * speed**2) - 1.0) > APART:
         yield (
             f"--youngs-modulus: is {with_unit(modulus, 'Pa')}, {'+' * (apart > 0.0)}{percent(apart)} from ρc², "
@@ -119,7 +119,7 @@ def implausible_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> I
 
 
 def _too_narrow(values: np.ndarray, width: int) -> str:
-    """Why the largest values (k,), `width` samples wide, are no wave: spikes, or nothing wider in the signal."""
+    """Message if the largest values (k,), `width` samples wide, are not a wave: spikes, or nothing is wider."""
     from scipy.ndimage import median_filter
 
     rest = median_filter(values, 2 * COARSE - 1, mode="nearest")  # without all that is less than COARSE samples wide
@@ -140,7 +140,7 @@ def _too_narrow(values: np.ndarray, width: int) -> str:
 def clipped(values: np.ndarray) -> int:
     """Number of equal samples at the largest value of a signal (k,) whose slope breaks off there; 0 if it does not.
 
-    0, too, if the plateau is the wave's own, as it comes back with the wave, lower.
+    The result is also 0 if the plateau belongs to the wave, as it comes back lower with the wave.
     """
     count = _equal_at_top(values)
     return 0 if count and _comes_back_flat(values, count) else count
@@ -180,7 +180,7 @@ def _equal_at_top(values: np.ndarray) -> int:
 
 
 def few_returns(time: np.ndarray, values: np.ndarray, position: float, length: float) -> str:
-    """Why a record shows its pulse as tension less than twice: "it" is the record.
+    """Message about a record that shows its pulse as tension less than twice.
 
     time, values : (k,) s and any unit; position, length : m.
     """
@@ -205,11 +205,11 @@ OSCILLATIONS = (
     "small oscillations between the returns, as of bending or ringing, may be taken for returns: take the mean of two "
     "gauges on opposite faces or a --low-pass, or give --wave-speed and --attenuation of another test"
 )
-"""Why peaks may be too near to each other, where no unit explains it, and what to do."""
+"""Possible cause of peaks that are too near to each other, and a remedy."""
 
 
 def unlikely_speed(speed: float) -> Iterator[str]:
-    """Message about a wave speed, m/s, of no solid bar, with the unit that would explain it."""
+    """Message about a wave speed, m/s, that no solid bar has, with the unit that would explain it."""
     if SLOWEST <= speed <= FASTEST:
         return
     hints = {
@@ -224,7 +224,7 @@ def unlikely_speed(speed: float) -> Iterator[str]:
 
 
 def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[str]:
-    """Message if the wave speed from the returns differs from that of the first passages by more than both scatter."""
+    """Message if wave speeds from the returns and from the first passages differ by more than their scatter."""
     if first is None:
         yield (
             "the first wave is no compression with its reflection behind it: has --scale the wrong sign, or is "
@@ -247,7 +247,7 @@ def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[st
 
 
 def misfit(found: Findings, of: str) -> Iterator[str]:
-    """Message about a part of the passages that contradicts the wave speed or the attenuation, as `of` names them."""
+    """Message about a part of the passages that contradicts the wave speed or the attenuation."""
     for each in found.misfits:
         off = abs(each.there - each.value)
         least = max(PART_DECAY * each.value, PART_FALL) if of == "attenuation" else PART_SPEED * each.value
@@ -261,7 +261,7 @@ def misfit(found: Findings, of: str) -> Iterator[str]:
 
 
 def raised_by_noise(noise: float, crest: float) -> Iterator[str]:
-    """Message if noise of this standard deviation raises a strength, a largest value, of a wave of this height."""
+    """Message if noise of a standard deviation raises the strength, a largest value, from a wave of some height."""
     if noise > NOISY * crest:
         yield (
             f"the noise is {percent(noise / crest)} of the wave and makes the strength too large, by about as "

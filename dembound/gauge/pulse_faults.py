@@ -1,7 +1,6 @@
-"""Faults of a recorder or an amplifier that a single pulse shows, where no return of it can reveal them.
+"""Faults of a recorder or an amplifier that a single pulse shows, without its returns.
 
-Values are positive in the pulse, so a gauge's stress is given with the opposite sign, the velocity of a free end as it
-is.
+Values are positive in the pulse: a gauge's stress has the opposite sign, the velocity of a free end its own.
 """
 
 from collections.abc import Iterator
@@ -18,7 +17,7 @@ The slopes of a pulse are of many samples, and its steps are alike: the largest 
 """
 
 QUIET = 0.05
-"""Share of the crest below which a pulse has not begun: a front may be abrupt."""
+"""Share of the crest at which a pulse begins: a front may be abrupt."""
 
 NARROW = 10.0
 """The slower slope of a pulse, T for 0.8 of its crest, over the range of the running median."""
@@ -36,13 +35,13 @@ UNDERSHOOT, MOST_UNDERSHOOT = 0.03, 0.5
 uncertain baseline, more is another wave."""
 
 UNEXPLAINED = 0.2
-"""Largest deviation of that signal from what AC coupling makes of the pulse, over its own size."""
+"""Largest deviation of this signal from the effect of AC coupling on the pulse, over its own size."""
 
 
 def faults(time: np.ndarray, values: np.ndarray, what: str, cure: str) -> Iterator[str]:
     """Message about samples that are lost in a pulse, or else about spikes on it.
 
-    time, values : (k,) s and any unit. what : has the pulse, in words; cure : of spikes.
+    time, values : (k,) s and any unit. what : signal with the pulse, in words; cure : remedy for spikes.
     """
     if (jump := lost_samples(values)) is not None:
         share = abs(values[jump + 1] - values[jump]) / float(values.max())
@@ -59,7 +58,7 @@ def faults(time: np.ndarray, values: np.ndarray, what: str, cure: str) -> Iterat
 
 
 def lost_samples(values: np.ndarray) -> int | None:
-    """The sample before a jump within a pulse (k,); None without one. Abrupt fronts, and ends behind them, are none."""
+    """The sample before a jump within a pulse (k,); None without one. Abrupt fronts and ends are not jumps."""
     crest, width = float(values.max()), width_of(values)
     steps = np.abs(np.diff(values))
     begins = np.abs(values[:-1]) < max(QUIET * crest, NOISE_FACTOR * white_noise(values))
@@ -76,8 +75,8 @@ def lost_samples(values: np.ndarray) -> int | None:
 def largest_spike(values: np.ndarray) -> tuple[int, float] | None:
     """Sample and height, over the crest, of the largest deviation of a pulse (k,) from its running median.
 
-    The median keeps slopes and jumps, and takes out what is narrower than half its range. None for what noise and the
-    crest itself explain, and for a pulse whose slopes are too few samples.
+    The median keeps slopes and jumps, and takes out what is narrower than half its range. None if noise or the crest
+    itself explains the deviation, and for a pulse whose slopes have too few samples.
     """
     from scipy.ndimage import median_filter
 

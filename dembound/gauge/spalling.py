@@ -45,14 +45,14 @@ FILTERED = "filter: "
 """Beginning of a note on a filter, see `Filters.apply`."""
 
 OF_SHAPE = ("RECORD:", "--pulse-end: give it", "--wave-speed: needs", "--attenuation: give it")
-"""Beginnings of messages about a signal that has not the shape of one pulse to and fro."""
+"""Beginnings of messages about a signal that is not one pulse running to and fro."""
 
 AGREEMENT = 0.05
 """Largest relative difference between estimated and recorded wave speed; coarse nodes change it less."""
 
 
 class Given(NamedTuple):
-    """Data given with a gauge, see `evaluate`; first : its `count`."""
+    """Data given with a gauge, see `evaluate`; first : the argument `count`."""
 
     spall: float | None
     pulse_end: float | None
@@ -137,7 +137,7 @@ def _estimated(gauge: Gauge, given: Given) -> Findings:
 
 
 def _replicates(gauge: Gauge, noise: Noise, given: Given) -> Iterator[Findings]:
-    """The estimates from the signal with errors as its noise and baseline may have, where they can be made."""
+    """Estimates from the signal with drawn noise and baselines added, where they succeed."""
     for error in noise.draws():
         with suppress(CaseError):
             yield _estimated(replace(gauge, stress=gauge.stress + error), given)
@@ -196,7 +196,7 @@ def _problems_with_options(
 def _waves(
     gauge: Gauge, speed: float | None, coefficient: float | None, count: int | None
 ) -> tuple[Peaks | None, Estimate, Estimate | None]:
-    """Wave speed and attenuation, given or estimated from tension peaks, and these peaks."""
+    """Wave speed and attenuation, given or estimated from tension peaks, and the peaks."""
     if speed is not None and coefficient is not None:
         return None, Estimate(speed), Estimate(coefficient)
     peaks = matched(gauge.time, gauge.stress, tension_peaks(gauge.time, gauge.stress, count))

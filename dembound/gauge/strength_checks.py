@@ -14,19 +14,21 @@ from dembound.meanings import MEANINGS, fading
 from dembound.words import percent, with_unit
 
 SAME, NEARER = 0.99, 0.9
-"""Share of the tension at the spall that was nearer to the free end before, within this share of the distance.
+"""Share of the tension at the spall, and of its distance from the free end, that give a warning if reached earlier.
 
 The tension grows with the distance until the pulse has its full length there, so a bar that breaks when it reaches its
 strength does so where it still grows: over the last tenth by a tenth under a straight fall. With 0.99 an exponential
-fall is warned of from 0.98 of the crest on, where the strength hardly follows from the place. Under a rectangular pulse
-all of the tension is where the pulse has its full length first, and nearer to the end later.
+fall gives a warning from 0.98 of the crest on, where the place hardly determines the strength. Under a rectangular
+pulse the full tension first occurs where the pulse has its full length, and nearer to the end later.
 """
 
 PLACES = 20
-"""Distances from the free end, evenly up to that of the spall, at which the tension is compared."""
+"""Number of even distances from the free end to the spall at which the tension is compared."""
 
 AWAY = 0.1
-"""Distance of the spall from the first crack of results, over that from the free end: the strength is as wrong."""
+"""Distance of the spall from the first crack of results, over its distance from the free end: the relative error of the
+strength.
+"""
 
 FRONTS = 0.05
 """Largest relative difference of a given speed from that of the fronts, taken at a fifth of their crests: for a
@@ -80,7 +82,7 @@ def doubts_of_signals(gauge: Gauge, found: Findings, free_end: tuple[np.ndarray,
 
 
 def _spalled_nearer(gauge: Gauge, strength: Strength, speed: float) -> Iterator[str]:
-    """Message if the tension at the spall has been nearer to the free end before, where the bar did not break."""
+    """Message if the tension at the spall occurred earlier nearer to the free end, where the bar did not break."""
     time, stress = strength.pulse
     shares = np.array([share for share in np.arange(1, PLACES) / PLACES if share <= NEARER] + [1.0])
     places = gauge.length - shares * (gauge.length - strength.position)
@@ -99,7 +101,7 @@ def _spalled_nearer(gauge: Gauge, strength: Strength, speed: float) -> Iterator[
 
 
 def _cut_off(strength: Strength) -> Iterator[str]:
-    """Message if the pulse has not ended where it is cut."""
+    """Message if the pulse has not ended when it is cut."""
     time, stress = strength.pulse
     left = abs(float(stress[-1])) / float(np.abs(stress).max())
     if left > ENDED:

@@ -13,7 +13,7 @@ from dembound.words import percent
 
 @dataclass(frozen=True)
 class Treatment:
-    """Parts to remove from a signal: the baseline with or without drift and hum, and frequencies by filters."""
+    """Removal of the baseline from a signal, with or without drift and hum, and of frequencies by filters."""
 
     baseline: bool = True
     drift: bool = True

@@ -10,10 +10,12 @@ from dembound.gauge.findings import Findings, Misfit
 from dembound.gauge.passages import PartialFit
 
 SURE = 4.0
-"""Difference of a part of the passages from all returns, in its standard errors by noise, that contradicts them."""
+"""Difference of a part of the passages from all returns above which it contradicts them, in standard errors by
+noise.
+"""
 
 EXACT = 5e-4
-"""Relative difference that the samples of a record may make without any noise."""
+"""Relative difference that sampling may cause without noise."""
 
 
 def with_errors(found: Findings, others: Sequence[Findings]) -> Findings:
@@ -42,9 +44,9 @@ def _estimated(
     whole: Callable[[Findings], Estimate | None],
     partial: Callable[[PartialFit], float],
 ) -> tuple[Estimate | None, Misfit | None]:
-    """An estimate with its error, and the part that contradicts it most, if one does.
+    """An estimate with its error, and the part that contradicts it most, if any.
 
-    of : its name. whole : takes it from findings; partial : takes it from a part of the passages.
+    of : name of the estimate. whole : returns it from findings; partial : from a part of the passages.
     """
     estimate = whole(found)
     if estimate is None or not estimate.points:

@@ -2,7 +2,7 @@
 
 Local springs join neighbours, peridynamic bonds join nodes in zones. The coverage of a plane between two nodes is the
 share of the stress that bonds carry across it; a local spring there carries the rest, 1 − coverage. So any zone can be
-combined with local springs: forces act in pairs, and rest and uniform strain are not disturbed at the seam. Bonds join
+combined with local springs: forces act in pairs, and the seam disturbs neither rest nor uniform strain. Bonds join
 nodes of the same range; at a bonded interface local springs carry what bonds across it would.
 """
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from dembound.kernels.tables import BarBonds
 
 _EVOLVING = ("spring", "bond", "spring_broken", "bond_broken", "spring_limit", "triggers", "closed")
-"""The arrays of bonds that change."""
+"""Names of the arrays of bonds that change."""
 
 TINY = 1e-12
 """Tolerance in comparisons of coverage, for rounding."""
@@ -107,7 +107,7 @@ class Bonds:
 
     @cached_property
     def _complemented(self) -> np.ndarray:
-        """Planes (n − 1,) where springs carry what bonds do not: all, or without it those near springs beyond."""
+        """Planes (n − 1,) where springs carry the rest of the stress: all, or those near springs beyond the ends."""
         chosen = np.full(self.rod.count - 1, self.complement)
         for left, right in self.rod.bonded:
             chosen[max(left.first, left.last - self.horizon) : min(right.last, right.first + self.horizon)] = True
@@ -126,7 +126,7 @@ class Bonds:
     def shares(self, part: Range) -> tuple[float, ...]:
         """Shares of the stress under uniform strain that bonds of one, two … spacings carry in the middle of a range.
 
-        Local springs have one spacing. Their number is the length of the longest bonds there; see
+        Local springs have one spacing. There are as many shares as the longest bonds there have spacings; see
         `exact.dispersion.Lattice`.
         """
         middle = part.first + (part.cells + 1) // 2
@@ -139,7 +139,7 @@ class Bonds:
     def soften_ends(self) -> None:
         """Halve the springs at all ends, as half volumes do in peridynamics with m = 1.
 
-        Not where ranges are bonded, nor where a layer follows.
+        Bonded interfaces, and ends with a layer beyond, are left out.
         """
         bonded = {left.last for left, _ in self.rod.bonded}
         for part in self.rod.ranges:
@@ -186,8 +186,8 @@ class Bonds:
     def damage(self, step: int | None = None) -> np.ndarray:
         """Local damage φ (n,) at the end of a step, by default the last (L eq. 7).
 
-        A local spring replaces the bonds that are left out on its side of a node. Bonds that open now count by the
-        share of their fracture energy that is left.
+        A local spring replaces the bonds that are left out on its side of a node. Opening bonds count with the
+        remaining share of their fracture energy.
         """
         springs, bonds = self._left(step)
         first, second = self._family.pairs.T
@@ -282,7 +282,7 @@ class Bonds:
         )
 
     def _runs(self, supported: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Runs of plain nodes (r, 2), and of the others (q, 3), with whether these have springs; each in one range.
+        """Runs of plain nodes (r, 2), and of other nodes (q, 3) with a flag for springs; each in one range.
 
         A node that two ranges share, or at which one begins or ends, is not plain.
         """

@@ -15,7 +15,7 @@ class Fracture:
     rates: tuple[float, float] = (1.0, 1.0)
 
     def opening(self, strength: float) -> float:
-        """Opening w_c (m) of a crack at which it bears nothing, 2G_f/σ_t, at a strength in Pa."""
+        """Opening w_c = 2G_f/σ_t (m) at which a crack bears no stress, for a strength in Pa."""
         return 2.0 * self.energy / strength
 
 

@@ -9,7 +9,7 @@ from dembound.methods.rod import Rod
 from dembound.table import Table
 
 WIDEST = 1000
-"""Largest horizon in spacings: the step limit of a bar takes a time that grows with its square, minutes for this."""
+"""Largest horizon in spacings: the time to compute the step limit grows with its square, to minutes."""
 
 
 class Method(Table, ABC):
@@ -39,7 +39,7 @@ class Method(Table, ABC):
 
     @abstractmethod
     def begin(self, rod: Rod) -> Bonds:
-        """The bonds it begins with."""
+        """The first bonds."""
 
     def stages(self, rod: Rod) -> list[Bonds]:
         """Bonds of the whole bar at each possible stage; the time step must be stable for all of them."""

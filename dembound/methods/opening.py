@@ -1,4 +1,4 @@
-"""The opening bonds of a bar: those of cracks with a fracture energy."""
+"""The opening bonds of a bar: bonds in cracks with a fracture energy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COLUMNS = ("row", "first", "began", "whole", "limit", "apart", "furthest", "rate
 """The columns of the list of opening bonds."""
 
 RISE = 0.5
-"""Share of the limit of a bond from which on its strain rate is measured, if the strength depends on it.
+"""Share of the limit of a bond above which its strain rate is measured, if the strength depends on it.
 
 A method that waits for a stretch is called at this share at the latest, as plain springs are not watched.
 """

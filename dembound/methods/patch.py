@@ -54,7 +54,7 @@ class Patch(Triggered):
     def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
         """Create a zone around every triggered spring; a zone grows by half its length, so that it seldom grows.
 
-        It ends where the range of the spring does.
+        A zone ends where the range of the spring ends.
         """
         zones = bonds.zones  # those before any grows: the zone of one spring does not depend on the others
         for k in bonds.triggered(u):

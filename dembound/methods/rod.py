@@ -116,7 +116,7 @@ class Range:
         return through[:-1] / (self.modulus * self.section)
 
     def stiffness_beyond(self, side: int, influence: np.ndarray | None = None) -> np.ndarray:
-        """Stiffness (b,) N/m by length of bonds that reach beyond its left (0) or right (1) end, as if it went on.
+        """Stiffness (b,) N/m by length of bonds that reach beyond the left (0) or right (1) end of a bar that goes on.
 
         They are springs where the longest has one spacing, else peridynamic bonds, see `bond_rows`.
         """
@@ -129,7 +129,7 @@ class Range:
     def carried_beyond(self, influence: np.ndarray | None = None) -> np.ndarray:
         """Share (cells,) of the stress under uniform strain that the bonds beyond both ends carry across its planes.
 
-        Of bonds of length p, p − 1 − k cross the k-th plane from the end: they begin at a node farther from the end.
+        Of bonds of length p, p − 1 − k cross the k-th plane from the end.
         """
         carried = np.zeros(self.cells)
         for side, planes in enumerate((carried, carried[::-1])):
@@ -149,8 +149,8 @@ def _influenced(horizon: int, influence: np.ndarray) -> float:
 class Rod:
     """The n nodes of a bar: its ranges from left to right.
 
-    Where a range begins with the last node of the one before, both are bonded; where it begins with the node after
-    that, both only touch.
+    A range that begins with the last node of the range before is bonded to it; one that begins with the next node only
+    touches it.
     """
 
     ranges: tuple[Range, ...]
@@ -170,7 +170,7 @@ class Rod:
         return cls((Range(0, count - 1, 0.0, spacing, section, modulus, density, critical_stretch, drag_rate),))
 
     def continued(self, left: int, right: int) -> Rod:
-        """The bar with bonds that reach beyond its ends, the longest of so many spacings; see `Range.beyond`."""
+        """The bar with bonds that reach up to a number of spacings beyond its ends; see `Range.beyond`."""
         first, *others = self.ranges
         ranges = [replace(first, beyond=(left, first.beyond[1])), *others]
         ranges[-1] = replace(ranges[-1], beyond=(ranges[-1].beyond[0], right))

@@ -13,7 +13,7 @@ from dembound.table import quantity
 class Switch(Triggered):
     """One method until a stretch reaches `trigger` of the critical one, peridynamics everywhere from then on.
 
-    Before it is finite differences or peridynamics with m = 1: L's FDM–PD3 and PD1–PD3.
+    The first method is finite differences or peridynamics with m = 1: L's FDM–PD3 and PD1–PD3.
     """
 
     type: Literal["switch"]
@@ -40,7 +40,7 @@ class Switch(Triggered):
         return bonds
 
     def stages(self, rod: Rod) -> list[Bonds]:
-        """Before and after the switch."""
+        """The bonds before and after the switch."""
         after = self.begin(rod)
         after.add_zone(0, rod.count)
         return [self.begin(rod), after]

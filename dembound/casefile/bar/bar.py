@@ -26,7 +26,7 @@ A spring then bears no more than a tenth of its elongation at the end, w_c, when
 """
 
 ROUNDING = 1e-9
-"""Tolerance of this comparison: the spacing may be exactly the largest."""
+"""Tolerance of the comparison with the largest spacing, which is allowed."""
 
 
 class Bar(Table):
@@ -36,8 +36,8 @@ class Bar(Table):
     diameter of a round bar, the stiffness by wave speed c = √(E/ρ) or Young's modulus E, the strength by the stress or
     the stretch at which a bond breaks, s₀ = σ_t/E. Without a strength nothing breaks.
 
-    A bar with ranges is a row of uniform bars. Its own keys are those of all ranges that do not give others, its length
-    is that of them and of their gaps together.
+    A bar with ranges is a row of uniform bars. The bar's own keys are defaults for its ranges; its length is that of
+    all ranges and gaps together.
     """
 
     length: float = quantity(
@@ -112,7 +112,7 @@ class Bar(Table):
         return self
 
     def _problems_with_stiffness(self) -> Iterator[str]:
-        """No stiffness, or one outside the range of numbers."""
+        """No stiffness, or one outside the range of floating-point numbers."""
         key = "youngs_modulus" if self.wave_speed is None else "wave_speed"
         if self.wave_speed is None and self.youngs_modulus is None:
             yield "wave_speed: is missing; give either wave_speed or youngs_modulus"
@@ -120,7 +120,7 @@ class Bar(Table):
             yield f"{key}: is {getattr(self, key):g}, with density {self.density:g} beyond any material"
 
     def _problems_with_spacing(self) -> Iterator[str]:
-        """Spacings that do not fit into the length, or too many of them."""
+        """A spacing that does not divide the length, or too many cells."""
         if self.length is None:
             return  # which bar_problems reports, also beside other mistakes
         cells = self.length / self.spacing
@@ -132,7 +132,7 @@ class Bar(Table):
             )
 
     def _problems_with_rates(self) -> Iterator[str]:
-        """Incomplete laws of rates."""
+        """Incomplete laws of strength over strain rate."""
         keys = ("strength_per_decade", "strength_rates")
         given = [key for key in keys if getattr(self, key) is not None]
         if given and self.fracture_energy is None:
@@ -156,7 +156,7 @@ class Bar(Table):
             )
 
     def _problems_with_ranges(self) -> Iterator[str]:
-        """Mistakes of single ranges, and those between them and the bar's own keys."""
+        """Mistakes of single ranges, and between ranges and the bar's own keys."""
         first: dict[str, int] = {}
         for number, given in enumerate(self.range, start=1):
             place = f"range[{number}, {given.name}]"
@@ -176,7 +176,7 @@ class Bar(Table):
             yield f"range: makes {cells:,.0f} spacings, must be {MOST_CELLS:,} or less"
 
     def _keys_of(self, given: BarRange) -> dict[str, Any]:
-        """The keys of the uniform bar that a range is."""
+        """The keys of a range as those of a uniform bar."""
         own = {key: value for key, value in given.given().items() if key not in OF_RANGES}
         other = {twin for pair in PAIRS for twin in pair if not own.keys().isdisjoint(pair)}
         shared = {key: value for key, value in self.given().items() if key not in {"range", "length", *other}}
@@ -202,7 +202,7 @@ class Bar(Table):
 
     @property
     def contacts(self) -> tuple[bool, ...]:
-        """Whether each part only touches the one on its left; the first has none."""
+        """Whether each part is in contact with the part on its left instead of bonded to it; false for the first."""
         return tuple(each.interface == "contact" for each in self.range) or (False,)
 
     @property
@@ -263,7 +263,7 @@ class Bar(Table):
 
     @property
     def opens(self) -> bool:
-        """Whether cracks take energy in some part of it."""
+        """Whether some part has a fracture energy."""
         return any(part.fracture_energy is not None for part in self.parts)
 
     @property

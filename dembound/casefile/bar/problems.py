@@ -20,7 +20,7 @@ from dembound.casefile.messages import numbered
 from dembound.methods import Method
 
 FEWEST_CELLS = 3
-"""Smallest number of spacings of a bar with soft ends: of two, none is between them."""
+"""Smallest number of spacings of a bar with soft ends: with two, no spacing lies between the ends."""
 
 
 def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[str]:
@@ -66,7 +66,7 @@ def _courant_too_large(bar: Bar, run: BarRun) -> Iterator[str]:
 
 
 def _across_the_bar(ends: Mapping[str, Any]) -> Iterator[str]:
-    """Keys that only sides of disks have: motion across, and half masses."""
+    """Keys for sides of disks only: motion across, and half masses."""
     for side, end in ((side, end) for side, end in ends.items() if end):
         if "s" in end.waves:
             yield f"boundary.{side}.wave_s: moves across the bar, which moves only along its axis; use wave_p"

@@ -8,7 +8,7 @@ from dembound.table import FileName, Table, quantity
 
 
 class BarRange(Table):
-    """A part of a bar with its own length, spacing and material; what is left out is that of `[bar]`.
+    """A part of a bar with its own length, spacing and material; keys that are left out have the value in `[bar]`.
 
     At an interface the range is bonded to the one on its left, or both only touch: a contact pushes, and opens where it
     would have to pull.

@@ -1,4 +1,4 @@
-"""Ground that stands lower beyond a side than the top of the disks, where holes leave a level floor at that side."""
+"""Ground whose surface beyond a side is lower than the top of the disks: holes leave a level floor at that side."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -24,19 +24,19 @@ def floors(holes: Sequence[Hole], packing: Packing, ground: Ground, boundary: Ma
 
 
 def lowered(found: Mapping[str, Floor], boundary: Mapping[str, Any]) -> dict[str, Floor]:
-    """Floors at sides beyond which a continuum is as high; an invalid side is None."""
+    """Floors at sides beyond which a continuum has the same height; an invalid side is None."""
     return {side: floor for side, floor in found.items() if (table := boundary.get(side)) and table.is_outside}
 
 
 def lowered_in(tables: Mapping[str, Any]) -> dict[str, Floor]:
-    """Lowered floors from the tables of a case; a table that is invalid on its own, or such an entry, is None."""
+    """Lowered floors from the tables of a case; tables and entries that are invalid on their own are None."""
     packing, ground, boundary = (tables[key] for key in ("packing", "ground", "boundary"))
     holes = [hole for hole in tables["hole"] if hole]
     return lowered(floors(holes, packing, ground, boundary), boundary) if packing and ground else {}
 
 
 def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
-    """What cannot be where the ground beyond a side is lower, as it would have to be a half-space for it."""
+    """Tables that need a half-space as the ground, where the ground beyond a side is lower."""
     lower = lowered_in(tables)
     if not lower:
         return

@@ -11,7 +11,7 @@ from dembound.packings.base import TYPED, Extent
 from dembound.table import Box, Table, quantity
 
 ROUNDING = 1e-12
-"""Part of coordinates by which a place on a rim may be beyond it: sums of coordinates and lengths are rounded."""
+"""Part of coordinates by which a place on a rim may be beyond it because of rounding."""
 
 
 class Ground(Table):
@@ -26,7 +26,7 @@ class Ground(Table):
     origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place", help="lower left corner of the ground")
 
     def box(self, packing: Packing) -> Box:
-        """Left, bottom, right and top (m) of the ground; without a size those of the disks, which fill it."""
+        """Left, bottom, right and top (m) of the ground; without a size, of the disks, which then fill it."""
         if self.size is None:
             return packing.box
         (left, bottom), (width, height) = self.origin, self.size
@@ -34,7 +34,7 @@ class Ground(Table):
 
 
 def ground_problems(ground: Ground, packing: Packing, boundaries: Mapping[str, Boundary | None]) -> Iterator[str]:
-    """Check a box of disks against the ground that it is a part of; an invalid side is None."""
+    """Check the box of disks against the ground; an invalid side is None."""
     if ground.size is None:
         if ground.origin != (0.0, 0.0):
             yield "ground.origin: [ground] has no size, so that the disks fill it; give ground.size, or packing.origin"
@@ -64,7 +64,7 @@ def ground_problems(ground: Ground, packing: Packing, boundaries: Mapping[str, B
 
 
 def reach(ground: Ground, packing: Packing, boundary: Mapping[str, Boundary | None]) -> Box:
-    """The ground, and all that lies beyond the disks' sides with a continuum; an invalid side has no limit.
+    """The box (m) of the ground, without a limit beyond sides with a continuum and beyond invalid sides.
 
     Above disks that lie deep in the ground the continuum ends at its surface.
     """

@@ -12,7 +12,10 @@ from dembound.table import Box
 
 
 def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
-    """Check the holes; a table or an entry that is invalid on its own is None. has_static: whether there is a stage."""
+    """Check the holes; a table or an entry that is invalid on its own is None.
+
+    Has_static: whether there is a static stage.
+    """
     for place, hole in numbered("hole", tables["hole"]):
         if tables["packing"]:
             yield from _outside(place, hole, tables["packing"].box)
@@ -34,14 +37,14 @@ def _outside(place: str, hole: Hole, box: Box) -> Iterator[str]:
 
 
 def _places_in_it(place: str, hole: Hole, key: str, tables: Any) -> Iterator[str]:
-    """Loads or monitors in the hole, whose particles are removed."""
+    """Loads or monitors in the hole, where there are no particles."""
     for where, table in numbered(key, tables):
         if table.position is not None and hole.contains(np.array([table.position]))[0]:
             yield f"{where}.position: lies in {place}; must be where particles remain"
 
 
 def _no_wall(place: str, load: Load, tables: Mapping[str, Any]) -> Iterator[str]:
-    """A pressure on a hole that the case does not have, or whose wall is not all of its outline.
+    """A pressure on a hole that the case does not have, or whose wall is not its whole outline.
 
     A hole that is invalid on its own has no name here.
     """

@@ -8,10 +8,10 @@ from dembound.table import Table, quantity
 
 
 class IncidentWave(Table):
-    """A plane wave that enters the disks at an angle, with what the free surface returns; for sides of type "outside".
+    """A plane wave that enters the disks at an angle, with its reflections at the free surface.
 
-    It has the velocity of its wave at a point, there without what the free surface sends back: along the direction in
-    which it runs (P), or to the right of it as one looks along (SV), which is +x where it runs straight up.
+    For sides of type "outside". At a point the incident wave, without reflections, has the velocity of its wave: along
+    its direction (P), or to the right of its direction (SV), which is +x where it runs straight up.
     """
 
     type: Literal["sv", "p"] = quantity(..., unit="1", help="kind of wave: SV or P")

@@ -15,8 +15,8 @@ ACTIONS = ("force", "acceleration", "pressure")
 class Load(Table):
     """A load on particles: one of `force`, `acceleration` and `pressure`.
 
-    A force acts on one particle or on those of a rectangle, an acceleration on these or, with neither place, on all, as
-    gravity, and a pressure in a hole.
+    A force acts on one particle or on those of a rectangle. An acceleration acts on the same or, without a place, on
+    all particles, like gravity. A pressure acts in a hole.
 
     A force is split among the particles of its region in proportion to their area; on the free surface of a continuum
     it is a uniform traction. A pressure pushes the wall of a hole away from it. A wave's values, taken as pure numbers,
@@ -63,7 +63,7 @@ class Load(Table):
 
     @property
     def axes(self) -> tuple[int, ...]:
-        """Axes along which it acts: 0 for x, 1 for y."""
+        """Axes along which the load acts: 0 for x, 1 for y."""
         if self.pressure is not None:
             return (0, 1)
         return tuple(axis for axis, value in enumerate(self.vector) if value != 0.0)

@@ -11,21 +11,21 @@ WAVE_SPEED_KEYS = ("match", "contact_share")
 MODULI_KEYS = ("emod", "pb_emod")
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
 HISTORY_KEYS = ("locked_in", "geometry", "elastic_start")
-"""Keys of history-dependent laws."""
+"""Keys for history-dependent laws only."""
 
 
 def with_history() -> str:
-    """The laws with a history, for messages."""
+    """The history-dependent laws, for messages."""
     return " or ".join(f'"{name}"' for name, law in LAWS.items() if law.has_history)
 
 
 class Material(Table):
     """Density, and contacts and bonds by PFC's names; stiffness follows from `p_wave_speed`, or `emod` and `pb_emod`.
 
-    A wave speed is made stiffness by Z eqs 9-11. The law "elastic" has no history: contacts neither open nor slip, and
-    bonds do not break. "linearpbond" is PFC's: linear contacts without tension and with Coulomb friction, and parallel
-    bonds that break for good. Only laws with a history have `locked_in` (which needs a static stage), `geometry` and
-    `elastic_start`; `pb_ten`, `pb_coh` and `pb_fa` are for them and for `output.load_factor`.
+    A wave speed is made stiffness by Z eqs 9-11. With the law "elastic" contacts neither open nor slip, and bonds do
+    not break. "linearpbond" is PFC's: linear contacts without tension and with Coulomb friction, and parallel bonds
+    that break for good. Only history-dependent laws have `locked_in` (which needs a static stage), `geometry` and
+    `elastic_start`; `pb_ten`, `pb_coh` and `pb_fa` are for these laws and for `output.load_factor`.
     """
 
     density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
@@ -140,7 +140,7 @@ class Material(Table):
         return problems
 
     def _problems_without_history(self) -> list[str]:
-        """Keys that have no effect under a law without history."""
+        """Keys that have no effect unless the law depends on history."""
         return [
             f"{key}: is only allowed with law = {with_history()}"
             for key in HISTORY_KEYS

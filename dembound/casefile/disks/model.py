@@ -46,12 +46,12 @@ class DiskCase(Case):
 
     @property
     def size(self) -> tuple[float, float]:
-        """Width and height (m) of the ground, or of the disks that fill all of it."""
+        """Width and height (m) of the ground, or of the disks if they fill all of it."""
         return self.packing.extent if self.ground.size is None else self.ground.size
 
     @property
     def box(self) -> Box:
-        """Left, bottom, right and top (m) of the ground, or of the disks that fill all of it."""
+        """Left, bottom, right and top (m) of the ground, or of the disks if they fill all of it."""
         return self.ground.box(self.packing)
 
     @property
@@ -101,9 +101,9 @@ class DiskCase(Case):
     def column_sides(self) -> tuple[str, ...]:
         """The sides at which a free-field column represents the ground beyond.
 
-        Beyond sides with a continuum there is one if the ground moves or rests under forces of its own there: under
-        waves from below, a static stage, or a load on all of it. The continuum then has the difference from it only.
-        Where the ground is lower beyond one of them no column represents it.
+        Beyond sides with a continuum there is a column if the ground has waves from below, a static stage, or a load on
+        all of it. The continuum then computes only the difference from the column. Where the ground is lower beyond one
+        of the sides there is no column.
         """
         if self.free_field_sides:
             return self.free_field_sides

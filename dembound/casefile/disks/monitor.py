@@ -7,7 +7,7 @@ from pydantic import AfterValidator
 from dembound.table import FileName, Table, quantity
 
 FREE_FIELD = ".free_field"
-"""Ending of the history's name of a monitor's twin in the free-field column, after the monitor's name."""
+"""Suffix of a monitor's name for the history of its twin in the free-field column."""
 
 
 def _is_no_twin(name: str) -> str:

@@ -3,16 +3,18 @@
 from dembound.table import Table, quantity
 
 MOST_ELEMENTS = 1000
-"""Largest number of elements of a margin or of layers: six that absorb are enough, and 100 beside a load that stays."""
+"""Largest number of elements of a margin or of layers: six absorbing ones are enough, and a margin of 100 beside a
+lasting load.
+"""
 
 CONTINUUM = ".continuum"
-"""Ending of the names of sides of the continuum."""
+"""Suffix of the names of sides of the continuum."""
 
 
 class OutsideTable(Table):
     """The continuum beyond sides of type "outside", of spectral elements; keys left out follow from `accuracy`.
 
-    They are chosen from the waves and loads of the case. The outer elements absorb.
+    Keys are then chosen from the waves and loads of the case. The outer elements absorb.
     """
 
     order: int = quantity(

@@ -82,7 +82,7 @@ def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[s
 
 
 def _nothing_to_pack_with(material: Material, packing: Packing) -> Iterator[str]:
-    """Contacts without stiffness in a packing that is held by contacts under stress."""
+    """Contacts without stiffness in a packing that contacts under stress hold together."""
     key = "contact_share" if material.emod is None else "emod"
     if packing.packed_under_stress and getattr(material, key) == 0.0:
         yield f"material.{key}: is 0, but contacts hold pattern {packing.pattern} under stress; must be greater than 0"
@@ -97,7 +97,10 @@ def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
 def _no_load_factor(
     output: Output, material: Material, loads: Sequence[Load | None], has_static: bool
 ) -> Iterator[str]:
-    """A load factor that cannot be found, and strengths that nothing reads; has_static : whether there is a stage."""
+    """A load factor that cannot be computed, and strengths without effect.
+
+    Has_static : whether there is a static stage.
+    """
     elastic = not LAWS[material.law].has_history
     if elastic and not output.load_factor:
         for key in (*STRENGTH_KEYS, "pb_fa"):

@@ -6,7 +6,7 @@ from dembound.casefile.types import StaticSide
 from dembound.table import Table, quantity
 
 MOST_STEPS = 100_000_000
-"""Largest number of steps of the stage: a hundred disks alone would take minutes for them, and thousands are enough."""
+"""Largest number of steps of the stage: a hundred disks take minutes for these, and thousands of steps are enough."""
 
 
 class Static(Table):

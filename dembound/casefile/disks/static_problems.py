@@ -43,7 +43,7 @@ def static_problems(
 
 
 def _stress_beside(boundaries: Sides) -> Iterator[str]:
-    """Sides to which no stress can be applied, with those to which it can."""
+    """Sides to which no stress can be applied; the message names those to which it can."""
     sides = [(side, table) for side, table in boundaries.items() if table]
     beside = [
         f'boundary.{side} ("{getattr(table, "type", "")}")'
@@ -68,7 +68,7 @@ def _unreachable_stress(static: Static, stress: tuple[float, float, float]) -> I
 
 
 def _nothing_to_settle(static: Static, loads: Sequence[Load | None], material: Material) -> Iterator[str]:
-    """A stage without anything that could move the body."""
+    """A stage without loads or stresses."""
     steady = any(load and load.wave is None for load in loads)
     if not (static.stress or steady or material.locked_in):
         yield "static: has nothing to settle; give it a stress, give the case a steady load, or the material locked_in"

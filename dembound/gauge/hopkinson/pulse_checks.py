@@ -19,14 +19,14 @@ from dembound.meanings import fading
 from dembound.words import percent
 
 BALANCED = 0.015
-"""Difference of the impulses of both faces over their mean, beyond what inertia makes, from which a warning is due."""
+"""Difference of the impulses of both faces over their mean, beyond inertia, above which a warning is given."""
 
 LOWEST, LEVELS = 0.02, 3
 """Share of its largest value at which the onset of a pulse is first sought, and number of such levels, each twice the
 one before."""
 
 NOISES = 8.0
-"""Least of these levels in standard deviations of noise."""
+"""Lowest level in standard deviations of noise."""
 
 DIFFERING = 0.01
 """Relative difference of wave speeds that causes a warning, if it also exceeds the error of the measured one."""
@@ -39,15 +39,15 @@ CAUSES = (
 """Possible causes of inconsistent impulses or times in measured signals."""
 
 OF_A_RUN = "check the options for bars, gauges and windows: the signals are those of a run"
-"""Possible causes of inconsistent impulses or times where the signals are those of a run."""
+"""Possible causes of inconsistent impulses or times in the signals of a run."""
 
 
 def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate | None:
     """Wave speed by the onsets of the incident and the reflected pulse at their gauge, 2d_i/c apart.
 
-    As both have other shapes, the time between them is taken at some low levels and extrapolated to level zero in the
-    root of the level, as for a pulse that begins with a bend. The error is the difference from the time at the lowest
-    level, and half a sample. None where the pulses overlap, or noise hides the onsets.
+    As both pulses have different shapes, the time between them is taken at some low levels and extrapolated over the
+    root of the level to level zero, for a smooth onset. The error is the difference from the time at the lowest level,
+    and half a sample. None where the pulses overlap, or noise hides the onsets.
     """
     (first, last), (_, end), _ = found_windows(signals, setup, windows)
     time, values = signals.time, denoised(signals.incident)
@@ -72,7 +72,7 @@ def travel_speed(signals: Signals, setup: Setup, windows: Windows) -> Estimate |
 
 
 def doubts_of_bars(setup: Setup, density: float) -> Iterator[str]:
-    """Doubts about bars of this density, kg/m³: a modulus other than ρc², an attenuation that leaves no wave."""
+    """Doubts about bars with a density (kg/m³): a modulus other than ρc², an attenuation that leaves no wave."""
     yield from differing_modulus(setup.modulus, density, setup.bar.speed)
     way = setup.incident_gauge + setup.transmitted_gauge
     yield from fading("--attenuation", setup.bar.attenuation * way, way)
@@ -100,7 +100,7 @@ def doubts_of_pulses(
 
 
 def _onsets(time: np.ndarray, sizes: np.ndarray, levels: np.ndarray) -> np.ndarray | None:
-    """Times (n,) at which a pulse (k,) begins to exceed shares (n,) of its largest value for good; None if it does not.
+    """Times (n,) from which on a rising pulse (k,) exceeds shares (n,) of its largest value; None if it does not.
 
     The rise ends where half of the largest value is first reached: a reflected pulse may have its largest value as the
     load ends.

@@ -19,10 +19,10 @@ from dembound.gauge.plausibility import implausible_modulus, implausible_size
 from dembound.words import percent
 
 ONSET = 0.02
-"""Share of its largest value at which the incident pulse begins; with noise five standard deviations of it."""
+"""Share of its largest value at which the incident pulse begins; at least five standard deviations of noise."""
 
 MARGIN = 0.1
-"""Time before that which still belongs to the pulse, over its width at half its height."""
+"""Time before this onset that still belongs to the pulse, over the pulse's width at half its height."""
 
 FADE = 0.08
 """Time in which a pulse is faded out behind its window, over the window's length."""
@@ -31,7 +31,7 @@ ENDED = 0.05
 """Share of its largest value below which the incident pulse has ended when the reflected one begins."""
 
 ROUNDING = 1e-6
-"""Tolerance with which a specimen is as wide as the bars."""
+"""Tolerance of the width of a specimen compared with the bars."""
 
 Window = tuple[float, float]
 """First and last time of a pulse at its gauge, s."""
@@ -49,7 +49,7 @@ class Setup:
     bar : both bars; modulus : E, Pa; area : of the bars, m²; incident_gauge, transmitted_gauge : distances
     d_i and d_t of the gauges from the specimen, m; specimen_length : m; specimen_area : m²; second_gauge : distance of
     another gauge on the incident bar from the specimen, m, smaller than the first; bar_length : of each bar, m, if the
-    pulses are to be cut before the bars' ends send them back.
+    pulses are to be cut before reflections from the bars' ends.
     """
 
     bar: LongBar
@@ -84,10 +84,10 @@ class Setup:
 
         speed : of long waves, m/s; density : kg/m³; diameter : m; attenuation : α, 1/m; poisson : ν; modulus : E, Pa,
         by default ρc²; disperse : whether waves disperse as in a round bar, see `LongBar`, which needs ν; others :
-        as the attributes.
+        other attributes.
 
-        Raises CaseError for data that are no lengths, areas or speeds, or of unlikely size, for a modulus that is not
-        that of ρ and c, and for waves that disperse with ν not within 0 to 0.5.
+        Raises CaseError for lengths, areas or speeds that are not positive or have unlikely sizes, for a modulus that
+        is not that of ρ and c, and for waves that disperse with ν not within 0 to 0.5.
         """
         sizes = [
             *implausible_size("--wave-speed", speed, "wave speed", "m/s"),
@@ -107,7 +107,7 @@ class Setup:
             raise CaseError(problems)
 
     def _problems(self) -> Iterator[str]:
-        """Data that are no lengths, areas or speeds."""
+        """Lengths, areas or speeds that are not positive."""
         values = {
             "--wave-speed": self.bar.speed,
             "--density": self.modulus,
@@ -154,7 +154,7 @@ class Setup:
 class Signals(NamedTuple):
     """Strains at the gauges at the same even times (k,) s, loads positive; second : of the second gauge, or None.
 
-    digits : as of `Faces`.
+    digits : steps of the digitisers, see `Faces`.
     """
 
     time: np.ndarray
@@ -178,7 +178,7 @@ class Faces(NamedTuple):
 
 
 class Windows(NamedTuple):
-    """Windows of the pulses at their gauges, s; None: found."""
+    """Windows of the pulses at their gauges, s; None: computed."""
 
     incident: Window | None = None
     reflected: Window | None = None
@@ -244,7 +244,7 @@ def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Windo
 
 
 def _not_ended(end: float, left: float) -> str:
-    """Why the incident signal still has this share of its crest at its end, s: a fault if it has the other sign."""
+    """Message about an incident signal with a share of its crest left at its end (s): a fault if of opposite sign."""
     there = f"at {end:.6g} s, when its reflection is back or the window ends"
     faults = "AC coupling, a baseline that jumps or drifts, lost samples, or a wrong --wave-speed"
     if left < 0.0:
@@ -259,7 +259,7 @@ def _not_ended(end: float, left: float) -> str:
 
 
 def _outside(time: np.ndarray, starts: Sequence[float]) -> str:
-    """Problems of pulses that begin (times (3,) s) before or behind a record, or of which nothing is left."""
+    """Problems of pulses that begin (times (3,) s) before or after a record, or are empty."""
     whole = f"the record is from {time[0]:.6g} to {time[-1]:.6g} s"
     names = ("incident", "reflected", "transmitted")
     late = [f"{name} at {at:.6g} s" for name, at in zip(names, starts, strict=True) if at >= time[-1]]
@@ -283,7 +283,7 @@ def _onset(time: np.ndarray, values: np.ndarray) -> float:
 
 
 def _cut(time: np.ndarray, values: np.ndarray, window: Window) -> np.ndarray:
-    """A signal (k,) within its window, 0 before, and behind it faded, as a step would spread by dispersion."""
+    """A signal (k,) within its window, 0 before it, and faded out after it, as dispersion would spread a step."""
     first, last = window
     behind = np.clip((time - last) / (FADE * (last - first)), 0.0, 1.0)
     return np.where(time >= first, values * np.cos(0.5 * np.pi * behind) ** 2, 0.0)

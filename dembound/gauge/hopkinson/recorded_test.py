@@ -1,4 +1,4 @@
-"""A split Hopkinson test in the record of a run: its bars, gauges and specimen compared with those in options."""
+"""A split Hopkinson test in the record of a run: its bars, gauges and specimen compared with the options."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -39,7 +39,7 @@ OF_BARS = {
 
 
 def contradictions(sources: Sequence[tuple[Path, str | None]], given: Mapping[str, float | None]) -> Iterator[str]:
-    """A line for each option, by name, whose value differs from that of the results that it is used for.
+    """A line for each option, by name, whose value differs from that in the results.
 
     sources : files with the monitors of the incident bar, of the transmission bar, and of a second gauge if there is
     one. Text files are left out; positions and specimen are known where all monitors are of one record.

@@ -16,7 +16,7 @@ from dembound.results.reader import history_of, open_record
 from dembound.words import percent
 
 RISEN = 0.2
-"""Share of the largest value at which the sign of the incident pulse, the first wave at its gauge, is seen."""
+"""Share of the largest value at which the sign of the incident pulse, the first wave at its gauge, is taken."""
 
 
 def read_strain(
@@ -27,7 +27,7 @@ def read_strain(
     Parameters
     ----------
     path : the file. reading : how it is read; its column is the monitor of a record. treatment : what is removed.
-    modulus : E of the bar, Pa, to make strains of stresses. may_be_clipped : accept a signal with a plateau.
+    modulus : E of the bar, Pa, to convert stresses to strains. may_be_clipped : accept a signal with a plateau.
 
     Raises CaseError for a file that cannot be read, signals that are neither strains nor stresses, and clipped ones.
     """

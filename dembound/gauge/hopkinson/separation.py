@@ -1,9 +1,9 @@
 """Waves in a bar between its gauges: moved from place to place, and separated by their direction.
 
 A wave to the right is e(x, t) = ∫ ê(ω) exp i(ωt − k x) dω with the complex wave number k = ω/c − iα, or with that of
-the first mode of a round bar in place of ω/c (`exact.pochhammer`). Spectra are taken of the signal times exp(−ηt),
-which makes frequencies ω − iη: so nothing that has left the end of a record comes in again at its beginning, and where
-two gauges are half a wavelength apart nothing is divided by zero.
+the first mode of a round bar in place of ω/c (`exact.pochhammer`). Spectra are taken of the signal times exp(−ηt), that
+is, at frequencies ω − iη: so the end of a record does not wrap around to its beginning, and where two gauges are half a
+wavelength apart nothing is divided by zero.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ import numpy as np
 from dembound.exact.pochhammer import wavenumber
 
 FADED = 1e-4
-"""exp(−ηT): what is left of the end of the record, T long, when its spectrum begins again."""
+"""exp(−ηT), the factor of the end of a record of length T."""
 
 PADDING = 2
 """Length of the spectrum's record over that of the signal."""
@@ -42,7 +42,7 @@ class LongBar:
 
 
 def moved(time: np.ndarray, values: np.ndarray, distance: float, bar: LongBar) -> np.ndarray:
-    """A wave (k,) after travelling a distance, at the same times; before, for a negative distance.
+    """A wave (k,) after travelling a distance, or before, for a negative distance, at the same times.
 
     time : (k,) s, evenly spaced. distance : m, in the wave's direction. Before the record the wave is zero.
     """

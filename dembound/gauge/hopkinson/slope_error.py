@@ -1,15 +1,14 @@
 """Error of the slope of stress over strain of a specimen.
 
-- Inertia. The mean of the forces on both faces is not that in the middle: with the velocity linear along the specimen,
-  its stress differs from the mean over its length by ρL_s² (d²e/dt²)/12 (Gorham 1989), which a fast rise adds to the
-  slope. ρ follows from the impulses themselves, ∫(F_1 − F_2) dt = ρ L_s A_s (v_1 + v_2)/2.
-- Time. Each pulse is known to half a sample either way, uniformly: the standard error of the reflected and of the
-  transmitted one against the incident one is that of the slopes with them half a sample earlier and later, over √3.
-- Line. The standard error by the deviations from the line, of which as many count as there are correlation times
-  within it: of the specimen's reverberations, and of a law that bends.
-- Noise. The scatter of slopes from the same pulses with noise added again, drawn some tens of times; as the
-  strain is an integral, noise makes it drift. A digitiser rounds again, too, between random levels.
-- Balance. The impulses of both faces differ by more than inertia explains: the strain this adds at the largest stress.
+- Inertia. The mean of the stresses at both faces is not that of the specimen: with the velocity linear along it, they
+differ by ρL_s² (d²e/dt²)/12 (Gorham 1989), which a fast rise adds to the slope. ρ follows from the impulses themselves,
+∫(F_1 − F_2) dt = ρ L_s A_s (v_1 + v_2)/2. - Time. The time of each pulse is uncertain by half a sample either way,
+uniformly. The standard error is the change of the slope with the reflected or transmitted pulse half a sample earlier
+or later, over √3. - Line. The standard error by the deviations from the line, with one independent value per
+correlation time: due to reverberations in the specimen, and a curved law. - Noise. The scatter of slopes from the same
+pulses with noise added again, drawn some tens of times; as the strain is an integral, noise makes it drift. Pulses are
+also rounded again as by a digitiser, at random levels. - Balance. The strain at the largest stress by impulses of both
+faces that differ by more than inertia explains.
 """
 
 import math
@@ -32,10 +31,10 @@ NO_NOISE = 1e-9
 """Noise over the largest strain below which it is rounding."""
 
 UNKNOWN = 0.2
-"""Uncertainty of a slope over itself from which a warning is due."""
+"""Uncertainty of a slope over the slope above which a warning is given."""
 
 WIDE = 2.0
-"""Standard errors of which 95 % of errors are within."""
+"""Number of standard errors that contain 95 % of errors."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class SlopeError:
 
 
 def slope_error(faces: Faces, setup: Setup, tolerance: float, found: Specimen) -> SlopeError | None:
-    """The uncertainty of `found.slope`; None where there is no slope. Other arguments as of `specimen`."""
+    """The uncertainty of `found.slope`; None where there is no slope. See `specimen` for other arguments."""
     if found.equilibrium is None or np.isnan(found.slope):
         return None
     there = slice(found.equilibrium[0], found.largest + 1)
@@ -69,9 +68,9 @@ def slope_error(faces: Faces, setup: Setup, tolerance: float, found: Specimen) -
 
 
 def unbalanced(faces: Faces, setup: Setup, found: Specimen, end: int) -> float:
-    """Difference of the impulses of both faces in so many samples over their mean, less what inertia may make.
+    """Difference of the impulses of both faces in a number of samples over their mean, less that by inertia.
 
-    A specimen of no more than the density of the bars makes 0 to ρ_b L_s A_s v of it, v its mean velocity.
+    The inertia of a specimen not denser than the bars causes 0 to ρ_b L_s A_s v, with v its mean velocity.
     """
     until = slice(0, end)
     step = float(faces.time[1] - faces.time[0])
@@ -83,7 +82,7 @@ def unbalanced(faces: Faces, setup: Setup, found: Specimen, end: int) -> float:
 
 
 def doubts_of_slope(found: Specimen, error: SlopeError | None) -> Iterator[str]:
-    """Why a slope is missing or means little, where the specimen is in equilibrium."""
+    """Messages about a slope that is missing or inaccurate, where the specimen is in equilibrium."""
     if found.equilibrium is None:
         return
     first, last = found.equilibrium[0], found.largest
@@ -125,7 +124,7 @@ def _of_time(faces: Faces, setup: Setup, tolerance: float, there: slice) -> floa
 
 
 def _of_balance(faces: Faces, setup: Setup, found: Specimen) -> float:
-    """Standard error of the slope, Pa, by impulses of the faces that differ: what they change in the strain."""
+    """Standard error of the slope, Pa, by different impulses of the faces, which change the strain."""
     until = slice(0, found.largest + 1)
     impulse = 0.5 * float(np.sum(found.front[until] + found.back[until])) * float(faces.time[1] - faces.time[0])
     compliance = setup.bar.speed / setup.specimen_length * setup.specimen_area / (setup.modulus * setup.area)

@@ -7,7 +7,8 @@ the specimen the faces move and are loaded by
     v_1 = c(e_i − e_r),  v_2 = c e_t,      F_1 = EA(e_i + e_r),  F_2 = EA e_t .
 
 One wave gives the stress F_2/A_s and the rate −2c e_r/L_s, two the stress F_1/A_s, three (F_1 + F_2)/2A_s and
-(v_1 − v_2)/L_s. They agree where the specimen is in equilibrium, F_1 = F_2, and only there they are its law.
+(v_1 − v_2)/L_s. They agree where the specimen is in equilibrium, F_1 = F_2; only there they are the law of its
+material.
 """
 
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ EQUILIBRIUM = 0.05
 """Largest |F_1 − F_2| over their mean in equilibrium."""
 
 LOADED = 0.1
-"""Least force over the largest one at which equilibrium is judged."""
+"""Least force, over the largest one, at which equilibrium is checked."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def _ratio(front: np.ndarray, back: np.ndarray) -> np.ndarray:
 
 
 def _longest(there: np.ndarray) -> tuple[int, int] | None:
-    """First sample and the one behind the last of the longest run (n,); None without any."""
+    """First sample, and the one after the last, of the longest run of true values (n,); None without any."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], there.astype(int), [0]])))
     if not len(edges):
         return None

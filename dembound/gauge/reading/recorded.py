@@ -53,8 +53,8 @@ def require_for_results(
 ) -> None:
     """Raise CaseError for options that have no meaning for the record of a run: its stresses are in Pa, its times in s.
 
-    reading : how a text file would be read, without its column, which may be a monitor's name. column : of a text
-    file. modulus : E, where it is not needed.
+    reading : how a text file would be read, without its column, which may be a monitor's name. column : of a text file.
+    modulus : E, if it has no effect.
     """
     given = {
         "--column": column,

@@ -1,4 +1,4 @@
-"""Columns of numbers in text files as oscilloscopes and spreadsheets write them, whatever their separators and headers.
+"""Columns of numbers in text files of oscilloscopes and spreadsheets, with any separators and headers.
 
 A file may begin with lines about the instrument, a line of names and a line of units. These stand above the columns or,
 as Tektronix writes them, in columns to the left of the numbers.
@@ -14,7 +14,7 @@ from dembound.errors import CaseError
 from dembound.gauge.reading.units import time_unit, value_unit
 
 SIGNS = str.maketrans({"−": "-", "∞": "inf"})
-"""Characters of numbers that float() does not read."""
+"""Characters in numbers that float() does not read."""
 
 UNIT_IN_NAME = re.compile(r"^(.*?)\s*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
 """A name with its unit in brackets, or only a unit in brackets."""
@@ -25,7 +25,7 @@ WORDS_WITH_UNIT = re.compile(rf"[^()\[\]]*[^\s()\[\]] ?{UNIT}")
 """Names between blanks: of one word, with a unit in brackets or without, and of several words, all with units."""
 
 BROKEN_OFF = 3
-"""Lines of numbers above other text from which on this text is a break in the numbers, and no header."""
+"""Number of lines of numbers above other text from which on the text is an interruption and not a header."""
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def _fields(text: str, separator: str) -> Iterator[list[str]]:
 
 
 def _numbers(path: Path, rows: Sequence[tuple[int, list[str]]], separator: str) -> Columns:
-    """The lines of numbers among all lines with text, each with its number: those that are like the last one."""
+    """The lines of numbers, with their line numbers: lines that are like the last one."""
     last = next((index for index in reversed(range(len(rows))) if _places(rows[index][1])), None)
     if last is None:
         raise CaseError([f'"{path}" contains no lines of two or more numbers'])
@@ -183,7 +183,7 @@ def _numbers(path: Path, rows: Sequence[tuple[int, list[str]]], separator: str) 
 
 
 def _joined(fields: list[str], count: int) -> list[str]:
-    """Words between blanks as so many names of columns, where units in brackets end them; else as they are."""
+    """Words between blanks joined to a number of column names that end with units in brackets; else unchanged."""
     line = " ".join(fields)
     for names in (WORD_WITH_UNIT, WORDS_WITH_UNIT):
         if len(found := names.findall(line)) == count:
@@ -204,7 +204,7 @@ def _is_like(fields: Sequence[str], places: Sequence[int], decimal: str) -> bool
 
 
 def _number(text: str, decimal: str) -> float | None:
-    """The number in a text with a decimal point, or with a decimal comma if `decimal` says so; None if it is none."""
+    """The number in a text with a decimal sign; None if it is not a number."""
     try:
         return float(text.translate(SIGNS).replace(",", ".") if decimal == "," else text.translate(SIGNS))
     except ValueError:

@@ -20,13 +20,13 @@ from dembound.gauge.reading.units import (
 )
 
 EVEN = 1e-6
-"""Deviation of times from even ones, in steps, that changes nothing."""
+"""Largest deviation of times from even ones, in steps, for times that are used as given."""
 
 ROUNDED = 0.75
-"""Deviation of rounded times from even ones, in steps: written with few digits, two may even be equal."""
+"""Largest deviation of rounded times from even ones, in steps: with few digits two times may even be equal."""
 
 LARGEST_GAP = 3.0
-"""Largest step over the median one of times that are resampled."""
+"""Largest step over the median step of times that are resampled."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Reading:
 class Signal:
     """A signal at even times.
 
-    time : (k,) s; values : (k,) in `unit` (Pa, V, strain, m/s; empty if unknown); notes : what was done to read it.
+    time : (k,) s; values : (k,) in `unit` (Pa, V, strain, m/s; empty if unknown); notes : on conversions.
     """
 
     time: np.ndarray
@@ -127,7 +127,7 @@ def _two_commas(columns: Columns) -> str:
 
 
 def _unit_of_time(columns: Columns, column: int) -> float:
-    """Size in s of the unit of times in the header, which must be one that is known; 1 by default."""
+    """Size in s of the unit of times in the header, which must be known; 1 by default."""
     found = next((size for size in map(time_unit, columns.units(column)) if size is not None), None)
     if found is None and (text := columns.bracketed(column)):
         raise CaseError([f"{columns.path}: the header has times in {text}, must be s, ms, µs or ns; or --time-unit"])
@@ -166,7 +166,7 @@ def _require_sound(columns: Columns, time: np.ndarray, values: np.ndarray) -> No
 
 
 def _evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Times and values (k,) at even times, and what was done for it."""
+    """Times and values (k,) at even times, and notes on changes."""
     even = np.linspace(time[0], time[-1], len(time))
     step = float(even[1] - even[0])
     off = float(np.abs(time - even).max()) / step
@@ -189,7 +189,7 @@ def _evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarra
 
 
 def _converted(values: np.ndarray, unit: Unit, reading: Reading) -> tuple[np.ndarray, str, list[str]]:
-    """Values in Pa, strain or as they are, what they measure now, and what was done."""
+    """Values in Pa, strain or their own unit, the new unit, and notes on conversions."""
     measured, notes = unit.of, []
     if reading.bridge is not None:
         if unit.of not in ("V", ""):

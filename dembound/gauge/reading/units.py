@@ -21,7 +21,7 @@ class Unit(NamedTuple):
 
 
 MICRO = ("µ", "μ", "u")
-"""The micro sign, the Greek letter, and what is typed instead."""
+"""The micro sign, the Greek letter, and u."""
 
 TIMES = {
     **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
@@ -95,7 +95,7 @@ class Bridge:
     with two gauges across the bar in the other arms. excitation : V. gain : of the amplifier. poisson : ν of the bar,
     for the gauges across it.
 
-    Raises CaseError for values without meaning, and for a full bridge without ν.
+    Raises CaseError for impossible values, and for a full bridge without ν.
     """
 
     gauge_factor: float
@@ -109,7 +109,7 @@ class Bridge:
             raise CaseError(problems)
 
     def _problems(self) -> Iterator[str]:
-        """Data without meaning."""
+        """Impossible data."""
         for option, value in (("--gauge-factor", self.gauge_factor), ("--gain", self.gain)):
             if not np.isfinite(value) or value == 0.0:
                 yield f"{option}: is {value:g}, must be finite and not 0"
@@ -126,7 +126,7 @@ class Bridge:
         With v = U/(U_e gain) and resistances R(1 + kε), across the bar R(1 − kνε), the bridge gives v = kε/(4 + 2kε)
         (quarter), v = kε/(2 + kε) (half), and v = kε(1 + ν)/(2 + kε(1 − ν)) (full).
 
-        Raises CaseError where the voltage is beyond what any strain gives, half the excitation and more.
+        Raises CaseError for voltages of half the excitation and more, which no strain causes.
         """
         assert self.excitation is not None
         ratio = voltage / (self.excitation * self.gain)
