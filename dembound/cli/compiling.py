@@ -32,7 +32,7 @@ class Compilation(event.Listener):
         self._shown: Status | None = None
 
     def note(self) -> str:
-        """ "compiling" and its seconds up to now; empty if nothing is being compiled."""
+        """A note with the seconds of compiling up to now; empty if nothing is being compiled."""
         return f"compiling the solver, {self._spent + self.now() - self._began:.0f} s" if self._open else ""
 
     def on_start(self, event: event.Event) -> None:

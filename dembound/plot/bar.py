@@ -38,7 +38,7 @@ FEWEST = 10
 class FieldStyle:
     """The drawing of a field: name, unit and its SI value, meaning of the sign, colour map.
 
-    jumps: whether it changes suddenly, so that values between two snapshots must not be interpolated.
+    jumps: whether values change suddenly, so that they must not be interpolated between two snapshots.
     """
 
     words: str
@@ -82,7 +82,7 @@ class SpaceTimeField:
     unit: TimeUnit
 
     def moment(self, time: float) -> str:
-        """A time as text."""
+        """Number of a time as text."""
         return f"{time:.4g} {self.unit.name}"
 
 
@@ -104,7 +104,7 @@ def plot_bar(run: Path) -> Figure:
 
 @styled
 def plot_bar_field(run: Path, field: str, snapshot: int | None = None) -> Figure:
-    """One field of a bar, as in `plot_bar`, or only along the bar at one snapshot.
+    """One field of a bar over position and time, or only along the bar at one snapshot.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def plot_bar_field(run: Path, field: str, snapshot: int | None = None) -> Figure
 
 
 def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -> SpaceTimeField:
-    """Fields of a bar's record at all snapshots, or at one.
+    """Fields of a bar's record at all snapshots, or at a single one.
 
     Raises CaseError when the file cannot be read or has no such snapshot.
     """

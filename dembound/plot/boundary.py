@@ -32,7 +32,7 @@ class Side:
     column: np.ndarray
 
     def of_column(self, column: bool) -> "Side":
-        """The side with only the particles of the column, or only those of the body."""
+        """The side with only the particles of the column, or only the particles of the body."""
         chosen = self.column == column
         return Side(self.along[chosen], self.diameters[chosen], self.peaks[chosen], self.column[chosen])
 

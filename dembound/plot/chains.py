@@ -26,13 +26,15 @@ WIDEST = 0.5
 """Width of the widest lines over the mean diameter of disks."""
 
 LEAST_WIDTH = 2.0
-"""Points, of the widest lines where disks are small."""
+"""Least width (points) of the widest lines, where disks are small."""
 
 FEW = 0.01
-"""Share of the contacts whose larger forces have lines of equal width: the largest are several times the others."""
+"""Share of the contacts with lines of equal width, those with the largest forces, which are several times the
+others.
+"""
 
 NARROWEST = 4.0
-"""Inches on the page that title and legend need at least."""
+"""Least width (inches) of the page for title and legend."""
 
 MOST_LINES = 30_000
 """Largest number of lines in a picture; the largest forces are drawn."""
@@ -116,7 +118,7 @@ def read_chains(file: h5py.File, snapshot: int | None) -> Chains:
 
 
 def _window(disks: Disks, chains: Chains) -> Window:
-    """All disks, or of a long scene the part around the largest forces."""
+    """The window of all disks, or in a long scene of the part around the largest forces."""
     size = disks.own_window.size
     if max(size) <= LONG * min(size):
         return disks.own_window

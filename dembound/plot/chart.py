@@ -20,7 +20,7 @@ LEVELS = (1.0, 0.1)
 """Errors (%) marked by horizontal lines."""
 
 LEAST = 1e-4
-"""Smallest error shown, in per cent; smaller ones are drawn there."""
+"""Smallest error shown, in per cent; smaller ones are drawn at this value."""
 
 SPANS = (8.0, 20.0)
 """Least ratio of the ends of the axis of costs, and of the axis of errors."""
@@ -29,14 +29,14 @@ MARGIN, DECADES = 0.6, 300.0
 """Ends of the axes over the extreme values; ratio of the ends up to which 2 and 5 have numbers, too."""
 
 MOST_LISTED = 28
-"""Number of choices that are named or listed; of more only those on the front and those that failed are."""
+"""Largest number of choices that are all named or listed; of more only those on the front and failed ones."""
 
 ELSEWHERE = "others: see chart.csv"
 
 DARK = "#404040"
 
 NO_BREAK = "\u00a0"
-"""A blank at which `textwrap` breaks no line."""
+"""A blank at which `textwrap` does not break lines."""
 
 MARK = "†"
 """Mark of choices whose monitors are not where the reference recorded them."""
@@ -54,10 +54,10 @@ WIDTH = 60
 class Dot:
     """A choice of a chart.
 
-    number : from 1. error : RMS of the worst monitor, %; cost : s; both as they decide the front; exact : the error
-    before nearly equal ones are merged; nan after a failure. monitor : the worst, with its component. found : findings,
-    as differences from the reference, in words. apart : m, largest distance of a monitor from where the reference
-    recorded it.
+    number : from 1. error : RMS of the worst monitor, %; cost : s; both as used for the front; exact : the error before
+    nearly equal ones are merged; nan after a failure. monitor : the worst, with its component. found : findings, as
+    differences from the reference, in words. apart : m, largest distance of a monitor from where the reference recorded
+    it.
     """
 
     number: int
@@ -73,7 +73,7 @@ class Dot:
 
     @property
     def marked(self) -> str:
-        """Its name, with a mark if its monitors are not where the reference recorded them."""
+        """The name, with a mark if its monitors are not where the reference recorded them."""
         return self.name + (MARK if self.apart > 0.0 else "")
 
     @property
@@ -86,15 +86,15 @@ class Dot:
 def plot_chart(path: Path, title: str | None = None) -> Figure:
     """RMS error against CPU time of stepping, both logarithmic, and a list of choices.
 
-    Points have names, or where these do not fit the numbers of the list, which leaves out those off the front that are
-    named. Horizontal lines show 1 % and 0.1 %, a vertical line the cost of the reference if it is one of the choices.
+    Points have names or, where these do not fit, the numbers of the list; the list leaves out named choices off the
+    front. Horizontal lines show 1 % and 0.1 %, a vertical line the cost of the reference if it is one of the choices.
 
     Parameters
     ----------
     path
         ``chart.h5`` of a chart.
     title
-        Above the sentence about the cheapest choices; by default that of the case.
+        Title above the sentence about the cheapest choices; by default the title of the case.
 
     Raises CaseError when the file cannot be read.
     """
@@ -227,9 +227,9 @@ def _list(panel: Axes, dots: Sequence[Dot], own: Collection[int], numbered: Coll
 def _entries(
     head: str, dots: Sequence[Dot], colour: str, numbered: Collection[int] | None = None
 ) -> list[tuple[str, str, bool]]:
-    """Text, colour and weight of every line of a part of the list; none for an empty part.
+    """Text, colour and weight of every line of a part of the list.
 
-    numbered : numbers of the choices that begin with theirs; None: all.
+    numbered : choices whose lines begin with their number; None: all.
     """
     if not dots:
         return []

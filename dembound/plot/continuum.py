@@ -50,12 +50,12 @@ class ContinuumCells:
 
     @property
     def window(self) -> Window:
-        """The smallest one that holds all elements."""
+        """The smallest window with all elements."""
         low = self.elements[:, :2].min(axis=0)
         return Window(low, self.elements[:, 2:].max(axis=0) - low)
 
     def moved(self, displacements: np.ndarray | None) -> Self:
-        """The mesh with its cells where displacements (m, 2) m of the nodes move them; None: not at all."""
+        """The mesh with its cells moved by displacements (m, 2) m of the nodes; None: not moved."""
         return self if displacements is None else replace(self, corners=self.corners + displacements[self.nodes])
 
 
@@ -76,7 +76,7 @@ def read_continuum(file: h5py.File) -> ContinuumCells | None:
 
 
 def is_scattered(file: h5py.File) -> bool:
-    """Whether the continuum of an open record has stresses and peaks of the scattered motion only."""
+    """Whether the continuum of an open record has only stresses and peaks of the scattered motion."""
     return f"{GROUP}/total" in file
 
 
@@ -90,8 +90,8 @@ def draw_continuum(
 ) -> None:
     """Add a continuum around disks to axes whose limits are set.
 
-    disks : the windows that they fill, outside of which the background is white. values : (m,) a field of its nodes, in
-    the colours of `draw_field` with the same limits; None: without. scale : pixels per metre.
+    disks : the windows filled by disks, outside of which the background is white. values : (m,) a field of its nodes,
+    in the colours of `draw_field` with the same limits; None: without. scale : pixels per metre.
     """
     axes.set_facecolor("white")
     for window in disks:

@@ -30,7 +30,7 @@ def plot_convergence(records: Sequence[Path]) -> Figure:
     Parameters
     ----------
     records
-        ``calibration.h5`` files. One without passes (homogenised) only appears in the legend.
+        ``calibration.h5`` files. A calibration without passes (homogenised) appears only in the legend.
 
     Raises CaseError when a file cannot be read or none of them has a pass.
     """

@@ -1,4 +1,4 @@
-"""Draws many disks, as disks if they are large enough to be visible, else as an image of their mean."""
+"""Draws many disks: as disks if they are large enough to be visible, else as an image of mean values."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,12 +33,12 @@ class Window:
 
     @classmethod
     def around(cls, positions: np.ndarray, radii: np.ndarray) -> "Window":
-        """The smallest one that holds all disks; positions (n, 2), radii (n,) in m."""
+        """The smallest window with all disks; positions (n, 2), radii (n,) in m."""
         low = (positions - radii[:, None]).min(axis=0)
         return cls(low, (positions + radii[:, None]).max(axis=0) - low)
 
     def with_other(self, other: "Window") -> "Window":
-        """The smallest one that holds this one and another."""
+        """The smallest window with this one and another."""
         low = np.minimum(self.corner, other.corner)
         return Window(low, np.maximum(self.corner + self.size, other.corner + other.size) - low)
 
@@ -94,7 +94,7 @@ def draw_field(
     scale
         pixels per metre. Disks below `SMALLEST_PIXELS` are replaced by the mean of the field on a grid.
     holes
-        up to whose outlines the cells of this grid are filled.
+        the cells of this grid are filled up to the outlines of holes.
     """
     axes.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], facecolor=EMPTY)
     axes.grid(False)
@@ -127,7 +127,7 @@ def _fill_beside(means: np.ndarray, window: Window, holes: Sequence[Hole]) -> No
 
 
 def colours_within(limits: tuple[float, float]) -> dict[str, Any]:
-    """Colour map and limits of a field, for matplotlib; a scale from a negative end is white at its middle."""
+    """Colour map and limits of a field, for matplotlib; a scale with a negative end is white at its middle."""
     return {"cmap": SIGNED_MAP if limits[0] < 0.0 else UNSIGNED_MAP, "clim": limits}
 
 

@@ -12,7 +12,7 @@ from dembound.exact.dispersion import Lattice
 from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, point_style, styled
 
 CELLS = np.geomspace(2.0, 100.0, 800)
-"""Spacings per wavelength shown, up to where wide horizons are exact to a few per cent."""
+"""Range of spacings per wavelength, up to where wide horizons are exact to a few per cent."""
 
 WIDTH, WIDENED = 1.4, 2.0
 """Width of a line in points, and the additional width for each further line of the same horizon above it."""
@@ -62,7 +62,7 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
 def line_widths(lattices: Sequence[Lattice]) -> list[float]:
     """Line widths in points over spacings per wavelength, larger where more lattices of the same horizon follow.
 
-    There these nearly coincide, and each must be visible below the next.
+    The lines nearly coincide there, and each must be visible below the next.
     """
     horizons = [lattice.horizon for lattice in lattices]
     return [WIDTH + WIDENED * horizons[index + 1 :].count(horizon) for index, horizon in enumerate(horizons)]
@@ -76,7 +76,7 @@ def name(lattice: Lattice) -> str:
 
 
 def horizon_in_words(lattice: Lattice) -> str:
-    """The horizon of a lattice; shares of the stress that differ from L's follow in brackets."""
+    """The horizon of a lattice in words; shares of the stress that differ from L's follow in brackets."""
     shares = "" if lattice.shares is None else f" ({'/'.join(f'{share:.3g}' for share in lattice.shares)})"
     return f"{lattice.horizon}{shares}"
 

@@ -43,10 +43,10 @@ OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
     "absorbed": ("absorbed by the {}", {"marker": "v", "linestyle": "--"}),
     "stored": ("stored in springs of the {}", {"marker": "s", "linestyle": ":"}),
 }
-"""Columns of every side, their names in the legend, in which {} is the side, and their lines; a side has one colour."""
+"""Columns of every side, their names in the legend ({} is the side), and their lines; a side has one colour."""
 
 HUES = (COLOURS[0], "#67001F", *COLOURS[1:], "#8C510A", "#999999", "#5E3C99", "#808000", "#003C30")
-"""A colour for each column of the ledger, and for each side: four of a body, as many of a continuum, and a column's."""
+"""A colour for each column of the ledger, and for each side: four of a body, four of a continuum, one of a column."""
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 """Prefixes of the unit of energy, by their power of ten."""
@@ -56,10 +56,10 @@ OWN_LOOKS: dict[str, dict[str, Any]] = {
     "kinetic": {"zorder": 2.1},
     "loads": {"linestyle": "-"},
 }
-"""Energies of contacts and bonds are often equal, so the one is a thin line above the wide line of the other."""
+"""Line widths: energies of contacts and bonds are often equal, so one is a thin line above a wide one."""
 
 NEGLIGIBLE, OF_STEPS = 1e-6, 0.02
-"""A column that stays below this share of the largest is left out; `stepping`, small in all waves, below the other."""
+"""Columns below this share of the largest are left out; the second share is for `stepping`, small in all waves."""
 
 BESIDE = {
     "free_field": " of the column",
@@ -85,9 +85,9 @@ class EnergyLine(NamedTuple):
 def plot_energy(run: Path) -> Figure:
     """The energy ledger of a run against time; below, its error over the supplied energy.
 
-    The work from outside is divided into what came in through every side and by driven loads, and what each side
-    absorbed or stores in springs; it is one line where the record does not have this. Columns that are negligible
-    during the whole run are left out, as are those that an earlier version did not write.
+    The work from outside is divided into the energy that came in through every side and by driven loads, and the energy
+    that each side absorbed or stores in springs; it is one line if the record does not have these. Columns that are
+    negligible during the whole run are left out, as are those that an earlier version did not write.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ class Disks:
 
     @cached_property
     def own_window(self) -> Window:
-        """The disks."""
+        """The window of the disks."""
         return Window.around(self.positions, self.radii)
 
     @property
@@ -146,7 +146,7 @@ def read_disks(file: h5py.File) -> Disks:
 
 @dataclass(frozen=True)
 class FieldInRecord:
-    """The place of a field in a record, and its limits in all snapshots.
+    """The place of a field in a record, and its largest values in all snapshots.
 
     groups, all snapshots; dataset and beyond, names in each of them, the latter of a continuum, None for none; column
     of both; words, sense and unit as of a `Field`, scale the SI value of the unit; largest (g,) size in each snapshot,
@@ -186,7 +186,7 @@ class FieldInRecord:
 
 
 def find_field(file: h5py.File, name: FieldName, component: str | None) -> FieldInRecord:
-    """A field of the snapshots of an open record, which peak is not; name and component as in `plot_scene`.
+    """A field of the snapshots of an open record, so not "peak"; name and component as in `plot_scene`.
 
     Raises CaseError when the record has no snapshots or does not have the field, or snapshots have no such field.
     """
@@ -213,7 +213,7 @@ def find_field(file: h5py.File, name: FieldName, component: str | None) -> Field
 
 
 def evenly_chosen(count: int, most: int) -> list[int]:
-    """Numbers of up to `most` of so many snapshots, evenly chosen, including the last."""
+    """Numbers of up to `most` of `count` snapshots, evenly chosen, including the last."""
     backwards = np.linspace(count - 1, 0, min(most, count))
     return [round(number) for number in reversed(backwards)]
 
@@ -242,7 +242,7 @@ def _largest(groups: Sequence[h5py.Group], dataset: str, chosen: slice | np.ndar
 
 
 def _outside_layers(file: h5py.File) -> np.ndarray:
-    """Nodes (m,) of the continuum outside the layers that absorb: the motion within these is none of the ground."""
+    """Nodes (m,) of the continuum outside the layers that absorb, in which the motion is not that of ground."""
     return ~file[f"{GROUP}/absorbs"][:].astype(bool)
 
 

@@ -15,7 +15,7 @@ MPA = 1e6
 """Pascals in a megapascal."""
 
 MEASURED = {"Pa": ("stress", "MPa", MPA), "strain": ("strain", "µε", 1e-6), "V": ("signal", "V", 1.0)}
-"""By the unit of a gauge's signal: its name, and the name and size of the unit in pictures."""
+"""Unit of a gauge's signal -> its name, and the name and size of the unit in pictures."""
 
 STEPS = (-1.5, -1.0, -0.5, 0.0, 0.5)
 """Times of the stresses near the free end, relative to the spall, in travel times from the spall to the end."""
@@ -28,8 +28,8 @@ PLACES = 500
 def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
     """The history, with the tension peaks and their exponential fit if used; next to it the stress near the end.
 
-    The stress near the end, at several times, is that of the incident pulse and its image, without attenuation. It
-    is drawn if the position of the spall is given.
+    The stress near the end is drawn if the position of the spall is given: the incident pulse and its image at several
+    times, without attenuation.
 
     Parameters
     ----------

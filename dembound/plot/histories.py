@@ -17,19 +17,19 @@ from dembound.results.reader import COMPONENTS, record_names
 Component = Literal["x", "y", "both", "rotation"]
 
 Histories = dict[str, MonitorRecord]
-"""The histories of one run by monitor."""
+"""The histories of a run by monitor."""
 
 SENSES = {"stress": ", tension positive"}
 """The meaning of a positive value, if the axis does not show it."""
 
 MOST_PLACES = 2
-"""Largest number of positions of a monitor in several runs that are listed; more are only counted."""
+"""Largest number of listed positions of a monitor in several runs; more are only counted."""
 
 BESIDE_TWINS: tuple[Any, ...] = ("-", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 """Line style of monitors in runs with free-field twins, whose lines are dashed."""
 
 BEHIND: dict[str, Any] = {"linestyle": "--", "linewidth": 3.0, "alpha": 0.4, "zorder": 1.9}
-"""Line style of a twin, visible also below the line of a monitor with the same motion, as without a hole."""
+"""Line style of a twin, visible also below the line of a monitor with the same motion."""
 
 WITHIN: dict[str, Any] = {"alpha": 0.2, "linewidth": 0.0, "zorder": 1.5}
 """Style of the bands of estimated errors: below all lines."""
@@ -47,8 +47,8 @@ def plot_histories(
 ) -> Figure:
     """One panel per monitor, with common axes; several runs are drawn in the same panel.
 
-    With free-field sides the panel of a monitor also has its twin in the free-field column, dashed. Runs whose errors
-    have been estimated have a band around their line, and where the error of the sides is known a line without it. The
+    With free-field sides the panel of a monitor also has its twin in the free-field column, dashed. Runs with estimated
+    errors have a band around their line and, where the error of the sides is known, a line without this error. The
     title gives the position of the monitor's particle, and the requested position if it differs.
 
     Parameters
@@ -61,7 +61,8 @@ def plot_histories(
         velocity in m/s, displacement in m, acceleration in m/s² (rad/s, rad, rad/s² for the rotation), or of bars
         stress in MPa.
     monitors
-        names of those to show, in this order; by default all. A twin that is given by its name has a separate panel.
+        names of the monitors to show, in this order; by default all. A twin that is given by its name has a separate
+        panel.
 
     Raises CaseError when a file cannot be read or lacks a requested stress, no run has a monitor, none has
     a requested monitor, or a component of a stress is requested.
@@ -136,7 +137,7 @@ def monitor_title(monitor: str, histories: Sequence[MonitorRecord]) -> str:
 
 
 def _in_words(places: Sequence[str]) -> str:
-    """Positions as text, or some of many."""
+    """Positions as text; of many only some."""
     if len(places) <= MOST_PLACES:
         return " and ".join(places)
     return f"{places[0]} and {len(places) - 1} other places"
@@ -155,7 +156,7 @@ def chosen_monitors(runs: Sequence[Path], histories: Sequence[Histories], reques
 
 
 def shown_columns(histories: Sequence[Histories], component: Component | None) -> list[int]:
-    """The columns of the histories that are shown, one, or those of x and y."""
+    """The columns of the histories that are shown: one, or x and y."""
     if component == "both":
         return [0, 1]
     return [int(np.argmax(largest_values(histories))) if component is None else COMPONENTS.index(component)]
@@ -168,7 +169,7 @@ def largest_values(histories: Sequence[Histories]) -> np.ndarray:
 
 
 def direction(column: int) -> str:
-    """Column of a motion in words."""
+    """The direction of a column of a motion in words."""
     return "of rotation" if COMPONENTS[column] == "rotation" else f"along {COMPONENTS[column]}"
 
 
@@ -177,7 +178,7 @@ def draw_band(
 ) -> None:
     """Draw the band of a history (k,) of a column at times (k,) s, and the corrected line if there is one.
 
-    The band ends where the estimate does, and has its own times. units : seconds in a unit of time, and SI units in one
+    The band has its own times, and ends with the estimate. units : seconds in a unit of time, and SI units in one
     of the values.
     """
     at, half = band.time / units[0], band.half_width[:, column] / units[1]

@@ -13,16 +13,16 @@ from dembound.results.histories import UNITS, Quantity, read_histories
 from dembound.results.reader import record_names
 
 ACROSS = 3
-"""Panels side by side."""
+"""Number of panels side by side."""
 
 
 @styled
 def plot_hodograph(
     runs: Sequence[Path], quantity: Quantity = "velocity", monitors: Sequence[str] | None = None
 ) -> Figure:
-    """The motion of each monitor along y against that along x, a panel each with equal scales; a dot where it ends.
+    """Motion along y against motion along x, a panel for each monitor with equal scales; a dot marks the end.
 
-    Parameters as of `plot_histories`. Raises CaseError as it does, and for stresses.
+    Parameters and errors as of `plot_histories`; also raises CaseError for stresses.
     """
     if quantity == "stress":
         raise CaseError(["--quantity: is stress; a hodograph is of a motion"])

@@ -1,4 +1,4 @@
-"""Amplitude spectra of the velocities at the monitors on linear axes, as far as any has energy, for pages."""
+"""Amplitude spectra of the velocities at the monitors on linear axes, for pages."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,14 +14,14 @@ from dembound.results.reader import COMPONENTS, record_names
 from dembound.waves.spectrum import FADED, amplitude_spectrum
 
 FEWEST = 4
-"""Samples of a history from which a spectrum is drawn."""
+"""Least number of samples of a history for a spectrum."""
 
 
 @styled
 def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = None) -> Figure:
     """Amplitude spectra |∫ v exp(−2πift) dt| of the velocities at the monitors, one panel each, with common axes.
 
-    Frequencies end where all spectra are below 1 % of the largest value of any. For a motion that is not over at the
+    Frequencies end where all spectra are below 1 % of the largest value. For a motion that is not over at the
     end of the run the spectrum is that of the recorded part. A monitor at rest, or with a velocity that is not finite,
     has an empty panel.
 
@@ -66,8 +66,7 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
 def spectrum_of(history: MonitorRecord, column: int) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (m,), Hz, and amplitudes (m,), m/s per Hz, of a component of a velocity.
 
-    The last sample of a run may be nearer to the one before than all others are, so samples are interpolated at the
-    same interval.
+    As the last interval of a run may be shorter than all others, samples are interpolated at equal intervals.
     """
     time = np.linspace(history.time[0], history.time[-1], len(history.time))
     values = np.interp(time, history.time, history.values[:, column])

@@ -30,7 +30,7 @@ class MovingBar:
     fields
         names of some of `FIELDS`, a panel each.
     exaggerate
-        how many times their displacement the nodes are moved along the bar; 0 shows them where they began.
+        factor of the displacements of nodes along the bar; 0 shows the nodes at their first places.
 
     Raises CaseError when the file cannot be read, has no snapshots, or bars have no such field.
     """
@@ -82,7 +82,7 @@ class MovingBar:
         return low - margin, high + margin
 
     def _mark_cracks(self, panel: Axes, index: int) -> None:
-        """A mark at the foot of a panel for every bond broken up to a snapshot, where it was at the start."""
+        """A mark at the foot of a panel for every bond broken up to a snapshot, at the bond's first place."""
         broken = self._course.crack_place[self._course.crack_time <= self._course.time[index]]
         if len(broken) > 0:
             foot = panel.get_xaxis_transform()

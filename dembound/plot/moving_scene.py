@@ -32,8 +32,8 @@ class MovingScene:
     field
         one of `CHANGING`, as in `plot_scene`.
     exaggerate
-        factor of the displacements of disks, nodes and cracks; 0 shows them where they began. Monitors,
-        outlines of elements and ties remain where they were at the start.
+        factor of the displacements of disks, nodes and cracks; 0 shows them at their first places. Monitors, outlines
+        of elements and ties do not move.
 
     Raises CaseError when the file cannot be read, has no snapshots, or does not contain the field.
     """
@@ -70,7 +70,7 @@ class MovingScene:
         return bool(length > LONG * width)
 
     def _widened(self, found: FieldInRecord) -> Window:
-        """The whole scene with all displacements, as far as they are exaggerated."""
+        """The window of the whole scene with all exaggerated displacements."""
         window = self._disks.window
         if self._exaggerate == 0.0:
             return window
@@ -80,7 +80,7 @@ class MovingScene:
         return Window(window.corner - margin, window.size + 2.0 * margin)
 
     def _make_panels(self) -> None:
-        """Make one panel, or for a long scene also one for the enlarged part: below, or beside an upright one."""
+        """Make one panel, and for a long scene another for the enlarged part: below, or beside an upright scene."""
         windows = [self._window] if self._part is None else [self._window, self._part]
         upright = bool(self._part and self._window.size[1] > self._window.size[0])
         room = [float(min(DRAWING / window.size)) for window in windows]
@@ -127,7 +127,7 @@ class MovingScene:
         return pixels_of(self.figure)
 
     def _moved(self, group: h5py.Group, shown: Field) -> Field:
-        """The field at a snapshot, with its disks, nodes and cracks moved as far as asked for."""
+        """The field at a snapshot, with its disks, nodes and cracks moved by the exaggerated displacements."""
         if self._exaggerate == 0.0:
             return shown
         moved = self._exaggerate * group["displacement"][:, :2]

@@ -1,4 +1,4 @@
-"""Outlines of holes as lines: true to the case, however large the disks or the pixels around them are."""
+"""Outlines of holes as lines, as in the case and independent of the sizes of disks and pixels."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -24,10 +24,10 @@ TRUE_TO = 0.1
 """Largest distance of two points of a line, in mean diameters; corners are cut by half of it at most."""
 
 MOST_POINTS = 20_000
-"""The most points drawn of one outline."""
+"""Largest number of points of an outline."""
 
 FIRST = 256
-"""Points from which the lengths of an outline's pieces are estimated."""
+"""Number of points from which the lengths of an outline's pieces are estimated."""
 
 ABOVE_FIELD, ABOVE_FILLING = 1.2, 1.3
 """Drawing order: of the filling of holes, above the image of disks; of their outlines."""
@@ -45,7 +45,7 @@ def read_holes(file: h5py.File) -> tuple[Hole, ...]:
 def draw_outlines(axes: Axes, holes: Sequence[Hole], body: Window, diameter: float, *, filled: bool) -> None:
     """Add the outlines of holes to the axes, as far as they are within the body.
 
-    diameter : mean one of the disks, m. filled : whether what is drawn within them is covered in the colour of gaps.
+    diameter : mean diameter of the disks, m. filled : whether outlines are filled with the colour of gaps.
     """
     left, right, bottom, top = body.extent
     for outline in (hole.outline for hole in holes):

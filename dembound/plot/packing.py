@@ -14,10 +14,10 @@ from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
 BLUE, RED, GREEN, YELLOW = (COLOURS[index] for index in (0, 1, 2, 5))
 
 KINDS = {"interior": YELLOW, "controller": BLUE, "follower": RED, "regular row": GREEN}
-"""Kinds of disks and their colours, Z's but for the rows: followers are periodic images of controllers."""
+"""Kinds of disks and their colours, as in Z except for the rows: followers are periodic images of controllers."""
 
 CLOSE_UP_DIAMETERS = 16
-"""Width of a close-up in the largest mean diameter of its packings."""
+"""Width of a close-up over the largest mean diameter of its packings."""
 
 
 @styled
@@ -93,7 +93,7 @@ def brick_disks(
 
 @styled
 def plot_patterns(parts: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]) -> Figure:
-    """Close-ups of packings at one edge, side by side in one scale, the particles of the edge coloured.
+    """Close-ups of packings at one edge, side by side in the same scale, with coloured particles of the edge.
 
     Parameters
     ----------
@@ -139,6 +139,6 @@ def _draw_kind(panel: Axes, positions: np.ndarray, radii: np.ndarray, colour: st
 
 
 def _frame(panel: Axes, window: Window) -> None:
-    """Show this window of the axes, in true proportions."""
+    """Show a window of the axes, in true proportions."""
     panel.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], xlabel="x (m)", ylabel="y (m)")
     panel.grid(False)

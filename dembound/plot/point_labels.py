@@ -27,18 +27,20 @@ AROUND: list[tuple[tuple[float, float], str, str]] = [
     for radius in (12.0, 17.0, 25.0)
     for angle in np.radians([45, 225, 135, 315, 0, 90, 180, 270, *range(22, 360, 45)])
 ]
-"""Places of a number, which is so short that it may stand a little apart."""
+"""Places of a number, which is short and may stand a little apart."""
 
 GAP, APART, STEP = 2.0, 6.0, 3.0
-"""Points between two labels, between a label and another point, and between places on a line that is not covered."""
+"""Distances in points between two labels, between a label and another point, and between places on an uncovered
+line.
+"""
 
 FARTHER = {True: 1.2, False: 1.02}
-"""Least distance of other points from a label over the distance of its own, for a name and for a number."""
+"""Least distance of other points from a label over the distance of its own point, for a name and for a number."""
 
 
 @dataclass(frozen=True)
 class Labelled:
-    """A point with its number and its name; place : in the units of the axes; is_bold : whether it comes first."""
+    """A point with its number and its name; place : in the units of the axes; is_bold : whether it is placed first."""
 
     number: int
     name: str
@@ -51,7 +53,7 @@ class Labelled:
 class Labels:
     """Labels of a panel whose layout is final.
 
-    lines : of the panel, each (k, 2), that names do not cover. taken : rectangles that are taken, in pixels.
+    lines : of the panel, each (k, 2), that names must not cover. taken : occupied rectangles, in pixels.
     """
 
     figure: Figure
@@ -63,7 +65,7 @@ class Labels:
     def write(self, most_named: int) -> list[int]:
         """Write all labels, bold ones first; gives the numbers of the points whose name is not written.
 
-        Of more than `most_named` points only bold ones get names. Some points may find no place for a number either.
+        Of more than `most_named` points only bold ones get names. Some points may have no room for a number either.
         """
         order = sorted(self.points, key=lambda each: not each.is_bold)
         named = order if len(order) <= most_named else [each for each in order if each.is_bold]

@@ -19,14 +19,14 @@ SHOWN = (0.0, 30.0, 60.0)
 """Angles (degrees) for which shares are drawn against frequency, or the nearest ones that were computed."""
 
 GREYS = ("#000000", "#606060", "#A8A8A8")
-"""Colours of lines against frequency: the lines against angle have all others."""
+"""Colours of lines against frequency: lines against angle have the other colours."""
 
 
 class Curves(NamedTuple):
     """Shares of reflected energy for one type of incident waves.
 
-    name : of the waves. same, converted : (f, a) as the same and as the other type. beside : name -> total (f, a) of
-    other sides in place of this one.
+    name : of the waves. same, converted : (f, a) shares reflected as the same and as the other type. beside : name ->
+    total (f, a) of other sides for comparison.
     """
 
     name: str
@@ -90,12 +90,12 @@ def _against_frequency(panel: Axes, angles: np.ndarray, frequencies: np.ndarray,
 
 
 def _log(panel: Axes) -> None:
-    """Shares on a logarithmic axis, without the minor ticks that take as long to lay out as all else."""
+    """Shares on a logarithmic axis, without minor ticks, whose layout takes as long as all else."""
     panel.set_yscale("log")
     panel.yaxis.set_minor_locator(NullLocator())
     panel.set_ylim(LEAST, 1.3)
 
 
 def _drawn(values: np.ndarray) -> np.ndarray:
-    """Shares within the axis."""
+    """Shares clipped to the axis."""
     return np.maximum(values, LEAST)

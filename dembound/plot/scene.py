@@ -23,25 +23,25 @@ LONG = 6.0
 """A scene longer than this many times its width has a second panel with an enlarged part of it."""
 
 CLOSE_UP_DIAMETERS = 40
-"""Width of the enlarged part in mean disk diameters, or of the scene if it is less, so that every disk is visible."""
+"""Largest width of the enlarged part in mean disk diameters, at which every disk is visible."""
 
 CLOSE_UP_ASPECT = 3.0
-"""Length of that part over its width, but its length is never below `CLOSE_UP_DIAMETERS` either."""
+"""Length of the enlarged part over its width; the length is at least `CLOSE_UP_DIAMETERS`."""
 
 DRAWING = (9.5, 6.5)
 """Largest width and height of the scene on the page in inches."""
 
 MOST_STRIPS = 8
-"""A long horizontal scene is shown at no more times than this, as strips below each other."""
+"""Largest number of times at which a long horizontal scene is shown, as strips below each other."""
 
 STRIP_GAP = 0.12
 """Inches between two strips."""
 
 SHORTEST = {"x": 0.8, "y": 0.4}
-"""Inches of a panel long enough for three numbers along x or y."""
+"""Length (inches) of a panel with room for three numbers along x or y."""
 
 TICK_APART, SMALL = 0.6, 7
-"""Inches between the numbers of a panel as far as it is long enough for three; their size in points if it is not."""
+"""Distance (inches) between numbers of a panel with room for three; size (points) of numbers without this room."""
 
 CRACKS = {"bond broken in tension": ("o", 14.0, "black"), "bond broken in shear": ("X", 26.0, "#C000C0")}
 """Names of the two kinds of cracks in the legend; shape, size in points² and colour of their marks."""
@@ -63,10 +63,10 @@ def plot_scene(
     field: FieldName = "velocity",
     component: Literal["x", "y", "rotation"] | None = None,
 ) -> Figure:
-    """The scene at a snapshot, at its undeformed places, with the monitors; with one colour scale for the run.
+    """The scene at a snapshot, at its undeformed places, with the monitors and one colour scale for the run.
 
     Bonds broken up to this time are marked at their positions, above the disks and with the same size in every scene;
-    the legend has their number. A very long scene has one more panel with an enlarged part of it. A continuum round the
+    the legend has their number. A very long scene has another panel with an enlarged part of it. A continuum round the
     disks has the same colours, its absorbing layers are hatched.
 
     Parameters
@@ -181,7 +181,10 @@ def part_around(disks: Disks, centre: np.ndarray) -> Window:
 def draw_panel(
     panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float, counted: bool = True
 ) -> ScalarMappable:
-    """A window of the scene at one of its times, at `scale` pixels per metre; counted : cracks are, in their labels."""
+    """A window of the scene at one of its times, at `scale` pixels per metre.
+
+    Counted : labels have numbers of cracks.
+    """
     positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
     colours = draw_field(panel, window, positions, disks.radii, shown.values[index], shown.limits, scale, disks.holes)
     covered = isinstance(colours, AxesImage) and shown.moved is None  # cells of the image reach into holes
@@ -206,7 +209,7 @@ def draw_panel(
 
 
 def _mark_cracks(panel: Axes, shown: Field, index: int, counted: bool) -> None:
-    """A mark at each bond broken up to one of the times; the legend may have the number at the last of them."""
+    """A mark at each bond broken up to one of the times; the legend may have their number at the last time."""
     until = f" until {shown.captions[-1]}" if len(shown.captions) > 1 else ""
     for shear, (label, (mark, size, colour)) in enumerate(CRACKS.items()):
         places, last = (each["position"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))

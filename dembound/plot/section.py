@@ -24,7 +24,7 @@ def plot_section(
     quantity: Quantity = "velocity",
     monitors: Sequence[str] | None = None,
 ) -> Figure:
-    """Histories of monitors, each drawn at its distance from the first one, with one scale for all, which is given.
+    """Histories of monitors, each drawn at its distance from the first one, with the same scale, which is printed.
 
     The names of the monitors stand beside their histories on the right, at the distances in the first run. Distances
     are those of the true positions of their particles. Parameters as of `plot_histories`; the order of the monitors is

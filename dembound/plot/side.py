@@ -1,4 +1,4 @@
-"""Stress and mean displacement of one side, against time and, of a stress, against the strain between two sides."""
+"""Stress and mean displacement of one side against time, and stress against the strain between two sides."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ from dembound.results.reader import record_names
 from dembound.results.sides import SideHistory, read_side_history
 
 LEAST = 1e-6
-"""A component that stays below this share of the other one is left out."""
+"""Share of the other component below which a component is left out."""
 
 LINES = {"stress": ("normal, tension positive", "shear, xy"), "displacement": ("along x", "along y")}
 """Names of the components; the second is dashed."""
@@ -33,7 +33,7 @@ def plot_side(runs: Sequence[Path], side: str, quantity: str) -> Figure:
     quantity
         stress or displacement.
 
-    Raises CaseError when the quantity is another one, a file cannot be read, or has no such side.
+    Raises CaseError for another quantity, and when a file cannot be read or has no such side.
     """
     if quantity not in LINES:
         raise CaseError([f"--quantity: of a side must be one of {', '.join(LINES)}, is {quantity}"])

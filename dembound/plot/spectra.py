@@ -37,7 +37,7 @@ NUMBERED = (1.0, 2.0, 5.0)
 """Multiples of powers of ten that are labelled on an axis."""
 
 FEWEST = 16
-"""Samples that a spectrum needs at least."""
+"""Least number of samples of a spectrum."""
 
 FAINT: dict[str, Any] = {"linewidth": 0.5, "alpha": 0.3, "zorder": 1.8}
 """Line style of spectra that are not smoothed."""
@@ -47,7 +47,7 @@ LEGEND_OF_FAINT: dict[str, Any] = {"linewidth": 0.5, "color": REFERENCE, "label"
 
 
 class Curve(NamedTuple):
-    """A line: places (k,) along the axis, and values (k,); faint : those before they were smoothed, or None."""
+    """A line: places (k,) along the axis, and values (k,); faint : values before smoothing, or None."""
 
     along: np.ndarray
     values: np.ndarray
@@ -65,7 +65,7 @@ def plot_fourier(
     quantity: Quantity = "velocity",
     monitors: Sequence[str] | None = None,
 ) -> Figure:
-    """Fourier amplitude spectra of the monitors, a panel each, smoothed, over thin ones that are not.
+    """Smoothed Fourier amplitude spectra of the monitors, a panel each, over thin unsmoothed ones.
 
     Twins in a free-field column are dashed. Parameters and errors as of `plot_histories`.
     """
@@ -94,7 +94,7 @@ def plot_transfer(
     monitors: Sequence[str] | None = None,
     reference: str | None = None,
 ) -> Figure:
-    """Amplitudes of transfer functions to the monitors, a panel each, from another one or from their free-field twins.
+    """Amplitudes of transfer functions to the monitors, a panel each, from another monitor or their free-field twins.
 
     They are blank at frequencies at which the input has no energy (`Transfer`).
 
@@ -103,7 +103,7 @@ def plot_transfer(
     reference
         monitor that is the input; None: each monitor's twin in the free-field column.
 
-    Other parameters and errors as of `plot_histories`. Raises CaseError also when no run has the input.
+    Other parameters and errors as of `plot_histories`. Also raises CaseError when no run has the input.
     """
     histories = [read_histories(path, quantity) for path in runs]
     known = sorted({name for run in histories for name in run})
@@ -235,7 +235,7 @@ def _those(histories: Sequence[Histories], names: Sequence[str]) -> list[Histori
 
 
 def _along(quantity: Quantity, column: int) -> str:
-    """The direction of a component, with a blank before it; empty for a stress, which is along the bar."""
+    """The direction of a component after a blank; empty for a stress, which is along the bar."""
     return "" if quantity == "stress" else f" {direction(column)}"
 
 

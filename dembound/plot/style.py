@@ -43,19 +43,19 @@ COMPRESSION = 2
 """Level of compression of pictures: half the time of the usual one, and a fifth more bytes."""
 
 FEWEST_NUMBERS = 3
-"""The fewest numbers along an axis: with fewer neither its scale nor its zero can be read."""
+"""Least number of numbers along an axis: with fewer neither scale nor zero can be read."""
 
 NUMBERED = ((1.0,), (1.0, 2.0, 5.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0))
-"""Multiples of powers of ten that a logarithmic axis has as numbers: the first that are enough."""
+"""Sets of multiples of powers of ten as numbers of a logarithmic axis: the first with enough numbers is used."""
 
 THINNEST = 1.5
-"""Points: a band that is nowhere wider is hidden by the line within it."""
+"""Width (points) of a band below which the line within hides it."""
 
 RAISED = str.maketrans("0123456789−-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻")
-"""Characters of exponents."""
+"""Superscript characters of exponents."""
 
 SHORT = 0.1
-"""A picture of less than this many seconds has times in milliseconds."""
+"""Duration (s) below which pictures have times in milliseconds."""
 
 Parameters = ParamSpec("Parameters")
 Drawn = TypeVar("Drawn")
@@ -79,7 +79,7 @@ def time_unit(last: float) -> TimeUnit:
 
 
 def styled(draw: Callable[Parameters, Drawn]) -> Callable[Parameters, Drawn]:
-    """Give a drawing function this style, whatever the user's matplotlib settings are."""
+    """Give a drawing function this style, independent of the user's matplotlib settings."""
 
     @wraps(draw)
     def in_style(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Drawn:
@@ -110,7 +110,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def measured_once(panels: np.ndarray, *, same_y: bool = True) -> None:
-    """Let the layout measure common axes only once, which is most of its time; nothing moves.
+    """Let the layout measure common axes only once, which would take most of its time; nothing moves.
 
     panels (rows, columns): only the last row has numbers on x; same_y : numbers on y are the same in all rows. Ticks
     without numbers belong to the spines.
@@ -124,9 +124,9 @@ def measured_once(panels: np.ndarray, *, same_y: bool = True) -> None:
 
 
 class Powers(ScalarFormatter):
-    """The numbers of an axis, with a common power of ten at its end as in ×10⁻⁵.
+    """The numbers of an axis, with a common power of ten at its end, such as ×10⁻⁵.
 
-    So does mathtext, but it takes longer to begin than the rest of an axis.
+    Mathtext does the same, but its start takes longer than the rest of an axis.
     """
 
     def __init__(self) -> None:
@@ -147,12 +147,12 @@ def decade(value: float, _: object = None) -> str:
 
 
 def stacked_height(count: int) -> float:
-    """Height (inches) of a figure of so many panels below each other, each with room for three numbers."""
+    """Height (inches) of a figure of `count` panels below each other, each with room for three numbers."""
     return 1.6 + count * float(np.clip(9.0 / count, 0.9, 1.6))
 
 
 def number_axes(figure: Figure) -> None:
-    """Give all axes with matplotlib's own ticks at least `FEWEST_NUMBERS`, as far as they have numbers."""
+    """Give all numbered axes with matplotlib's own ticks at least `FEWEST_NUMBERS` numbers."""
     for axis in (axis for panel in figure.axes for axis in (panel.xaxis, panel.yaxis)):
         locator = axis.get_major_locator()
         if isinstance(locator, AutoLocator):
@@ -177,15 +177,15 @@ def point_style(index: int) -> dict[str, Any]:
 
 
 def open_point_style(index: int) -> dict[str, Any]:
-    """Style of points with hollow markers and dashes, so that rows show that lie on each other."""
+    """Style of points with hollow markers and dashes, so that rows that coincide remain visible."""
     return point_style(index) | {"linestyle": DASHES[index % len(DASHES)], "markersize": 6.0, "fillstyle": "none"}
 
 
 def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
     """Put one legend of all labels in the panels, each once, below everything else.
 
-    It has as many columns as the figure is wide enough for, at most `columns`. What cannot be seen has no entry: lines
-    outside the axes, and bands that are thinner than a line.
+    It has as many columns as fit the width of the figure, at most `columns`. Lines outside the axes, and bands thinner
+    than a line, have no entry.
     """
     handles: dict[str, Artist] = {}
     for panel in panels:
@@ -255,7 +255,7 @@ def save(figure: Figure, path: Path, title: str | None = None) -> None:
 
 
 def lay_out(figure: Figure) -> None:
-    """Find the places of all panels and keep them, also if the panels change later; axes have enough numbers."""
+    """Compute the places of all panels and keep them when panels change; axes get enough numbers."""
     number_axes(figure)
     if figure.axes and (layout := figure.get_layout_engine()) is not None:
         layout.execute(figure)
@@ -263,7 +263,7 @@ def lay_out(figure: Figure) -> None:
 
 
 def pixels_of(figure: Figure) -> np.ndarray:
-    """The picture (rows, columns, 3) of a figure as it is now, red, green and blue from 0 to 255."""
+    """The picture (rows, columns, 3) of the present figure, red, green and blue from 0 to 255."""
     look()
     lay_out(figure)
     canvas = FigureCanvasAgg(figure)

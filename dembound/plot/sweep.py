@@ -18,7 +18,7 @@ from dembound.results.reader import open_record, text_of
 from dembound.results.structure import Members
 
 WIDEST = 0.06
-"""Half the width of a cloud of members of one group, in parts of the distance of two groups."""
+"""Half the width of the members' points of one group, over the distance of two groups."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def plot_sweep(path: Path) -> Figure:
     Parameters
     ----------
     path
-        ``sweep.h5`` of a sweep, which also has the names of the quantities that are drawn.
+        ``sweep.h5`` of a sweep, which also has the names of the drawn quantities.
 
     Raises CaseError when the file cannot be read.
     """
@@ -116,7 +116,7 @@ def _places(groups: Sequence[dict[str, Any]]) -> tuple[np.ndarray, str]:
 
 
 def _in_words(group: dict[str, Any]) -> str:
-    """The values of a group, one in a line; of one without keys nothing."""
+    """The values of a group, one in a line; empty without keys."""
     return "\n".join(value if isinstance(value, str) else json.dumps(value) for value in group.values())
 
 

@@ -20,8 +20,8 @@ Column = tuple[str, np.ndarray]
 def write_lines(figure: Figure, path: Path) -> None:
     """Write the lines of a figure as CSV, a column each, either completely or not at all.
 
-    Lines with the same x values share one column of them, which comes first. Columns end with their lines; cells below
-    are empty. Zeros have no sign. Frames and other lines without data are left out.
+    Lines with the same x values share one column of x values, which comes first. Columns end with their lines; cells
+    below are empty. Zeros have no sign. Frames and other lines without data are left out.
 
     Raises FileNotFoundError if the folder of the path does not exist.
     """
@@ -35,7 +35,7 @@ def write_lines(figure: Figure, path: Path) -> None:
 
 
 def columns_of(figure: Figure) -> Iterator[Column]:
-    """The columns of the table: for each group of lines with the same x values first these, then the lines' values.
+    """The columns of the table: for each group of lines with equal x values first x, then the lines' values.
 
     The heads of lines that are drawn against two quantities name the quantity.
     """
@@ -60,7 +60,7 @@ def columns_of(figure: Figure) -> Iterator[Column]:
 
 
 def _of(line: Line2D, lines: Sequence[Line2D]) -> str:
-    """Name of the lines to which x values belong: their run; if runs have several lines, also the line's name."""
+    """Name of the lines with some x values: their run; if runs have several lines, also the line's name."""
     if len(lines) == 1:
         return ""
     is_only_one = [each.get_label() for each in lines].count(line.get_label()) == 1
@@ -80,7 +80,7 @@ def _lines(figure: Figure) -> Iterator[tuple[Axes, Line2D]]:
 
 
 def _head(figure: Figure, panel: Axes, line: Line2D) -> str:
-    """A line's name, its run, and what its axis shows with the unit."""
+    """A line's name, its run, and the quantity of its axis with the unit."""
     axis = ", ".join(filter(None, (figure.get_supylabel(), panel.get_ylabel())))
     return f"{', '.join(filter(None, _name_and_run(line)))}: {axis}"
 

@@ -1,4 +1,4 @@
-"""Histories at the monitors with a line at a time, which moves."""
+"""Histories at the monitors with a line that moves with time."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -22,7 +22,7 @@ class TimeLine:
     width
         of the picture in inches.
     monitors
-        names of those to show; None for all.
+        names of the monitors to show; None for all.
 
     Raises CaseError as `plot_histories`.
     """

@@ -1,1 +1,1 @@
-"""Results for people who do not have dembound: a page that holds everything it shows, and movies."""
+"""Results for people without dembound: self-contained pages, and movies."""

@@ -23,29 +23,33 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 PALETTE_FRAMES = 6
-"""Frames from which the colours of a GIF are taken, which all of its frames share."""
+"""Number of frames from which the common colours of a GIF are taken."""
 
 SHADES = 96
-"""Colours of the palette taken from a scene's colour map: neighbours differ by less than can be seen."""
+"""Number of colours from a scene's colour map in the palette: neighbours cannot be distinguished."""
 
 ROUNDING = 2
-"""Largest difference, of 255, between red, green and blue of a colour of the map and of a drawn pixel."""
+"""Largest difference (of 255) between a colour of the map and a drawn pixel in red, green and blue."""
 
 RARE = 0.3
-"""Power of the number of pixels with which a colour counts for the palette: waves are small, and most is white."""
+"""Power of the number of pixels as the weight of a colour in the palette: waves are small, and most pixels are
+white.
+"""
 
 WHITE = 245
-"""From this value of red, green and blue a colour of the palette is white: it is the mean of nearly white ones."""
+"""Value of red, green and blue above which a colour of the palette, a mean of nearly white ones, is made white."""
 
 FASTEST_GIF = 2
-"""Hundredths of a second of a GIF's frame: browsers show those of one hundredth ten times as long."""
+"""Least duration of a GIF's frame in hundredths of a second: browsers show frames of one hundredth ten times as
+long.
+"""
 
 
 @dataclass(frozen=True)
 class Movie:
     """The frames of a movie: a moving picture at some of its times, and a time line below it, if there is one.
 
-    chosen : numbers of the snapshots. pixels : width of a frame.
+    chosen : numbers of the snapshots shown. pixels : width of a frame.
     """
 
     picture: MovingPicture
@@ -83,13 +87,13 @@ def movie_of(
     record
         a ``run.h5``.
     field
-        what colours disks, or is drawn along a bar; by default velocity, of a bar stress and damage.
+        field that colours disks, or is drawn along a bar; by default velocity, for a bar stress and damage.
     exaggerate
-        how many times their displacement nodes are moved; 0 shows them where they began.
+        factor of the displacements; 0 shows nodes at their first places.
     monitors
-        whose histories are below; by default all, none where this is empty or the run has none.
+        monitors whose histories are drawn below; by default all, none if empty.
     every
-        how many snapshots one frame stands for; the last one is always shown.
+        number of snapshots per frame; the last one is always shown.
     pixels
         width of a frame.
 
@@ -162,7 +166,7 @@ def _picture(pixels: np.ndarray) -> Image:
 
 
 def _common_colours(movie: Movie) -> Image:
-    """A picture whose palette has the colours of some frames of a movie."""
+    """A picture whose palette has the colours of a few frames of a movie."""
     some = np.unique(np.linspace(0, len(movie) - 1, PALETTE_FRAMES).astype(int))
     pixels = np.concatenate([movie.frame(int(number)).reshape(-1, 3) for number in some])
     found, counts = np.unique(pixels, axis=0, return_counts=True)

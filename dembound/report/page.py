@@ -33,13 +33,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_FRAMES = 40
-"""The most frames of a scene; of more snapshots some are chosen evenly."""
+"""Largest number of frames of a scene; more snapshots are thinned evenly."""
 
 FRAME_DOTS = 105
-"""Pixels of an inch of a frame."""
+"""Pixels per inch of a frame."""
 
 VISIBLE = 0.01
-"""Share of the largest velocity from which another component has a picture of its own."""
+"""Share of the largest velocity above which the other component has its own picture."""
 
 TABLES = (
     tables.overview,
@@ -51,14 +51,14 @@ TABLES = (
     tables.time_split,
     tables.versions,
 )
-"""The tables of the page, in its template by the names of their functions."""
+"""The tables of the page; the template uses the names of their functions."""
 
 
 @dataclass(frozen=True)
 class Frames:
     """A scene at several times: URIs of its pictures, what each shows in words, and their size in pixels.
 
-    first : the number of the one that is shown first, in which most is in motion.
+    first : the number of the frame that is shown first, the one with the most motion.
     """
 
     uris: list[str]
@@ -88,7 +88,7 @@ def write_report(records: Sequence[Path], path: Path, say: Callable[[str], None]
     path
         of the HTML file.
     say
-        called with a line for every part that the page lacks because a run does not contain it.
+        called with a line for every missing part of the page that a run does not contain.
 
     Raises CaseError or RecordError, with a line for each record that cannot be used, FileNotFoundError if the folder of
     the path does not exist.
@@ -109,7 +109,7 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
     missing: list[str] = []
 
     def attempt(draw: Callable[[], Any]) -> Any:
-        """The result of `draw`, or None after reporting in a line what is missing."""
+        """The result of `draw`, or None after reporting the missing part in a line."""
         try:
             return draw()
         except RecordError:
@@ -154,7 +154,7 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
 
 
 def _source(environment: Environment, name: str) -> Markup:
-    """The text of the style sheet or the script of the template, as browsers read it: with plain ends of lines."""
+    """The text of the style sheet or the script of the template as browsers read it, with line feeds only."""
     from markupsafe import Markup
 
     loader = environment.loader
@@ -163,12 +163,12 @@ def _source(environment: Environment, name: str) -> Markup:
 
 
 def _hash(text: str) -> str:
-    """The SHA-256 of an inline style sheet or script in base64, the only ones that the page's policy allows."""
+    """The SHA-256 of an inline style sheet or script in base64; the page's policy allows only these."""
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
 def _shown_text(value: Any) -> Any:
-    """A value with escapes for characters that would hide or reorder text, also those in the text of a case."""
+    """A value with escapes for characters that would hide or reorder text, also in the text of a case."""
     from markupsafe import Markup
 
     if isinstance(value, Markup) or not isinstance(value, str):
@@ -177,7 +177,7 @@ def _shown_text(value: Any) -> Any:
 
 
 def _shown(run: ReportedRun, attempt: Callable[[Callable[[], Any]], Any]) -> ShownRun:
-    """The pictures of one run; none of a record of only histories."""
+    """The pictures of one run; none for a record of only histories."""
     if run.has_histories_alone:
         return ShownRun(run, [], None, None)
     scenes = attempt(lambda: [picture_of(figure) for name, figure in run.kind.pictures(run.record) if name == "scene"])
@@ -237,7 +237,7 @@ def _components(records: Sequence[Path]) -> list[Any]:
 
 
 def _tables(runs: Sequence[ReportedRun]) -> dict[str, tables.Table | None]:
-    """All tables of the page by the names of their functions. Raises RecordError for a foreign summary."""
+    """All tables of the page by the names of their functions. Raises RecordError for a summary of another origin."""
     for run in runs:
         with understood(run.record):  # of which run a foreign summary is
             _ = [table([run]) for table in TABLES]
@@ -251,7 +251,7 @@ def _packed(values: dict[str, Any]) -> str:
 
 
 def _visible_in(value: Any) -> Any:
-    """Plain values with all their texts as `visible`."""
+    """Plain values with hidden characters in all texts escaped, see `visible`."""
     if isinstance(value, dict):
         return {visible(name): _visible_in(inner) for name, inner in value.items()}
     if isinstance(value, list | tuple):

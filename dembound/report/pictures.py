@@ -1,4 +1,4 @@
-"""Pictures of a page: as data within it, with their lines as numbers, of which scripts draw charts to zoom."""
+"""Pictures of a page: embedded data, with their lines as numbers, from which scripts draw charts to zoom."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 MOST_POINTS = 2000
-"""The most points of a line; of more, the smallest and the largest of several in a row are kept."""
+"""Largest number of points of a line; of more, the smallest and the largest of several in a row are kept."""
 
 DIGITS = 6
 """Digits of the numbers of a chart."""
@@ -30,7 +30,7 @@ FRAME_QUALITY = 80
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture of a page: title, what it shows in words, its data as a URI, its size in pixels, its chart or None."""
+    """A picture of a page: title, description, data as a URI, size in pixels, chart or None."""
 
     title: str
     words: str
@@ -66,7 +66,7 @@ def uri_of(pixels: np.ndarray, *, lossless: bool) -> str:
 def chart_of(figure: Figure) -> dict[str, Any] | None:
     """The named lines of a figure as plain JSON values; None if it has none.
 
-    A panel for each of its axes with lines, with the part of the lines between the ends of its axis of x.
+    It has a panel for each of the figure's axes with lines; lines end at the ends of the x axis.
     """
     panels = [panel for panel in figure.axes if _named(panel)]
     if not panels:
@@ -131,7 +131,7 @@ def _rounded(values: np.ndarray) -> list[float | None]:
 
 
 def _peak_in_words(panel: dict[str, Any], line: dict[str, Any]) -> str:
-    """The largest value of a line of a chart, and where it is."""
+    """The largest value of a line of a chart, and its place, in words."""
     place = f", {panel['title']}" if panel["title"] else ""
     sizes = np.abs(np.array(line["y"], dtype=float))
     if not np.isfinite(sizes).any():

@@ -1,4 +1,4 @@
-"""The runs of a page: their records, and what is known of each in words and numbers."""
+"""The runs of a page: their records, results and summaries."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dembound.results.results import Results
 
 @dataclass(frozen=True)
 class ReportedRun:
-    """A run: its record, a name that no other run of the page has, its kind, its results, and its summary.
+    """A run: its record, a unique name, its kind, its results, and its summary.
 
     The summary is empty for a run that is not complete.
     """

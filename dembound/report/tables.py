@@ -1,4 +1,4 @@
-"""The tables of a page: what runs are, what their sides took, where their energy is, and where their time went."""
+"""The tables of a page: runs, changed keys, monitors, sides, energies, times, versions and estimated errors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dembound.results.summary import end_in_words
 from dembound.words import Entries, percent
 
 NONE = "–"
-"""Text where a run has no such entry."""
+"""Text in place of an entry that a run does not have."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def _contents(run: ReportedRun) -> Iterator[str]:
 
 
 def changed_keys(runs: Sequence[ReportedRun]) -> Table | None:
-    """The keys of the cases in which the runs differ; None of one run, or where there is none."""
+    """The keys of the cases in which the runs differ; None for one run or without differences."""
     found = [dict(_flat(run.summary.get("keys", {}))) for run in runs]
     names = dict.fromkeys(name for each in found for name in each)
     different = [name for name in names if len({each.get(name, NONE) for each in found}) > 1]
@@ -133,7 +133,7 @@ def _seconds(time: float | None) -> str:
 
 
 def sides(runs: Sequence[ReportedRun]) -> Table | None:
-    """Table of the sides: type, factors, and the energies that came in and that it took; None without summaries."""
+    """Table of the sides: type, factors, energies that came in and absorbed energies; None without summaries."""
     rows = []
     for run in runs:
         tables = run.summary.get("boundaries", {})
@@ -207,7 +207,7 @@ def _version(run: ReportedRun) -> Entries:
 
 
 def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
-    """Estimated errors, RMS over RMS, of the runs that have them; None where none has."""
+    """Estimated errors, RMS over RMS, of the runs that have them; None without any."""
     return _or_none(beside("Estimated errors", runs, _estimated))
 
 

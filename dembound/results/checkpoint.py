@@ -1,4 +1,4 @@
-"""Checkpoints: the state of a run in a file, from which another process continues it to the same bits.
+"""Checkpoints: the state of a run in a file, from which another process continues it with identical results.
 
 A checkpoint is a NumPy archive (``.npz``, with a CRC-32 of every array): the arrays of `State.arrays`, and ``facts``,
 a JSON text with the version, the case with all its keys and files, the stage, the step, and the recorded numbers of
@@ -47,7 +47,7 @@ class Checkpoint:
     arrays: Arrays
 
     def write(self, path: Path, *, durable: bool = True) -> None:
-        """Write to a temporary file and rename it; durable : wait until the disk has it."""
+        """Write to a temporary file and rename it; durable : wait until it is on the disk."""
         text = np.frombuffer(json.dumps(dict(self.facts)).encode(), dtype=np.uint8)
         with replacing(path) as part, part.open("wb") as file:
             np.savez(file, allow_pickle=False, **{FACTS: text, **self.arrays})  # type: ignore[arg-type]
@@ -76,7 +76,7 @@ class Checkpoint:
 
 
 def _require_small(content: bytes) -> None:
-    """Raise ValueError for an archive that is compressed, as none is, or whose arrays declare more than is in it."""
+    """Raise ValueError for a compressed archive, or for arrays that declare more bytes than the archive has."""
     if content[:2] != b"PK":
         raise ValueError("no archive")
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
@@ -99,7 +99,7 @@ class Checkpoints(Tracker):
     path : file of the checkpoint. None: none are written.
     interval : s of wall time from one to the next.
     facts : returns the facts of the present state, after everything before it has been recorded; its second argument is
-    whether to wait until the disk has the record.
+    whether to wait until the record is on the disk.
     """
 
     name = "checkpoints"
@@ -109,7 +109,7 @@ class Checkpoints(Tracker):
         self._written = time.monotonic()
 
     def handle(self, run: Run) -> None:
-        """Do nothing, as it is never due."""
+        """Do nothing: a checkpoint is never due at a step."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Write a checkpoint if the last one is old; raises Stopped, after a checkpoint, if the process is to end."""
@@ -140,7 +140,7 @@ def facts_of(case: Case) -> dict[str, Any]:
 def differences(first: Any, second: Any, key: str = "") -> list[str]:
     """The keys in which two nested tables differ, a line each with both values.
 
-    A key that is not given has the value None, as TOML has no other.
+    A key that is not given has the value None, which TOML does not have.
     """
     if isinstance(first, Mapping) and isinstance(second, Mapping):
         names = dict.fromkeys([*first, *second])
@@ -152,5 +152,5 @@ def differences(first: Any, second: Any, key: str = "") -> list[str]:
 
 
 def _in_words(value: Any) -> str:
-    """The value of a key, or of one that is left out."""
+    """The value of a key in words, also if it is left out."""
     return "not given" if value is None else json.dumps(value)

@@ -1,11 +1,11 @@
-"""A file for HDF5 that changes only by commits: a process may end, or a disk be full, at any moment.
+"""A file for HDF5 that changes only by commits, so that a process may end, or a disk be full, at any moment.
 
 HDF5 changes its tables in place, so a file whose writer is killed between two writes may not be readable, and a write
 that fails leaves the library unable to close the file. Here writes beyond the end that the file had at the last commit
 go to the file at once, where no table refers to them yet. Writes below that end are kept in RAM as pages. A commit
 writes the pages to a log, renames it to ``<file>.log``, changes the file, and removes the log; so either the file is
-complete, or file and log are. A write that fails is kept in RAM, too, so that HDF5 can go on to its end, and is
-reported by `CommittedFile.check`; the file then remains as it was at the last commit.
+complete, or file and log together. A failed write is kept in RAM, too, so that HDF5 can finish, and
+`CommittedFile.check` reports it; the file then remains in its state at the last commit.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import h5py
 
 FORMAT = ("v110", "v110")
-"""Version of the HDF5 format: the first with checksums of all that HDF5 writes about data."""
+"""Version of the HDF5 format: the first with checksums of all metadata."""
 
 PAGE = 4096
 """Bytes of a page, the unit of the log."""
@@ -47,7 +47,7 @@ class CommittedFile(io.RawIOBase):
 
     Attributes
     ----------
-    failure : the first write that failed; from then on nothing is written any more.
+    failure : the first write that failed; nothing is written after it.
     """
 
     def __init__(self, path: Path, mode: Literal["w", "a", "r"]) -> None:
@@ -112,7 +112,7 @@ class CommittedFile(io.RawIOBase):
     def commit(self, *, durable: bool = True) -> None:
         """Make all that was written permanent; raises OSError as `check`.
 
-        durable : also if the power fails, for which the disk has to be waited for.
+        durable : wait for the disk, so that data survive a power failure.
         """
         self.check()
         wait = os.fsync if durable else _no_wait
@@ -163,7 +163,7 @@ class CommittedFile(io.RawIOBase):
         self._file = io.FileIO(self.path, "r+")
 
     def _read(self, at: int, view: memoryview) -> int:
-        """Read bytes of the file at a position; returns their number, below that asked for at its end."""
+        """Read bytes of the file at a position; returns their number, which is smaller at the end of the file."""
         if self._file.closed:
             return 0
         self._file.seek(at)
@@ -178,7 +178,7 @@ class CommittedFile(io.RawIOBase):
             self._pages[number][inside] = view[outside]
 
     def _write_log(self, wait: Callable[[int], None]) -> None:
-        """Write all pages to a log, completely or not at all; wait : waits for the disk, or not."""
+        """Write all pages to a log, completely or not at all; wait : function that waits for the disk, or not."""
         numbers = struct.pack(f"<{len(self._pages)}Q", *self._pages)
         body = numbers + b"".join(self._pages.values())
         part = self.log.with_name(f"{self.log.name}.part")
@@ -222,7 +222,7 @@ def log_of(path: Path) -> Path:
 
 @contextmanager
 def new_file(path: Path) -> Iterator[h5py.File]:
-    """A new HDF5 file to be written as a whole: it appears under its name when it is complete, or not at all.
+    """A new HDF5 file, which appears under its name when it is complete, or not at all.
 
     Raises OSError, such as for a full disk, without harm to HDF5.
     """
@@ -253,7 +253,7 @@ def changed_file(path: Path) -> Iterator[h5py.File]:
 
 
 def _pages_of(start: int, length: int) -> Iterator[tuple[int, slice, slice]]:
-    """The pages of a range of bytes: number, the range within the page, and that within the range."""
+    """The pages of a range of bytes: number, the part in the page, and the same part in the range."""
     end = start + length
     for number in range(start // PAGE, -(-end // PAGE) if length > 0 else 0):
         first, last = max(start, number * PAGE), min(end, (number + 1) * PAGE)

@@ -15,11 +15,11 @@ SAME_PLACE = 1e-9
 """Distance of two places over their distance from the origin up to which they are equal but for rounding."""
 
 SMALL = 0.01
-"""Share of the motion in the reference below which a component has no error of its own, as it is a small residual."""
+"""Share of the motion in the reference below which a component, as a small residual, has no own error."""
 
 
 FAINT = 1e-6
-"""Shift over the duration up to which there is none."""
+"""Shift over the duration that is neglected."""
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,10 @@ class Difference:
     """One monitor of a run compared with the reference.
 
     rms : √(Σ|a − b|²/Σ|b|²) of the vectors along x and y; peak : largest |a − b| over largest |b|; along : rms for
-    every component that is not `SMALL` in the reference. component : the one with the largest motion there; last,
-    reference_last : its values at the end; unit : of these. shift : s, by which the run was made earlier, as waves
-    enter it so much later than the reference; 0 without. apart : m, distance of the places whose motions are compared,
-    0 if it is rounding only; place, reference_place : these places, as text.
+    every component that is not `SMALL` in the reference. component : with the largest motion in the reference; last,
+    reference_last : its values at the end; unit : of these values. shift : s, by which the run's history was made
+    earlier, as waves enter the run later than the reference; else 0. apart : m, distance of the compared places, 0 if
+    it is only rounding; place, reference_place : these places, as text.
     """
 
     run: str
@@ -51,10 +51,10 @@ class Difference:
 def compare(reference: Path, runs: list[Path], quantity: Quantity, as_recorded: bool = False) -> list[Difference]:
     """Differences of runs from a reference run at the monitors they share, over the time they share.
 
-    Waves enter disks a little later or earlier than through the plane of a side, by disks and side. Where both records
-    have this delay, the difference is subtracted, unless they are compared as_recorded. The runs' histories are
-    interpolated at the reference's times. Twins in a free-field column share one line for each run, with the largest
-    error. Raises CaseError when nothing can be compared.
+    Waves enter disks a little later or earlier than through the plane of a side, depending on disks and side. If both
+    records have this delay, the difference of the delays is subtracted, unless they are compared as_recorded. The runs'
+    histories are interpolated at the reference's times. All twins in a free-field column have one line for each run,
+    with the largest error. Raises CaseError when nothing can be compared.
     """
     names = record_names([reference, *runs])[1:]
     expected, late = read_histories(reference, quantity), delay_of(reference)
@@ -148,6 +148,6 @@ def relative_errors(values: np.ndarray, expected: np.ndarray) -> tuple[float, fl
 
 
 def distance(place: Sequence[float] | np.ndarray, other: Sequence[float] | np.ndarray) -> float:
-    """Distance (m) of two places (2,) m; 0 if it is rounding only."""
+    """Distance (m) of two places (2,) m; 0 if it is only rounding."""
     apart = float(np.hypot(*np.subtract(place, other)))
     return apart if apart > SAME_PLACE * float(np.hypot(*other)) else 0.0

@@ -18,7 +18,7 @@ MOTION = ("histories", "snapshots", "particles", "energy")
 UNREADABLE = "cannot be read as a record of results"
 
 CHECKSUM = "filter returned failure"
-"""Part of HDF5's message for numbers that do not have their checksum, as no other filter is used."""
+"""Part of HDF5's message for numbers that do not match their checksum, the only filter used."""
 
 
 def is_of_checksum(error: Exception) -> bool:
@@ -62,7 +62,7 @@ def require_readable(file: h5py.File) -> None:
 
 
 def require_finite(file: h5py.File) -> None:
-    """Raise RecordError for the first number of the motion in a record that is not finite, as none of a run's is."""
+    """Raise RecordError for the first number of the motion in a record that is not finite."""
     import h5py
     import numpy as np
 
@@ -78,7 +78,7 @@ def require_finite(file: h5py.File) -> None:
 
 
 def require_places(file: h5py.File) -> None:
-    """Raise RecordError for particles of no size, and for monitors of particles that the record does not have."""
+    """Raise RecordError for particles without size, and for monitors of particles that the record does not have."""
     import h5py
     import numpy as np
 

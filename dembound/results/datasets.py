@@ -11,17 +11,17 @@ if TYPE_CHECKING:
     import h5py
 
 CHUNK_BYTES = 2**20
-"""Largest size of a chunk, the unit in which HDF5 reads, and of which it has one checksum each."""
+"""Largest size (bytes) of a chunk, the unit of HDF5's reading and checksums."""
 
 GROWING_BYTES = 2**13
-"""Bytes of a chunk of a dataset that grows, whose last chunk is written again and again."""
+"""Bytes of a chunk of a dataset that grows, whose last chunk is rewritten often."""
 
 Columns = Iterable[tuple[str, tuple[int, ...], str, str]]
 """Datasets of a group: their names, widths of a row, types and units."""
 
 
 def text(value: str) -> np.bytes_:
-    """A text in UTF-8 of fixed length, whose bytes have a checksum; HDF5 keeps others in heaps that have none."""
+    """A text in UTF-8 of fixed length, which has a checksum; texts of variable length have none in HDF5."""
     return np.bytes_(value.encode() or b"\0")
 
 

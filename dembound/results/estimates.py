@@ -19,7 +19,7 @@ KEY = "error_estimate"
 """Entry of the summary."""
 
 NAMES = {"disks": "these disks", "rock": "the rock"}
-"""Truths, relative to which errors are given, in words."""
+"""Motions relative to which errors are given, in words."""
 
 LEAST = 1e-3
 """Smallest error that is given as a number."""
@@ -39,7 +39,7 @@ class Band:
 
 
 def read_bands(record: Path, quantity: str) -> dict[str, Band]:
-    """The bands of a quantity by monitor, of the run whose record this is; none without an estimate.
+    """The bands of a quantity by monitor for the run of a record; none without an estimate.
 
     Raises RecordError for a file that cannot be read.
     """
@@ -59,7 +59,7 @@ def read_bands(record: Path, quantity: str) -> dict[str, Band]:
 
 
 def in_words(share: float) -> str:
-    """A share in per cent with two digits, from `LEAST` on."""
+    """A share in per cent with two digits, at least `LEAST`."""
     return f"< {percent(LEAST)}" if share < LEAST else percent(share)
 
 
@@ -70,7 +70,7 @@ def split_in_words(shares: Mapping[str, float]) -> str:
 
 
 def entries(estimate: Mapping[str, Any]) -> Entries:
-    """The entry of a summary as names and texts: errors at each monitor, how they were found, and what is missing."""
+    """The entry of a summary as names and texts: errors at each monitor, their origin, and missing causes."""
     for monitor, quantities in estimate["monitors"].items():
         for quantity, found in quantities.items():
             totals = ", ".join(f"of {NAMES[of]} {_between(each)}" for of, each in found["of"].items())
@@ -82,5 +82,5 @@ def entries(estimate: Mapping[str, Any]) -> Entries:
 
 
 def _between(share: Mapping[str, float]) -> str:
-    """An error, and how large it may be."""
+    """An error and its upper bound, in words."""
     return f"{in_words(share['value'])}, at most {percent(share['upper'])}"

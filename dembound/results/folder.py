@@ -25,11 +25,11 @@ OWN = re.compile(
     r"|(scene|histories|histories_stress)\.png(\.part)?"
     r"|paraview/((particles|contacts|bar|continuum)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py)(\.part)?"
 )
-"""The files that a run writes, by their paths in its folder; all others are somebody else's, and are kept."""
+"""The files that a run writes, by their paths in its folder; all other files are kept."""
 
 
 NO_NAMES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.IGNORECASE)
-"""Names that Windows keeps for devices."""
+"""Names that Windows reserves for devices."""
 
 
 def problem_of(name: str) -> str:
@@ -48,7 +48,7 @@ def problem_of(name: str) -> str:
 
 
 def with_name(path: Path) -> Path:
-    """A path that ends in the name of its folder, also of the current folder and the one above."""
+    """A path that ends in the name of its folder, also for the current folder and the one above."""
     return path if path.name not in ("", "..") else path.resolve()
 
 
@@ -67,14 +67,14 @@ class Folder:
 
     @classmethod
     def of(cls, path: Path) -> Self:
-        """The folder of a run from the path of the complete or the partial one, which may be the current folder."""
+        """The folder of a run from the path of its complete or partial folder, which may be the current folder."""
         named = with_name(path)
         return cls(named.parent, named.name.removesuffix(PARTIAL))
 
     def check(self) -> None:
         """Raise CaseError where results cannot be written: at a link, a file, a folder without a run or one in use.
 
-        A name cannot end like the folder of another run, and must be possible on all systems.
+        Also for names that end like the partial folder of another run, or are impossible on some system.
         """
         if problem := problem_of(self.name):
             raise CaseError([f"{self.name!r}: is no name for results, {problem}; give another --name"])
@@ -91,7 +91,7 @@ class Folder:
         self.require_unused()
 
     def require_unused(self) -> None:
-        """Raise CaseError if a run is writing it."""
+        """Raise CaseError if a run is writing to it."""
         if (self.partial / LOCK).is_file():
             self._lock().release()
 
@@ -137,7 +137,7 @@ class Folder:
     def finish(self) -> None:
         """Replace the final folder; files in it that no run has written remain there.
 
-        Of a process that has ended in between, the replaced folder may be left; its files are moved, too.
+        A replaced folder left by a process that ended meanwhile is also emptied.
         """
         if self.final.exists():
             if self._old.is_dir():

@@ -26,7 +26,7 @@ UNITS = {
 """Units of x, y and rotation; the stress is along x."""
 
 SCALES = {"velocity": 1.0, "displacement": 1.0, "acceleration": 1.0, "stress": 1e6}
-"""SI units in the units shown."""
+"""SI value of the units shown."""
 
 SOURCES = {"acceleration": "velocity"}
 """The recorded quantity from which a quantity that is not recorded is computed."""
@@ -37,7 +37,7 @@ class MonitorRecord:
     """The record of one monitor in one run.
 
     time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); position (2,) m of its particle;
-    this and the position given in the case, as text.
+    both this position and the position given in the case as text.
     """
 
     time: np.ndarray
@@ -50,8 +50,8 @@ class MonitorRecord:
 def read_histories(path: Path, quantity: Quantity) -> dict[str, MonitorRecord]:
     """The histories of a run by monitor name; empty for a run without monitors.
 
-    Accelerations are central differences of the recorded velocity, one-sided ones at both ends; with
-    `output.history_interval` they are means over that interval on either side.
+    Accelerations are central differences of the recorded velocity, one-sided at both ends; with
+    `output.history_interval` they are means over this interval on either side.
 
     Raises CaseError when the file cannot be read, has no stress where it is requested, or too few samples for an
     acceleration.
@@ -67,9 +67,9 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, MonitorRecord]:
 
 
 def delay_of(path: Path) -> float | None:
-    """Time (s) by which all motion of a record is later than waves through the planes of sides; None: unknown.
+    """Time (s) by which all motion of a record is later than if waves entered through the planes of sides.
 
-    Raises CaseError when the file cannot be read.
+    None: unknown. Raises CaseError when the file cannot be read.
     """
     with open_record(path) as file:
         late = file.attrs.get("late")

@@ -43,7 +43,7 @@ class KeptStages(Stages):
     folder : of the stages, created with the first one; None: none are kept.
     keys : the keys of the case on which they depend.
     checkpoints : makes the tracker that writes checkpoints of a stage, given its name.
-    source : folder of another run whose stages are used; None: this one's.
+    source : folder of another run whose stages are used; None: the stages of this run.
     unfinished : name of a stage that a checkpoint was written in, and a function that returns its arrays; or None.
     """
 
@@ -70,7 +70,7 @@ class KeptStages(Stages):
         return settled_state(self._source, name, self._keys)
 
     def begin(self, name: str, simulation: Simulation) -> None:
-        """Write checkpoints of the stage, and continue it where it was left."""
+        """Write checkpoints of the stage, and continue it from its checkpoint."""
         self._begun = simulation, self._checkpoints(name)
         simulation.track(self._begun[1])
         if self._unfinished is not None and self._unfinished[0] == name:
@@ -79,7 +79,7 @@ class KeptStages(Stages):
             self._unfinished = None
 
     def finish(self, name: str, arrays: Arrays) -> None:
-        """Keep the stage, and a checkpoint of it, with which a run that is not begun can be resumed."""
+        """Keep the stage and its checkpoint, with which a run can be resumed before its first step."""
         if self._folder is not None:
             self._folder.mkdir(parents=True, exist_ok=True)
             facts = {"version": __version__, "keys": self._keys}

@@ -1,4 +1,4 @@
-"""Mappings by the names of what results have, which answer other names with those there are."""
+"""Mappings by names of monitors or sides, whose errors for other names list the existing ones."""
 
 from collections.abc import Collection, Mapping
 from typing import TypeVar
@@ -10,7 +10,7 @@ T = TypeVar("T")
 
 
 class Named(dict[str, T]):
-    """Values by the names of monitors or sides; another name raises NameMissingError, with those there are.
+    """Values by the names of monitors or sides; another name raises NameMissingError with the existing names.
 
     what : they are names of; where : the file they are in.
     """
@@ -24,6 +24,6 @@ class Named(dict[str, T]):
 
 
 def missing(what: str, name: str, known: Collection[str], where: str = "") -> NameMissingError:
-    """The error for a name that is not among those known."""
+    """The error for an unknown name."""
     there = f"must be one of {choices(str(name), list(known))}" if known else "there are none"
     return NameMissingError([f"{what}: is {show(name)}, {there}"], where)

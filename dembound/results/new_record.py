@@ -1,4 +1,4 @@
-"""A new record: its groups and attributes, the datasets that do not change, and those that will grow, empty.
+"""A new record: its groups and attributes, constant datasets, and empty datasets that will grow.
 
 Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit``)::
 
@@ -68,10 +68,10 @@ DISPLACEMENT_UNIT = "m, m, rad"
 VELOCITY_UNIT = "m/s, m/s, rad/s"
 
 MOTION = ("displacement", "velocity")
-"""Names of what every snapshot has."""
+"""Names of the datasets of every snapshot."""
 
 NO_PARTICLE = -1
-"""Number in place of a particle's for a monitor in a continuum."""
+"""Number of the particle of a monitor in a continuum."""
 
 LONGEST_NAME = 64
 """Bytes of the name of a law."""
@@ -154,7 +154,7 @@ def _grows(item: h5py.HLObject) -> bool:
 
 
 def _require_like(file: h5py.File, name: str, expected: h5py.HLObject, rows: int) -> None:
-    """Raise RecordError if a record has nothing like a group or dataset of its layout, fewer rows, or as `finite`."""
+    """Raise RecordError if a record lacks a group, dataset or rows of its layout, or has numbers that are not finite."""
     found = file.get(name)
     if found is None or hasattr(found, "dtype") != hasattr(expected, "dtype"):
         raise _lacking(file, name)
@@ -224,7 +224,7 @@ def header_of_monitor(scene: Scene, name: str) -> dict[str, Any]:
 
 
 def _make_energy(file: h5py.File, scene: Scene, sides: Sequence[str]) -> None:
-    """Empty columns of the ledger, and of these sides."""
+    """Make empty columns of the ledger and of sides."""
     unit = scene.energy_unit
     columns = [(field.name, (), "f8", "s" if field.name == "time" else unit) for field in fields(Entry)]
     make(file.create_group("energy"), columns)

@@ -24,10 +24,10 @@ COMPONENTS = ("x", "y", "rotation")
 
 
 _sound: set[tuple[int, ...]] = set()
-"""Records that this process has checked for damage, without members of their collections, see `_state_of`."""
+"""States (`_state_of`) of records that this process has checked for damage, without members of their collections."""
 
 _own: set[tuple[int, ...]] = set()
-"""Records that this process has written, in which nothing is searched."""
+"""States of records that this process has written, which are not checked."""
 
 
 @contextmanager
@@ -54,17 +54,17 @@ def trust(path: Path) -> None:
 
 
 def _state_of(path: Path) -> tuple[int, ...]:
-    """Identity of a file in its present state, under any name: device, number, time of change (ns) and size."""
+    """Identity of a file in its present state, for any name: device, number, time of change (ns) and size."""
     status = path.stat()
     return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
 
 
 @contextmanager
 def reading(path: Path) -> Iterator[h5py.File]:
-    """Open a record that has been open before, and whose columns need not be compared again.
+    """Open a record that has been checked before.
 
-    Raises RecordError when it cannot be read, and for everything that damaged contents raise inside the statement,
-    which should therefore do little but read. Errors of the operating system about other files are passed on.
+    Raises RecordError when it cannot be read, and for errors that damaged contents cause inside the statement, which
+    should therefore only read. Errors of the operating system about other files are passed on.
     """
     import h5py
 
@@ -89,7 +89,7 @@ def reading(path: Path) -> Iterator[h5py.File]:
 
 @contextmanager
 def understood(*records: Path) -> Iterator[None]:
-    """Raise RecordError, in one line, for all that foreign records or summaries raise in what is made of them."""
+    """Raise RecordError, in one line, for all errors inside that records or summaries of other origin cause."""
     try:
         yield
     except (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError, MemoryError) as error:
@@ -103,7 +103,7 @@ def understood(*records: Path) -> Iterator[None]:
 
 
 def text_of(value: str | bytes) -> str:
-    """A text of a record, which may be of fixed length, that is, bytes in UTF-8."""
+    """A text of a record; texts of fixed length are bytes in UTF-8."""
     return value.decode() if isinstance(value, bytes) else str(value)
 
 
@@ -122,7 +122,7 @@ def _rows(group: Mapping[str, h5py.HLObject]) -> set[int]:
 
 
 def finite(column: h5py.Dataset) -> np.ndarray:
-    """The numbers of a column that every run records finite, as one whose motion grows without bound ends before.
+    """The numbers of a column that every run records as finite.
 
     Raises RecordError for others.
     """
@@ -135,7 +135,7 @@ def finite(column: h5py.Dataset) -> np.ndarray:
 
 
 def increasing(times: h5py.Dataset) -> np.ndarray:
-    """The times of a column, each later than the one before; raises RecordError for others, and as `finite`."""
+    """The times of a column, each later than the one before; raises RecordError for others, also for infinite ones."""
     values = finite(times)
     if values.ndim != 1 or not np.all(np.diff(values) > 0.0):
         raise RecordError([f"{times.file.filename}: is damaged: the times in {times.name[1:]} do not increase"])
@@ -177,10 +177,10 @@ def require_run(file: h5py.File) -> None:
 
 
 class Snapshots(Sequence["h5py.Group"]):
-    """All snapshots of an open record in the order of time, that of their numbers: HDF5 lists 10000 before 1001.
+    """All snapshots of an open record in the order of time, sorted by number: HDF5 lists 10000 before 1001.
 
     Each is checked for damage when it is first used, and has as many rows in each column as the record has particles.
-    names : of all, in this order, where they are known; listing them takes 2 µs each.
+    names : of all snapshots, in this order, if known; listing them takes 2 µs each.
     """
 
     def __init__(self, file: h5py.File, names: list[str] | None = None) -> None:
@@ -270,7 +270,7 @@ def cracks_until(file: h5py.File, time: float) -> dict[str, np.ndarray]:
 
 
 def until(cracks: dict[str, np.ndarray], time: float) -> dict[str, np.ndarray]:
-    """The cracks, columns as by `cracks_until`, that have happened at a time in s."""
+    """The cracks before a time in s, with the columns of `cracks_until`."""
     broken = cracks["time"] <= time
     return {name: column[broken] for name, column in cracks.items()}
 
@@ -291,10 +291,10 @@ def laws_of(file: h5py.File) -> list[tuple[str, float]]:
 def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
     """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre (a bar: J).
 
-    One more column, relative_error, is the error over the energy supplied in the whole run: the kinetic energy at the
-    start plus the largest energies that boundaries with driven loads, and steady loads, have each supplied up to any
-    time. The work of the forces that balance a settled stress and the energy absorbed by boundaries are not included,
-    as both also grow in an unstable run.
+    Another column, relative_error, is the error over the energy supplied in the whole run: the kinetic energy at the
+    start, plus the largest energy supplied up to any time by boundaries with driven loads, plus that by steady loads.
+    The work of the forces that balance a settled stress and the energy absorbed by boundaries are not included, as both
+    also grow in an unstable run.
 
     Raises CaseError when there is no entry, RecordError for the ledger of an earlier version, and as `finite`.
     """
@@ -318,7 +318,7 @@ def side_energies_of(file: h5py.File) -> dict[str, dict[str, np.ndarray]]:
 
 
 def record_names(paths: Sequence[Path]) -> list[str]:
-    """A name for each record, for legends: its case's name, if two have the same its folder's name, else its path."""
+    """A name for each record, for legends: of its case or, where names are equal, of its folder, or else its path."""
     names = []
     for path in paths:
         with open_record(path) as file:

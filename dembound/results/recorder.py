@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import h5py
 
 KEPT_BYTES, KEPT_SECONDS = 2**20, 10.0
-"""Samples and cracks are kept in RAM until the samples have this size, or for this long.
+"""Largest size (bytes) of samples, and longest time (s), for which samples and cracks are kept in RAM.
 
 Thousands of small writes take longer than all steps of a small scene."""
 
@@ -135,7 +135,7 @@ class Recorder:
         }
 
     def _find_datasets(self) -> None:
-        """The datasets that grow; searching one in the file takes as long as extending it."""
+        """The datasets that grow, kept because searching a dataset takes as long as extending it."""
         self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
         self._side_histories = [dict(self.file["boundaries"][name]) for name in self._sides]
         self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
@@ -164,11 +164,11 @@ class Recorder:
         describe(self.file, facts)
 
     def flush(self, *, durable: bool = True) -> None:
-        """Write everything up to now; the file can be read as of now, whatever happens next.
+        """Write everything up to now; from then on the file is readable in this state.
 
-        durable : also if the power fails, for which the disk has to be waited for.
+        durable : wait for the disk, so that data survive a power failure.
 
-        Raises OSError if that or anything before could not be written; the file is then as after the flush before.
+        Raises OSError if anything could not be written; the file then has the state of the previous flush.
         """
         import h5py
 
@@ -207,7 +207,7 @@ class Recorder:
         write(snapshot_of(self.file, -1), "unbalanced", stalled.unbalanced, "N")
 
     def _cut(self, counts: Mapping[str, int]) -> None:
-        """Remove what was written after the state that the run continues from."""
+        """Remove everything written after the state from which the run continues."""
         for name, history in self.file["histories"].items():
             if name in self.scene.monitors:
                 _cut(history, counts["histories"])

@@ -7,7 +7,7 @@ from dembound.results.recorder import Recorder
 
 
 class Histories(Tracker):
-    """Writes the motion of the monitors, and the bonds that broke, after every return of the loop."""
+    """Writes the motion of the monitors, and broken bonds, after every block of steps."""
 
     name = "histories"
 
@@ -15,7 +15,7 @@ class Histories(Tracker):
         self.recorder = recorder
 
     def handle(self, run: Run) -> None:
-        """Do nothing, as it is never due."""
+        """Do nothing: histories are never due at a step."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Append the record."""
@@ -52,6 +52,6 @@ class Snapshots(Tracker):
         self._after(run.state.step)
 
     def take_last(self, run: Run) -> None:
-        """Write the scene at the end of a run that was ended early, unless it was just written or none are kept."""
+        """Write the scene at the end of a run that ended early, unless just written or the run has no snapshots."""
         if self._number > 0 and self._last < run.state.step:
             self.handle(run)

@@ -5,23 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 ABRUPT = 4.0
-"""Change between two samples, over the larger one of those before and after, above which motion jumps between them.
+"""Change between two samples, over the larger of the changes before and after, above which motion jumps.
 
-It is at most 1/cos(2π/n) in a sine with n samples a period: 3.2 with 5 of them, 1.05 with 20.
+In a sine with n samples a period this ratio is at most 1/cos(2π/n): 3.2 with 5 samples, 1.05 with 20.
 """
 
 JUMP = 0.01
-"""Change between two samples, over the largest value, up to which none is a jump: splines ring by a quarter of it."""
+"""Change between two samples, over the largest value, up to which it is not a jump: splines ring by a quarter of it."""
 
 FEWEST = 4
-"""Samples of the shortest smooth piece through which a cubic is put."""
+"""Number of samples of the shortest smooth piece that is interpolated by a cubic spline."""
 
 
 def at_times(time: np.ndarray, values: np.ndarray, requested: np.ndarray) -> np.ndarray:
     """Values (m,) or (m, c) of a history at requested times (m,) s; constant before its first and after its last.
 
-    time (k,) s, ascending, and values (k,) or (k, c) of the history. A sine with 20 samples a period has an error of
-    0.002 % then, with straight lines 0.9 %. A spline through a jump would overshoot for some samples on both sides.
+    time (k,) s, ascending, and values (k,) or (k, c) of the history. The error in a sine with 20 samples a period is
+    0.002 %, with straight lines 0.9 %. A spline through a jump would overshoot for some samples on both sides.
     """
     if np.array_equal(time, requested):
         return values

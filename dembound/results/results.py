@@ -52,7 +52,7 @@ class Arrays(Mapping[str, np.ndarray]):
         return f"<{self._group}: {', '.join(self._names)}>"
 
     def units(self, name: str) -> tuple[str, ...]:
-        """The units of the columns of an array, one each, as of x, y and rotation; errors as of the array."""
+        """The units of the columns of an array, such as x, y and rotation; errors as for the array."""
         self._require(name)
         with reading(self._record) as file:
             dataset = file[self._group][name]
@@ -66,7 +66,7 @@ class Arrays(Mapping[str, np.ndarray]):
 
 
 _PARTS = ("histories", "snapshots", "particles", "boundaries", "cracks", "energy", "side_energies", "laws", "summary")
-"""Attributes of `Results` that have what was recorded."""
+"""Attributes of `Results` with recorded data."""
 
 
 class _Snapshots(Sequence[Arrays]):
@@ -131,7 +131,7 @@ class Results:
         return f"<Results of {self.name}: {len(self.histories)} histories, {len(self.snapshots)} snapshots>"
 
     def __getitem__(self, name: str) -> NoReturn:
-        """Raises TypeError, with the attributes that there are instead."""
+        """Raises TypeError with the existing attributes."""
         raise TypeError(f"results have no [{name!r}]; their parts are attributes: {', '.join(_PARTS)}")
 
     @property
@@ -157,7 +157,7 @@ class Results:
 
     @property
     def energy_units(self) -> dict[str, str]:
-        """The unit of each column of `energy`; errors as of that."""
+        """The unit of each column of `energy`; the same errors."""
         with open_record(self._record) as file:
             columns = file.get("energy", {})
             return {
@@ -172,7 +172,7 @@ class Results:
             return side_energies_of(file)
 
     def _array(self, file: h5py.File, name: str) -> Arrays:
-        """A group of the record, without arrays if it does not have it, as one of exact histories."""
+        """A group of the record, without arrays if the record does not have it, such as exact histories."""
         return Arrays(self._record, f"/{name}", file.get(name))
 
     def _arrays(self, file: h5py.File, name: str, what: str) -> Named[Arrays]:

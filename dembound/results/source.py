@@ -1,4 +1,4 @@
-"""The case file that a record comes from: its place relative to the folder of results, and whether it has changed."""
+"""The case file of a record: its place relative to the folder of results, and whether it has changed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from dembound.casefile import Case
 
 PLACE, DIGEST = "source", "source_digest"
-"""Attributes of a record: the file's path relative to the folder that has the folder of results, and its SHA-256."""
+"""Attributes of a record: the case file's path relative to the parent of the folder of results, and its SHA-256."""
 
 
 def file_of(case: Case) -> Path:

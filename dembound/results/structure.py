@@ -1,10 +1,10 @@
 """Checks of a file before it is read as a record: structure, types and bounded size.
 
-A file may come from anywhere. HDF5 lets it refer to other files, contain itself, or declare petabytes that are nowhere;
-a record does none of this, and has its columns in known shapes.
+A file may come from anywhere. HDF5 lets it refer to other files, contain itself, or declare petabytes without data; a
+record does none of this, and has its columns in known shapes.
 
-The search takes 0.03 to 0.07 ms for each group, dataset and attribute, which would be minutes for thousands of
-snapshots. So their groups are searched one by one when they are used, see `Members`.
+The search takes 0.03 to 0.07 ms for each group, dataset and attribute, so minutes for thousands of snapshots. Groups of
+snapshots are therefore searched when they are used, see `Members`.
 """
 
 from __future__ import annotations
@@ -90,10 +90,10 @@ ATTRIBUTES: Mapping[str, tuple[str, tuple[int, ...]]] = {
 
 
 def require_structure(file: h5py.File) -> None:
-    """Raise RecordError for a file that is not built like a record, apart from the members of its collections.
+    """Raise RecordError for a file without the structure of a record; members of its collections are left out.
 
     No link of any kind is followed, and nothing is visited twice. Every group, dataset and attribute is opened once, as
-    methods such as ``items`` leave out damaged ones, so this raises what h5py raises for them, too.
+    methods such as ``items`` leave out damaged ones; errors of h5py for damaged ones are passed on.
     """
     _search(file, "", MOST_OBJECTS, 0)
 
@@ -137,7 +137,7 @@ def run_of(group: h5py.Group) -> str:
 
 
 def _search(file: h5py.File, start: str, most: int, declared: int) -> int:
-    """Search a group and all in it; raises RecordError as `require_structure`.
+    """Search a group and its contents; raises RecordError as `require_structure`.
 
     start : its path, empty for the whole file. most : groups, datasets and attributes. declared : bytes of all datasets
     that were searched before; returns them with those of this group.
@@ -241,7 +241,7 @@ def _is_of_chart(file: h5py.File, path: str) -> bool:
 
 
 def _require_attributes(file: h5py.File, name: str, item: Any, size: int, is_header: bool) -> None:
-    """Raise RecordError for an attribute of a type that none has, or, in the header of a run, of another type."""
+    """Raise RecordError for an attribute of an impossible type or, in the header of a run, of another type."""
     import numpy as np
     from h5py import h5a
 

@@ -23,7 +23,7 @@ FIELD_BYTES = 48
 """Bytes of displacement and velocity of a node in a snapshot."""
 
 WORTH_SAYING = 1e6
-"""Bytes of a snapshot below which leaving it out saves nothing."""
+"""Bytes of a snapshot below which leaving it out saves too little."""
 
 
 def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float]) -> dict[str, Any]:
@@ -55,7 +55,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
 
 
 def _describe_end(planned: Plan, run: Run) -> dict[str, Any] | None:
-    """Why and when a run ended before its duration, and the share of its steps that was saved; None for a whole run."""
+    """Reason and time of a run's end before its duration, and the saved share of its steps; None for a whole run."""
     step = run.state.step
     if step == planned.steps:
         return None
@@ -96,8 +96,8 @@ def _describe_energy(record: Path) -> dict[str, float]:
 def _describe_sides(record: Path) -> dict[str, Any]:
     """Energies of every side at the end of the run; `absorbed_share` is over all that came in through any side.
 
-    That is the sum of the largest energy that came in through each up to any time, but for what a continuum takes from
-    the body; null if nothing came in.
+    The total is the sum of the largest energy that came in through each side up to any time, without the energy that a
+    continuum takes from the body; null if nothing came in.
     """
     with open_record(record) as file:
         sides = side_energies_of(file)

@@ -11,7 +11,7 @@ from dembound.results.reader import open_record, text_of, understood
 FILE = "summary.json"
 
 LARGEST = 2**26
-"""Bytes of the longest file that is read."""
+"""Largest size (bytes) of a file that is read."""
 
 
 class Summary(dict[str, Any]):
@@ -24,7 +24,7 @@ class Summary(dict[str, Any]):
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """The object in a file of JSON, in which `Summary` objects take the place of all others.
+    """The object in a JSON file, with all objects as `Summary`.
 
     Raises RecordError, in one line, for any other file.
     """
@@ -42,7 +42,7 @@ def read_json(path: Path) -> dict[str, Any]:
 
 
 def _objects(found: Any) -> list[Summary]:
-    """An object and all in it."""
+    """An object and all objects in it."""
     waiting, objects = [found], []
     while waiting:
         each = waiting.pop()

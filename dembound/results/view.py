@@ -1,4 +1,4 @@
-"""Shows the disks of a run in a window, or draws them into a picture file."""
+"""Shows the disks of a run in a window, or draws them into a file."""
 
 import subprocess
 import sys
@@ -81,10 +81,10 @@ def view(
 
     run is a ``run.h5``; snapshot the number to begin with, negative ones counting from the last, by default the one
     with the largest motion; field velocity in m/s or displacement in m; picture a PNG file to draw into instead of
-    opening a window; exaggerate how many times their displacement disks and nodes are moved, cracks with them: 0 shows
-    them where they began, 1 where they are. Layers that absorb are pale. The axes, and the outlines of elements, are
-    those of the scene at the start. The window has a slider over several snapshots; dragging moves the scene, the wheel
-    zooms. Returns once it is closed.
+    opening a window; exaggerate the factor of the displacements of disks, nodes and cracks: 0 shows their first places,
+    1 their true ones. Layers that absorb are pale. The axes, and the outlines of elements, are those of the scene at
+    the start. The window has a slider over several snapshots; dragging moves the scene, the wheel zooms. Returns once
+    it is closed.
 
     Raises CaseError when the file cannot be read, is that of a bar or has no such snapshot, DemboundError without
     OpenGL or a display.
@@ -137,7 +137,7 @@ class Coloured:
 
     Parameters
     ----------
-    mesh : with so many `corners` in turn for each disk, which then is a cell, or 1 for nodes. group : of snapshots.
+    mesh : with `corners` points in turn for each disk, which is a cell, or 1 for nodes. group : of snapshots.
     opacity : of all, or of each node, 0 … 1.
     """
 
@@ -146,7 +146,7 @@ class Coloured:
         self._corners, self._still = corners, mesh.points.copy()
 
     def show(self, snapshot: h5py.Group, field: Field, exaggerate: float) -> None:
-        """Take the places and the field of a snapshot."""
+        """Show the places and the field of a snapshot."""
         fields = snapshot[self.group]
         data = self.mesh.point_data if self._corners == 1 else self.mesh.cell_data
         data[LABELS[field]] = lengths(fields, field)
@@ -239,7 +239,7 @@ def show_cracks(plotter: "pyvista.Plotter", positions: np.ndarray) -> None:
 
 
 def picture_size(size: np.ndarray) -> tuple[int, int]:
-    """Width and height of a picture in pixels for a scene of this size, (2,) m: low for one that lies long."""
+    """Width and height of a picture in pixels for a scene of a size (2,) m: low for a long horizontal scene."""
     across, up = WINDOW
     return across, min(up, round(across / (2.0 * MARGIN) * size[1] / size[0]) + ROUND)
 
@@ -267,10 +267,9 @@ def look_from_above(plotter: "pyvista.Plotter", extent: np.ndarray) -> None:
 
 
 def label_count(length: float, share: float) -> int:
-    """Number of evenly spaced labels on an axis from 0 to its length (m), whose share of the longest axis is given.
+    """Number of evenly spaced labels on an axis from 0 to its length (m), given its share of the longest axis.
 
-    As many as there is room for, or two more or less where that makes them round. Even, as an axis has its title at its
-    middle.
+    It fits the room, or is two more or less for round labels, and even, as the axis title is in the middle.
     """
     room = 2 * int(np.ceil(3.0 * share))
     steps = {count: length / (count - 1) for count in (room, room + 2, room - 2) if count > 0}

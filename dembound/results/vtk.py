@@ -46,12 +46,12 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
         the ``run.h5`` of a run.
     folder
         created if it does not exist; receives ``particles_0000.vtu`` …, all with the digits of the last one, and
-        ``particles.pvd``, or ``particles.vtkhdf``; ``view.py`` and, where bonds broke, ``cracks.vtu``; the same of
-        ``contacts`` if the record has them; of a bar ``bar_0000.vtu`` … in place of ``particles``.
+        ``particles.pvd``, or ``particles.vtkhdf``; ``view.py`` and, where bonds broke, ``cracks.vtu``; the same files
+        for ``contacts`` if the record has them; for a bar ``bar_0000.vtu`` … in place of ``particles``.
     kind
         the kind of body that the run is of.
     files
-        which of them are written.
+        formats that are written.
 
     PVD files are written last, so all files they list exist.
 
@@ -121,7 +121,7 @@ def vertices(points: np.ndarray, data: Arrays) -> meshio.Mesh:
 
 
 def shown(fields: Arrays) -> dict[str, np.ndarray]:
-    """Fields by name in the precision in which they are shown: single, whole numbers in 32 bits, truth in 8."""
+    """Fields by name in the precision for ParaView: single, whole numbers in 32 bits, truth values in 8."""
     kinds = {"f": np.float32, "i": np.int32, "b": np.uint8}
     return {name: values.astype(kinds[values.dtype.kind], copy=False) for name, values in fields.items()}
 

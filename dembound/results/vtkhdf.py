@@ -2,8 +2,8 @@
 
 The format is version 2.0 of the "VTKHDF format specification" (docs.vtk.org), which VTK 9.4 and later read. Datasets
 have the values of all steps one after the other; tables in ``Steps`` have the time of every step and the rows at which
-its points, cells and arrays begin. Values equal to those of the step before, such as cells, radii and ids, are not
-written again: their row is the same.
+its points, cells and arrays begin. Values that equal the step before, such as cells, radii and ids, are not written
+again but have the same row.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class TemporalFile:
         self._tables["Values"].append(time)
 
     def finish(self) -> None:
-        """Write what is kept, sizes and tables, without which the file cannot be read."""
+        """Write buffered values, sizes and tables, without which the file cannot be read."""
         for name in list(self._kept):
             self._write(name)
         for name, sizes in zip(PART_SIZES, zip(*self._parts, strict=True), strict=True):
@@ -75,7 +75,7 @@ class TemporalFile:
             steps[name] = np.array(column, dtype=np.float64 if name == "Values" else np.int64)
 
     def _cells_of(self, mesh: meshio.Mesh) -> dict[str, int]:
-        """The tables' rows for the cells of a mesh; they are a new part unless they are those of the step before."""
+        """The tables' rows for the cells of a mesh; cells that equal the step before are not written again."""
         block = mesh.cells[0]
         (count, corners), ids = block.data.shape, block.data.ravel().astype(np.int64)
         sizes = (len(mesh.points), count, len(ids))
@@ -93,14 +93,14 @@ class TemporalFile:
         return self._cells[1]
 
     def _row(self, name: str, values: np.ndarray) -> int:
-        """The row of a dataset at which values begin; they are appended unless they are those of the step before."""
+        """The row of a dataset at which values begin; values that equal the step before are not appended."""
         same = _digest(values)
         if name not in self._begun or self._begun[name][0] != same:
             self._begun[name] = same, self._extend(name, values)
         return self._begun[name][1]
 
     def _extend(self, name: str, values: np.ndarray) -> int:
-        """Append values to a dataset; returns the row at which they begin. Small ones are written several at once."""
+        """Append values to a dataset; returns the row at which they begin. Several small ones are written at once."""
         begin, kept = self._rows[name], self._kept[name]
         kept.append(values)
         self._rows[name] += len(values)
@@ -109,7 +109,7 @@ class TemporalFile:
         return begin
 
     def _write(self, name: str) -> None:
-        """Write the values that are kept of a dataset."""
+        """Write the buffered values of a dataset."""
         values = np.concatenate(self._kept.pop(name))
         width = values.shape[1:]
         if name not in self._root:

@@ -19,18 +19,18 @@ MOVING = 0.2
 """Share of a monitor's peak velocity that its velocity, and the change of it, must exceed to count as moving.
 
 Behind a pulse, random packings have a coda of some per cent, and sides with factors of 1 reflect up to a sixth; both
-are below this share. A velocity above this share that does not change is a steady motion: of a piece in flight, a grip,
+are below this share. A velocity above this share that does not change is a steady motion of a piece in flight, a grip,
 or a body that drifts on its dashpots.
 """
 
 LATELY, NOW = 0.1, 0.05
-"""Last parts of a run: the velocity must change over the one, and must be large in the other.
+"""Last parts of a run: the velocity must change over the first part, and must be large in the second.
 
 The first is at least half a period, as the velocity hardly changes near its crest.
 """
 
 UNEXPLAINED = 0.01
-"""Share of the energy put in that may be taken by the length of the step, or be unaccounted for, without a warning."""
+"""Share of the supplied energy that may be lost by the length of the step, or be unaccounted for, without a warning."""
 
 QUIET = 0.01
 """Share of the largest known velocity; a monitor with a smaller peak has not been reached by the motion.
@@ -81,7 +81,7 @@ def _mean_velocity(scene: Scene, file: h5py.File) -> float:
 
 
 def _why_moving(scene: Scene) -> str:
-    """Why waves stay in a braked body, in words: opposite sides that reflect them, or too short a run."""
+    """Reason why waves stay in a damped body, in words: opposite sides that reflect them, or too short a run."""
     motion, kept = getattr(scene.case, "motion", None), []
     for axis, pair in (("x", ("left", "right")), ("y", ("bottom", "top"))):
         if motion is not None and axis in motion.held:
@@ -98,7 +98,7 @@ def _why_moving(scene: Scene) -> str:
 
 
 def energy_warnings(scene: Scene, energy: Mapping[str, float]) -> Iterator[str]:
-    """Warnings about energy that the length of the step has taken or added, and that is unaccounted for.
+    """Warnings about energy lost or gained by the length of the step, and about unaccounted energy.
 
     energy : the entry of the summary.
     """
@@ -117,7 +117,7 @@ def energy_warnings(scene: Scene, energy: Mapping[str, float]) -> Iterator[str]:
 def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:
     """A warning about a run that should have ended when all monitors were silent, and did not.
 
-    ended : the entry of its summary, None for a whole run. file : its open record.
+    ended : the entry of the summary on an early end, None for a whole run. file : its open record.
     """
     run = scene.case.run
     if run.until != "silent" or ended is not None:
@@ -139,7 +139,7 @@ def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:
 
 
 def _braked(scene: Scene, pieces: np.ndarray) -> np.ndarray:
-    """The nodes (n,) bool whose motion is damped: all with local damping, else those connected to what absorbs.
+    """The nodes (n,) bool whose motion is damped: all with local damping, else nodes connected to absorbing sides.
 
     Pieces that have broken off continue to move and vibrate.
     """

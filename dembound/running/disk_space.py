@@ -14,14 +14,14 @@ from dembound.motion.ram import in_words
 from dembound.running.planning import steps_between_entries, steps_between_samples
 
 ALWAYS = 1e6
-"""Bytes of pictures, of the summary, and of the first chunks of what grows."""
+"""Bytes of pictures, the summary, and the first chunks of datasets that grow."""
 
 MOTION = 8 + 24 + 24
-"""Bytes of a sample of a monitor: time, displacement and velocity; of a side a force in place of the velocity."""
+"""Bytes of a sample of a monitor: time, displacement and velocity; a side has a force in place of the velocity."""
 
 
 def results_bytes(planned: Plan) -> dict[str, float]:
-    """Bytes of the results of a run, by the key of the case that determines how many; they are an estimate.
+    """Estimated bytes of the results of a run, by the key of the case that determines them.
 
     While a checkpoint is written, there are two of them; they contain the ledger. A run that is continued to a later
     time keeps the interval of its snapshots.
@@ -45,7 +45,7 @@ def results_bytes(planned: Plan) -> dict[str, float]:
 
 
 def bytes_left(planned: Plan, written: float = 0.0) -> dict[str, float]:
-    """Bytes still to be written by a run that has written so many bytes; all keys have an equal share."""
+    """Bytes still to be written by a run, given the written bytes; all keys have an equal share."""
     sizes = results_bytes(planned)
     share = max(0.0, 1.0 - written / sum(sizes.values()))
     return {key: share * size for key, size in sizes.items()}
@@ -67,7 +67,7 @@ def _free(results: Path) -> str:
 
 
 def space_warnings(planned: Plan, results: Path, written: float = 0.0) -> Iterator[str]:
-    """A warning about results that are, without the bytes already written, larger than the free space of their disk."""
+    """A warning about results whose remaining bytes exceed the free space of their disk."""
     sizes, free = bytes_left(planned, written), disk_free(results)
     need = sum(sizes.values())
     if free is not None and need > free:

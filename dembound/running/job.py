@@ -39,7 +39,7 @@ SECTIONS = ("import", "compile", "build", "settle", "step", "record", "export", 
 """The parts of a run whose time is measured, in the order of the summary."""
 
 LARGE = 1e9
-"""Bytes of results whose size is logged before the run."""
+"""Bytes of results above which their size is logged before the run."""
 
 RESUMED_SECTIONS = ("settle", "step", "record")
 """Parts of a run that a resumed run does not repeat."""
@@ -83,11 +83,11 @@ def resume_case(
 ) -> Path:
     """Continue a run from its last checkpoint, to the same results as if it had never stopped; returns its folder.
 
-    folder : of its results, the partial one or the complete one. until : s, another duration; histories, ledger and
-    snapshots keep their intervals. A complete run cannot be continued without it. shared: as of `run_case`.
+    folder : partial or complete folder of its results. until : s, another duration, required for a complete run;
+    histories, ledger and snapshots keep their intervals. shared: as of `run_case`.
 
-    Raises CaseError if there is no checkpoint, one of another version or of another case than the record, or of a run
-    that has reached that time, RecordError if it is damaged; else errors as `run_case`.
+    Raises CaseError if there is no checkpoint, if it is of another version or another case than the record, or if the
+    run has reached that time; RecordError if it is damaged; else errors as `run_case`.
     """
     found = find_unfinished(folder, until)
     return _Job(found.case, found.folder, progress or Progress(), seconds or {}, found, shared=shared).run()
@@ -139,7 +139,7 @@ class _Job:
 
     @contextmanager
     def _without_copies(self) -> Iterator[None]:
-        """Remove the copies of a complete run that is continued, if its record is found to be damaged meanwhile."""
+        """Inside, a damaged record of a complete run that is continued removes its copies."""
         try:
             yield
         except RecordError:
@@ -148,14 +148,17 @@ class _Job:
             raise
 
     def _announce_size(self, planned: Plan) -> None:
-        """Warn if the disk has less space than the results still need, and log their size if it is large."""
+        """Warn if the disk has too little space for the remaining results, and log their size if it is large."""
         results, written = self.folder.final.parent, 0 if self.found is None else self.found.written
         short = _passed_on(list(space_warnings(planned, results, written)), self.progress)
         if not short and sum(bytes_left(planned, written).values()) > LARGE:
             logging.getLogger(__name__).info(f"{self.case.name}: {space_in_words(planned, results, written)}")
 
     def _plan(self) -> Plan:
-        """The plan; for a resumed run with its checkpoint's time step, after checking that its record can go on."""
+        """The plan.
+
+        For a resumed run with its checkpoint's time step, after checking that its record can be continued.
+        """
         planned = plan(self.case, self.clock)
         if self.found is None:
             if self.begun_for is None:
@@ -213,7 +216,7 @@ class _Job:
         return simulation, beginning
 
     def _begin(self, planned: Plan, partial: Path) -> Beginning:
-        """The state at which the run begins; if a stage before it stalls, its state is written to the record."""
+        """The first state of the run; if a stage before it stalls, the stage's state is written to the record."""
         case, kind, found = self.case, planned.kind, self.found
         in_stage = None if found is None or found.stage is None else (found.stage, found.arrays)
         keys = kind.stage_keys(planned.stepped)
@@ -263,14 +266,14 @@ class _Job:
 
 
 def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
-    """Warnings as they come, after the progress has received each."""
+    """Warnings in their order, each sent to the progress."""
     for warning in warnings:
         progress.warned(warning)
     return warnings
 
 
 def _draw(case: Case, kind: Kind[Any, Any], folder: Path) -> None:
-    """Draw the pictures of a run into its folder: the monitors' velocities, and from snapshots those of its kind."""
+    """Draw the pictures of a run into its folder: the monitors' velocities, and pictures of its kind from snapshots."""
     from dembound.plot.histories import plot_histories
     from dembound.plot.style import save
 

@@ -22,10 +22,10 @@ from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.kept_stages import settled_state
 
 MOST_STEPS = 1e11
-"""Largest number of steps. Even a few nodes would take more than a day for it: a mistake in a time."""
+"""Largest number of steps. Even a few nodes would take more than a day: probably a mistake in a time."""
 
 ROUNDING = 1e-6
-"""Part of a time step by which an interval may be shorter, as steps are rounded."""
+"""Part of a time step by which an interval may be shorter because of rounding."""
 
 ENTRIES = 100
 """Entries of the energy ledger where the case does not give an interval."""
@@ -66,7 +66,7 @@ def about(case: Case) -> Iterator[None]:
 
 
 def preflight(case: Case) -> None:
-    """Find errors that would stop a case later, as far as this takes little time.
+    """Find errors that would stop a case later, if this takes little time.
 
     Builds the scene, whose brick is then cached. Where the time step is found quickly, it also plans the run. Raises
     the errors of `plan` and `require_stages`.
@@ -88,14 +88,14 @@ def require_stages(planned: Plan) -> None:
 
 
 def _require_stages(kind: Kind[Any, Any], stepped: Scene) -> None:
-    """Require that the scene that is stepped can have the stages of its case."""
+    """Require the stages of a case for the stepped scene."""
     if (source := kind.stages_from(stepped.case)) is not None:
         for name in kind.stage_names(stepped):
             settled_state(source / STAGES, name, kind.stage_keys(stepped))
 
 
 def warnings_before(planned: Plan) -> list[str]:
-    """Warnings about probable mistakes, known before the run, one line each; none about silent waves."""
+    """Warnings about probable mistakes, known before the run, one line each; without silent waves."""
     case = planned.scene.case
     silent = tuple(f"wave.{name}:" for name in case.silent if case.wave[name].begin() >= case.run.duration)
     return [each for each in _all_before(planned) if not each.startswith(silent)]
@@ -130,7 +130,7 @@ def _same_place(scene: Scene) -> Iterator[str]:
 
 
 def _never_reached(planned: Plan) -> Iterator[str]:
-    """Monitors that no wave reaches before the run ends, as their way is too long for it or waves begin too late."""
+    """Monitors that no wave reaches before the run ends, as the way is too long or waves begin too late."""
     scene, duration = planned.scene, planned.scene.case.run.duration
     if not scene.case.monitor or not (sources := planned.kind.sources(scene)):
         return
@@ -149,7 +149,7 @@ def _never_reached(planned: Plan) -> Iterator[str]:
 
 
 def _interval_warnings(planned: Plan) -> Iterator[str]:
-    """Warnings about outputs that the case asks for more often than there are steps."""
+    """Warnings about outputs that the case requests more often than there are steps."""
     output = planned.scene.case.output
     if output.snapshots == 0 and (asked := [key for key in ("stress", "contacts") if getattr(output, key)]):
         yield (
@@ -167,7 +167,7 @@ def _interval_warnings(planned: Plan) -> Iterator[str]:
 def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Simulation, Ledger]:
     """The simulation of a planned run in its first state, with the probes of its monitors, and its energy ledger.
 
-    The ledger still has to be tracked.
+    The ledger is not yet one of its trackers.
     """
     scene = planned.stepped
     simulation = Simulation(

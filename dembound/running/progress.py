@@ -1,4 +1,4 @@
-"""The progress of a run, for who started it."""
+"""The progress of a run, for its caller."""
 
 import numpy as np
 
@@ -27,7 +27,7 @@ class Reports(Tracker):
         self._progress, self._steps = progress, steps
 
     def handle(self, run: Run) -> None:
-        """Do nothing, as it is never due."""
+        """Do nothing: reports are never due at a step."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Report."""

@@ -19,14 +19,13 @@ if TYPE_CHECKING:
     import h5py
 
 RECORDED = ("origin", "kind", PLACE, DIGEST)
-"""Attributes of a record that say whose results it has."""
+"""Attributes of a record that identify its case."""
 
 
 def recorded_case(record: Path) -> Case:
     """The case of a record, with the files that it refers to, all read from the record.
 
-    A settled state of another run (``static.from``) is not used, as it is not in the record; the body settles itself,
-    with the same result.
+    A settled state of another run (``static.from``) is not in the record; the body settles again, with the same result.
 
     Raises CaseError for a record of no run, RecordError, in one line, if there is none or its case cannot be read.
     """
@@ -47,7 +46,7 @@ def recorded_case(record: Path) -> Case:
 
 
 def silent_of(file: "h5py.File") -> frozenset[str]:
-    """The waves of a record's case that stand for none."""
+    """The waves of a record's case without motion."""
     return frozenset(map(text_of, file.attrs.get("silent", ())))
 
 
@@ -57,7 +56,7 @@ def inputs_of(file: "h5py.File") -> dict[str, str]:
 
 
 def require_replaceable(folder: Folder, case: Case) -> None:
-    """Raise CaseError if a run would replace the results of another case: of another file, or another kind of body.
+    """Raise CaseError if a run would replace the results of a case from another file or of another kind of body.
 
     A case whose numbers have been changed is the same case, and so is one whose file has been moved. Records without an
     origin, of earlier versions, and those that cannot be read are replaced.

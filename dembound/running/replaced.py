@@ -1,4 +1,4 @@
-"""What a run replaces, in words, so that nothing is lost unseen."""
+"""Results that a run replaces, in words."""
 
 import json
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ def replaced_in_words(folder: Folder, case: Case) -> Iterator[str]:
 
 
 def _other_keys(record: Path, case: Case) -> str:
-    """The keys in which the case of a record is another one, in brackets; empty where it cannot be read."""
+    """The keys in which the case of a record differs, in brackets; empty if it cannot be read."""
     try:
         with open_record(record) as file:
             there = json.loads(text_of(file.attrs["keys"]))

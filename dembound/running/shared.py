@@ -13,7 +13,7 @@ from filelock import FileLock, Timeout
 from dembound.interrupts import look
 
 LOOK = 0.5
-"""Seconds between two looks for a request to end, while another run computes a stage."""
+"""Seconds between two checks for a request to end, while another run computes a stage."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,10 @@ class Shared:
 
     @contextmanager
     def settling(self, keys: Mapping[str, Any]) -> Iterator[None]:
-        """Inside, no other run computes the stages that depend on these keys; raises Stopped if this one is to end."""
+        """Inside, no other run computes the stages that depend on these keys.
+
+        Raises Stopped if this run is requested to end.
+        """
         folder = self.stages(keys)
         if folder is None:
             yield

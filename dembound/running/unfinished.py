@@ -30,7 +30,7 @@ SILENCE = ("until", "silent_level", "silent_for")
 """Keys of ``[run]`` that end a run before its duration."""
 
 MOST_KEYS = 5
-"""Changed keys of a case that are listed."""
+"""Largest number of changed keys of a case that are listed."""
 
 FACTS: Mapping[str, tuple[type, ...]] = {
     **dict.fromkeys(("name", "case"), (str,)),
@@ -72,7 +72,7 @@ class Unfinished:
 
     @property
     def written(self) -> int:
-        """Bytes that it has written to its partial folder; 0 of a complete run, which is copied there first."""
+        """Bytes in its partial folder; 0 for a complete run, which is copied there first."""
         if self.path != self.folder.partial:
             return 0
         return sum(path.stat().st_size for path in self.path.rglob("*") if path.is_file())
@@ -84,7 +84,7 @@ class Unfinished:
     def require_record(self, scene: Scene) -> None:
         """Raise RecordError if the record of the run, if it has begun, lacks datasets that the scene appends to.
 
-        Also where the times of its histories do not increase.
+        Also if the times of its histories do not increase.
         """
         if (counts := self.facts["counts"]) is not None:
             record = self.path / "run.h5"
@@ -96,7 +96,7 @@ class Unfinished:
     def copy_to(self, partial: Path) -> None:
         """Copy the files from which a run is continued to its partial folder, unless they are there.
 
-        Raises CaseError if another process has taken them away since they were found.
+        Raises CaseError if another process has removed them meanwhile.
         """
         if not (self.path / FILE).is_file():
             raise CaseError([f"{self.path}: has been changed by another run meanwhile; nothing is left to resume"])
@@ -131,9 +131,9 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
 
 
 def changes_since(folder: Path) -> list[str]:
-    """A line each for the file of a run's case and files it refers to that have changed since the run began.
+    """A line for every file of a run's case, and file that it refers to, that has changed since the run began.
 
-    The case in more than when it ends; what is no longer there is left out.
+    Changes of keys that only end the run, and missing files, are left out.
     """
     with understood(folder / "run.h5"), open_record(folder / "run.h5") as file:
         texts = {name: text_of(file.attrs[name]) for name in (PLACE, DIGEST) if name in file.attrs}
@@ -158,7 +158,7 @@ def _changed_keys(path: Path, recorded: dict[str, Any]) -> Iterator[str]:
 
 
 def listed(keys: Sequence[str]) -> str:
-    """The first of some changed keys as text."""
+    """The first few changed keys as text."""
     return ", ".join(keys[:MOST_KEYS]) + ", …" * (len(keys) > MOST_KEYS)
 
 
@@ -202,8 +202,8 @@ def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
 def _case_of(facts: dict[str, Any], path: Path) -> Case:
     """The case of a checkpoint, with the duration that the record has, which may be a later one.
 
-    Raises CaseError if it is not that of the record, or has other keys here than where it was written, and RecordError
-    if the record is damaged.
+    Raises CaseError if the record has another case, or if its keys differ here from those where it was written, and
+    RecordError if the record is damaged.
     """
     checkpoint = path / FILE
     case, text = case_of(facts["case"], checkpoint, facts["name"], facts["files"]), facts["case"]
@@ -235,7 +235,7 @@ def _lasting_any_time(keys: dict[str, Any]) -> dict[str, Any]:
 
 
 def _lasting(case: Case, until: float) -> Case:
-    """The case with another duration (s), before which it does not end."""
+    """The case with another duration (s), without an earlier end."""
     data = tomllib.loads(case.text)
     data["run"] = {key: value for key, value in data["run"].items() if key not in SILENCE} | {"duration": until}
     return loads(tomli_w.dumps(data), case.folder, case.name, case.files)

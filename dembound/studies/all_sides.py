@@ -53,7 +53,7 @@ def changes_of(found: Sequence[Calibration]) -> dict[str, float]:
 
 
 def summary_of(found: Sequence[Calibration]) -> Mapping[str, Any]:
-    """All calibrations of one case as plain JSON values: the factors by key, and each one's own summary."""
+    """All calibrations of one case as plain JSON values: the factors by key, and the summary of each calibration."""
     return {
         "name": found[0].case.name,
         "version": __version__,

@@ -40,10 +40,10 @@ LARGEST_RATIO = 1.99
 
 
 HOMOGENISED_DIGITS = 5
-"""Digits known of β from the brick alone, which agrees with plane waves within 0.01 %."""
+"""Number of known digits of β from the brick alone, which agrees with plane waves within 0.01 %."""
 
 MOST_DIGITS = 6
-"""The most digits known of β from passes; the peaks they compare have rounding errors beyond."""
+"""Largest number of known digits of β from passes; further digits are rounding errors of the peaks."""
 
 PAST = 0.99
 """Largest velocity of the side at the end of a pass over its peak; AFTER its peak a cosine is at 0.905."""
@@ -60,8 +60,8 @@ class Calibration:
     incident : M_in, m/s.
     beta, outgoing : per pass, the factor tried and the M_out (m/s) it gave.
     result : the calibrated factor, to the digits that are known, see `known`.
-    shortened : how the scene calibrated on differs from the case's, one sentence each.
-    particles, steps : size of the scene calibrated on, and steps of all passes.
+    shortened : differences between the calibrated scene and the case's, one sentence each.
+    particles, steps : size of the calibrated scene, and steps of all passes.
     """
 
     case: DiskCase
@@ -141,7 +141,7 @@ def calibrate(
     "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
         M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD, as
         "matched" does, from brick and side, without a run.
-    start : first β; by default the case's. Where the case has "matched", β0 of the strip, refined at least once.
+    start : first β; by default the case's. If the case has "matched", it is β0 of the strip, refined at least once.
     tolerance : ends when |M_out/M_in − 1| is below it.
     full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.
@@ -197,9 +197,9 @@ def calibrate(
 
 
 def known(beta: float, ratio: float) -> float:
-    """β to the decimal of the change that another pass of the impedance relation would make, 6 digits at most.
+    """β rounded to the change that another pass of the impedance relation would make, to at most 6 digits.
 
-    beta, ratio : of the last pass, the factor and the M_out/M_in it gave.
+    beta, ratio : factor and M_out/M_in of the last pass.
     """
     change = beta * abs(ratio / (2.0 - ratio) - 1.0)
     largest = MOST_DIGITS - 1 - math.floor(math.log10(beta))

@@ -44,7 +44,7 @@ Shares that differ from those of L are separated by slashes, see `Lattice`.
 """
 
 STEPS = 20
-"""Steps simulated to measure a frequency. Two would be enough; more reduce rounding errors."""
+"""Number of steps simulated to measure a frequency: two are enough; more reduce rounding errors."""
 
 ROWS = 100
 """Wave numbers of each lattice in the table, evenly up to its shortest wave."""
@@ -79,7 +79,7 @@ def lattices(
 
 
 def lattices_of(case: Case) -> list[Lattice]:
-    """The infinite rows of nodes that correspond to a case's bar, narrow horizons first; several if its method changes.
+    """The infinite rows of nodes for a case's bar, narrow horizons first; several if its method changes.
 
     Attenuation is left out. Raises CaseError for a case without a bar and a step above its stability limit.
     """
@@ -147,7 +147,7 @@ def _endless(lattice: Lattice) -> BarCase:
 def write_table(rows: Sequence[Lattice], path: Path) -> None:
     """Write frequencies and speeds of waves on some lattices as CSV, completely or not at all.
 
-    Empty where a wave grows.
+    Cells are empty where a wave grows.
     """
     with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)

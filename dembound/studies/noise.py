@@ -1,10 +1,10 @@
-"""Noise in a scene at rest: its energies over many steps, short runs to decide on growth, long ones on energy.
+"""Noise in a scene at rest: short runs show whether it grows, long runs whether its energy does.
 
 **Steps needed.** At 1 + ε of the stability limit the highest mode grows by e^√(8ε) per step, and its energy by the
-square of that. Noise gives it one part in d, the number of components of motion, and with a probability of 0.99 at
-least 1e-4 of that. To reach `GROWN` times the whole noise it takes ln(1e4·d·GROWN)/(2√(8ε)) steps: 220 for d = 1e4 and
-ε = 5e-4. A damper C on the node of that mode slows the growth of its energy to 8ε/c a step, c = CΔt/2m, so `PATIENCE`
-times that number of steps are run.
+square of that. The highest mode has one part in d of the noise, with d components of motion, and with a probability of
+0.99 at least 1e-4 of that. To reach `GROWN` times the whole noise it takes ln(1e4·d·GROWN)/(2√(8ε)) steps: 220 for d =
+1e4 and ε = 5e-4. A damper C on the node of that mode slows the growth of its energy to 8ε/c a step, c = CΔt/2m, so
+`PATIENCE` times that number of steps are run.
 
 **Transients.** At the share r of the limit the kinetic energy T of noise that begins without strain is at most
 E/(1 − r²), with the energy E that central differences conserve and dampers reduce, and at most (2n + 1)²E after n
@@ -29,29 +29,30 @@ RESOLUTION = 1e-3
 """Width of the bracket in which the largest stable step is found, over the computed limit: ε is half of it."""
 
 COARSE = 1e-2
-"""Resolution farther than this from the computed limit, where the measured one is not to confirm it."""
+"""Relative resolution of steps far from the computed limit."""
 
 GROWN = 1e4
-"""Kinetic energy, over that of the noise, from which on a short run is unstable."""
+"""Kinetic energy over that of the noise above which a short run is unstable."""
 
 PATIENCE = 20
 """Steps of a short run over those that an undamped scene needs."""
 
 DECIDED = float(np.log(10.0))
-"""Growth of ln T in the second half of a short run, by a fitted line, from which on it is unstable."""
+"""Growth of ln T in the second half of a short run, by a fitted line, above which it is unstable."""
 
 LOOKS, LOOKS_AT_CONTACTS = 25, 10
-"""Steps between two looks at the kinetic energy in a short run, and under laws with contacts: these are searched for
-again where disks move, which takes for ever once they have grown to any size."""
+"""Steps between two checks of the kinetic energy in a short run, and under laws with contacts, whose search becomes
+very slow in an unstable motion.
+"""
 
 SAMPLES = 500
-"""Samples of the energy in a long run, each of which takes as long as some dozens of steps of a small scene."""
+"""Number of samples of the energy in a long run; each takes as long as some dozens of steps of a small scene."""
 
 OPENING_ERROR = 0.01
 """Largest rise of the energy under a law in which contacts open and close within a step, see `motion.energy.GAIN`."""
 
 ROUNDING = 100.0 * float(np.finfo(float).eps)
-"""Largest relative change of the energy by rounding in a step: of each component some ten forces are added up."""
+"""Largest relative change of the energy by rounding in a step: each component is a sum of some ten forces."""
 
 
 @dataclass
@@ -86,7 +87,7 @@ class LongRun:
     ----------
     part : its name.
     course : its energies.
-    allowed : rise of the energy, over that of the noise, that rounding and contacts that open within a step explain.
+    allowed : rise of the energy, over that of the noise, by rounding and by contacts that open within a step.
     bound : largest kinetic energy, over that of the noise, that a stable scene can reach.
     """
 
@@ -113,7 +114,7 @@ class LongRun:
 
 
 def short_run(trial: Trial, step: float, resolution: float = RESOLUTION) -> Course:
-    """Noise in all parts at a time step (s), until it has grown or would have half a resolution above the limit."""
+    """Noise in all parts at a time step (s), until it has grown or would have at half a resolution above the limit."""
     needed = np.log(1e4 * 3 * trial.scene.count * GROWN) / (2.0 * np.sqrt(8.0 * 0.5 * resolution))
     looks = LOOKS if trial.is_linear else LOOKS_AT_CONTACTS
     return _run(_noisy(trial, step), Look(looks, most=GROWN), int(np.ceil(PATIENCE * needed)))
@@ -124,8 +125,8 @@ def long_run(trial: Trial, part: str, steps: int, samples: int = SAMPLES) -> Lon
 
     Under a linear law the energy is ½v⁻ᵀMv⁻ + ½uᵀKu⁻ with the displacements u⁻ of the step before, which central
     differences conserve and dampers reduce. Under other laws it is the energy of the ledger, at whole steps and of all
-    parts, plus the energy taken by boundaries: friction and contacts that close reduce it. It begins with the second
-    sample, as the law may change in the first step.
+    parts, plus the energy taken by boundaries: friction and contacts that close reduce it. The course then begins with
+    the second sample, as the law may change in the first step.
     """
     every, share = max(1, steps // samples), trial.step / trial.limit
     bound = (2.0 * steps + 1.0) ** 2
@@ -145,8 +146,8 @@ def long_run(trial: Trial, part: str, steps: int, samples: int = SAMPLES) -> Lon
 def _of_ledger(ledger: Ledger) -> list[float]:
     """Energies, from the second entry on, as parts of the kinetic energy at the start; the first of them is 1.
 
-    Kinetic and stored energy, with the potential of forces that balance a locked-in stress and what boundaries have
-    taken, without what a change of law has added.
+    The energy is kinetic and stored energy, the potential of forces that balance a locked-in stress, and the energy
+    taken by boundaries, without the energy added by a change of law.
     """
     first, *others = ledger.entries
     energy = [
@@ -157,7 +158,7 @@ def _of_ledger(ledger: Ledger) -> list[float]:
 
 
 class Look(Every):
-    """Notes energies every so many steps, and stops a run in which the kinetic energy exceeds `most` times the start.
+    """Notes energies at an interval of steps, and stops a run whose kinetic energy exceeds `most` times the start.
 
     part : of this part only; None: of all. energy : another energy to note.
     """

@@ -1,4 +1,4 @@
-"""The largest stable time step, measured: with dampers, springs, columns and all else of a scene.
+"""The largest stable time step of a scene with its dampers, springs and columns, measured.
 
 The limit from the largest eigenvalue (disks/stability.py, bar/stability.py) assumes that centred dampers, held
 components and one-sided seams do not lower it. Here noise is stepped (noise.py) in the scene without loads and waves
@@ -19,13 +19,13 @@ from dembound.motion.trial import Trial
 from dembound.studies.noise import COARSE, RESOLUTION, SAMPLES, Course, LongRun, long_run, short_run
 
 FACTORS = 1.0 + 0.5 * RESOLUTION, 1.0 + COARSE, 2.0
-"""Steps over the computed limit, or below it, that are tried to bracket the largest stable one."""
+"""Ratios of trial steps to the computed limit, or of the limit to trial steps, to bracket the largest stable one."""
 
 LONG = 0.8
-"""Seconds of one core for the steps of all long runs, as counted: not measured, so that all machines do as many."""
+"""Computed seconds of one core for the steps of all long runs, so that all machines do equally many."""
 
 LEAST, MOST = 5_000, 100_000
-"""Steps of a long run in any case, and at most, if their number is not asked for."""
+"""Least and largest number of steps of a long run by default."""
 
 Report = Callable[[str], None]
 """Called with a line about each run that is done."""
@@ -97,7 +97,7 @@ def _samples(runs: int) -> int:
 
 
 def _measured(trial: Trial, steps: int, samples: int, say: Report) -> Stability:
-    """The measurements of one trial; steps, samples : of each long run."""
+    """The measurements of one trial; steps, samples : numbers for each long run."""
     if not np.isfinite(trial.limit):
         raise CaseError(["run.time_step: any step is stable, as nothing in the scene can vibrate"])
     found = _bracketed(trial, say)

@@ -21,7 +21,7 @@ STRIP = 0.35
 the peak, 0.6 T after the front, so with L > 0.3 cT no echo affects M_out; a sixth is added as a reserve."""
 
 AFTER = 0.1
-"""Time from the expected peak at the side to the end of a pass, in pulse lengths T: the peak may be a little late."""
+"""Time from the expected peak at the side to the end of a pass, in pulse lengths T, as the peak may be late."""
 
 
 def _waves_of(case: DiskCase, motion: Motion) -> Iterator[str]:
@@ -52,7 +52,7 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
     Springs reflect for any β; seam forces of a column depend on the wave; holes scatter; loads, a static stage and a
     history-dependent law cause motion that does not belong to the wave.
 
-    Raises CaseError for a law of no linear medium.
+    Raises CaseError for a law that is not linear.
     """
     boundary = {side: table.dashpots_alone() for side, table in case.boundary.items()}
     material = case.material.model_copy(update={"law": linear_law(case.material.law)})

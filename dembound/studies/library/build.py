@@ -24,7 +24,7 @@ from dembound.running import Progress, plan, run_case, warnings_before
 from dembound.version import __version__
 
 FILE = "library.json"
-"""File that describes a library in its folder; written last, so that a library with it is complete."""
+"""File that describes a library in its folder; it is written last, so its library is complete."""
 
 REST = "rest"
 """Name of the run without waves."""
@@ -66,7 +66,7 @@ def is_at_rest(case: DiskCase) -> bool:
 
 @contextmanager
 def unwatched(name: str) -> Iterator[Progress]:
-    """Ignores the progress of a run of a name."""
+    """A progress that ignores everything."""
     yield Progress()
 
 
@@ -88,7 +88,7 @@ def build_library(
     spacing : time between two values of the records, s. duration : of the longest record, s; None: of the case.
     progress_of : returns the progress of a run, given its name.
 
-    Raises CaseError for a case that is not linear, and a given step of which the spacing is no multiple; else errors as
+    Raises CaseError for a case that is not linear, and if the spacing is not a multiple of a given step; else errors as
     of `run_case`.
     """
     if problems := list(problems_of(case)):
@@ -132,7 +132,7 @@ def under(
 
 
 def _of_disks(case: Case) -> DiskCase:
-    """The case, which is one of disks as that from which it was made."""
+    """The case as a case of disks."""
     return as_kind(case, DiskCase, "is the case of a bar")
 
 
@@ -167,7 +167,7 @@ def _base(planned: Plan[DiskScene], spacing: float, duration: float, lead: int) 
 def _lead(planned: Plan[DiskScene], spacing: float) -> int:
     """Spacings that triangles begin after the run, and that records are zero after their first value.
 
-    A wave of ``[incident]`` that passes the first disks before it passes its point would else begin within a run.
+    Without it a wave of ``[incident]`` that passes the first disks before its point would begin within a run.
     """
     if (waves := planned.scene.ground_waves) is None:
         return 0
@@ -215,7 +215,7 @@ def _largest_divisor(number: int, most: int) -> int:
 
 
 class _WithoutWarnings(Progress):
-    """Passes on progress, but no warnings, as those about triangles and silence do not concern the case."""
+    """Passes on progress without warnings, as warnings about triangles and silence do not concern the case."""
 
     def __init__(self, progress: Progress) -> None:
         self.settling, self.running = progress.settling, progress.running  # type: ignore[method-assign]

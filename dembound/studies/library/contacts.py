@@ -1,4 +1,4 @@
-"""Load factors of records at some contacts of a library: those between the disks of two monitors."""
+"""Load factors of records at the contacts between the disks of two monitors of a library."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -29,8 +29,8 @@ class WatchedContact(NamedTuple):
 class LoadFactor(NamedTuple):
     """The multiple of a record up to which its contacts follow the elastic law.
 
-    factor : infinite if no limit is ever reached. contact : the first to reach one; limit : which one, in words; time :
-    when, s. The last three belong to the least factor.
+    factor : infinite if no limit is ever reached. contact : the first to reach a limit; limit : its name; time : of
+    reaching it, s. The last three belong to the least factor.
     """
 
     factor: float
@@ -42,7 +42,7 @@ class LoadFactor(NamedTuple):
 def watched_contacts(library: Library, pairs: Sequence[str]) -> list[WatchedContact]:
     """The contacts between the disks of pairs of monitors, each given as two names with a comma.
 
-    Raises CaseError, a line for each pair that is none, and for a library whose case has no load factor.
+    Raises CaseError with a line for each pair without a contact, and for a library whose case has no load factor.
     """
     if not library.case.output.load_factor:
         raise CaseError(["--load-factor: needs a library of a case with output.load_factor = true and its strengths"])
@@ -59,7 +59,7 @@ def watched_contacts(library: Library, pairs: Sequence[str]) -> list[WatchedCont
 
 
 def load_factor(library: Library, contacts: Sequence[WatchedContact], motion: np.ndarray) -> LoadFactor:
-    """The load factor of a motion (k, monitors, 6) of the library at its samples, for these contacts only."""
+    """The load factor of a motion (k, monitors, 6) of the library at its samples, for the given contacts."""
     strength = strength_of(library.case.material)
     least = LoadFactor(np.inf, "", "", np.nan)
     for contact in contacts:

@@ -60,7 +60,7 @@ class Library:
 
     @property
     def clock(self) -> RecordTimes:
-        """Times that records have to keep."""
+        """Spacing, lead and duration of records."""
         return RecordTimes(self.spacing, self.case.run.duration, self.lead)
 
     @cached_property
@@ -70,7 +70,7 @@ class Library:
 
     @cached_property
     def _rest_of_runs(self) -> np.ndarray:
-        """Motion at rest, for as long as the runs."""
+        """Motion without waves, as long as the runs."""
         if not is_at_rest(self.case):
             return self._motion(REST)
         return np.zeros((len(self.time) + self.lead * self._per_spacing, len(self.monitors), WIDTH))
@@ -102,7 +102,7 @@ class Library:
 
     @property
     def _rows(self) -> int:
-        """Spacings in the histories."""
+        """Number of spacings in the histories."""
         return -(-len(self.time) // self._per_spacing)
 
     @cached_property
@@ -131,11 +131,11 @@ class Library:
         return self._record(REST)
 
     def _motion(self, run: str) -> np.ndarray:
-        """Motion (k, monitors, 6) in one of its runs."""
+        """Motion (k, monitors, 6) in one of the library's runs."""
         with open_record(self._record(run)) as file:
             each = [np.hstack([group["displacement"][:], group["velocity"][:]]) for group in file["histories"].values()]
         return np.stack(each, axis=1)
 
     def _record(self, run: str) -> Path:
-        """The record of one of its runs."""
+        """The record of one of the library's runs."""
         return self.folder / run / "run.h5"

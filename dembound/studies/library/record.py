@@ -26,7 +26,7 @@ class Record(NamedTuple):
 
 
 class RecordTimes(NamedTuple):
-    """Times that records have to keep: spacing and duration, s; lead : zeros after the first one, see `Library`."""
+    """Requirements on records: spacing and duration, s; lead : number of zeros after the first value, see `Library`."""
 
     spacing: float
     duration: float
@@ -112,7 +112,7 @@ def _record(argument: str, inputs: Sequence[str], clock: RecordTimes) -> Record:
 
 
 def _paths(argument: str, inputs: Sequence[str]) -> dict[str, Path]:
-    """The file of each input that an argument names."""
+    """Input -> file, from an argument."""
     pairs = [part.partition("=") for part in argument.split(",")]
     if all(name in inputs for name, _, _ in pairs) and all(equals for _, equals, _ in pairs):
         if twice := _twice([name for name, _, _ in pairs]):

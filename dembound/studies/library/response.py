@@ -1,4 +1,4 @@
-"""The histories of a library under a record, written with the layout of a run, and what is wrong with the record."""
+"""The histories of a library under a record, written with the layout of a run, and warnings about the record."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,7 @@ from dembound.studies.library.library import Library
 from dembound.studies.library.record import Record
 
 COPIED = ("kind", "size", "time_step", "step_limit", "steps", "version")
-"""Attributes that a response has from the library."""
+"""Attributes that a response takes from the library."""
 
 
 def case_of(library: Library, record: Record) -> DiskCase:

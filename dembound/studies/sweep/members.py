@@ -17,10 +17,10 @@ from dembound.errors import CaseError
 from dembound.results.folder import PARTIAL, problem_of
 
 LONGEST = 80
-"""Characters of a name from which on it is cut."""
+"""Largest number of characters of a name."""
 
 SEED = "seed"
-"""Ending of keys that choose one of many equally likely members."""
+"""Suffix of keys that select one of many equally likely members."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def _key(case: Case, done: Sequence[str]) -> str:
 
 
 def _names(changes: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """Names such as ``seed=3,size=[4, 2]``, which all systems allow; one that is long or taken ends with a hash."""
+    """Names such as ``seed=3,size=[4, 2]``, which all systems allow; long or duplicate names end with a hash."""
     taken: set[str] = set()
     for each in changes:
         words = zip(short_keys(each), each.values(), strict=True)

@@ -1,4 +1,4 @@
-"""One member of a sweep, in a process of its own or of a cluster: it is run or calibrated, and its outcome written."""
+"""One member of a sweep, in its own process or on a cluster: it is run or calibrated, and its outcome written."""
 
 import json
 import logging
@@ -30,7 +30,7 @@ MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"
 """Folders of a sweep: runs, outcomes by key, stages before runs."""
 
 ALONE = threading.Lock()
-"""Held while a member is under way: workers of a cluster may have several threads, but the solver has its own."""
+"""Lock held by a running member: workers of a cluster may have several threads, but the solver has its own."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class Task:
     """Data sent to a process: a case as text with the files it refers to, action, and folders.
 
     current : the folder from which ``static.from`` starts. folder : of the sweep.
-    begun : a file that is made when the member is stepped, so that its code is compiled.
-    stop : a file that asks all members to end.
+    begun : a file that is made when the member is stepped, as its code is then compiled.
+    stop : a file that requests all members to end.
     """
 
     name: str
@@ -70,7 +70,7 @@ class Outcome:
     warnings: list[str] = field(default_factory=list)
 
     def write(self, folder: Path, key: str) -> None:
-        """Write it into the folder of a sweep, completely or not at all."""
+        """Write the outcome into the folder of a sweep, completely or not at all."""
         finite = {name: value for name, value in self.values.items() if math.isfinite(value)}  # others count as absent
         write_json(folder / OUTCOMES / f"{key}.json", asdict(self) | {"values": finite})
 
@@ -131,7 +131,7 @@ class Begun(Progress):
         self._path, self._is_made = path, False
 
     def make(self) -> None:
-        """Make it, once."""
+        """Make the file, once."""
         if not self._is_made:
             self._is_made = True
             self._path.touch()

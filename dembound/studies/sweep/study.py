@@ -1,4 +1,4 @@
-"""A sweep: every member is run or calibrated once; what is done is kept, so that a sweep can be continued."""
+"""A sweep: every member is run or calibrated once, and outcomes are kept, so that a sweep can be continued."""
 
 import errno
 import os
@@ -22,7 +22,7 @@ from dembound.studies.sweep.perform import OUTCOMES, Outcome, Task, forget_repla
 from dembound.studies.sweep.workers import Performing, Workers, cluster, processes
 
 LOOK = 0.2
-"""Seconds between two looks at what is under way."""
+"""Seconds between two checks of running members."""
 
 LOCK = "sweep.lock"
 
@@ -31,7 +31,7 @@ LOCK = "sweep.lock"
 class Options:
     """Options of a sweep: action and method as in the table ``[sweep]``.
 
-    processes : on this machine; None: as many as it has cores. scheduler : address of a Dask cluster in their place.
+    processes : on this machine; None: as many as it has cores. scheduler : address of a Dask cluster used instead.
     anew : whether members that are done are repeated.
     """
 
@@ -43,7 +43,7 @@ class Options:
 
 
 class Standing(NamedTuple):
-    """Progress of a sweep as numbers of members; kept : done in an earlier sweep, and counted as done, too."""
+    """Progress of a sweep as numbers of members; kept : done in an earlier sweep, also counted as done."""
 
     members: int
     done: int
@@ -63,13 +63,13 @@ Report = Callable[[Standing], None]
 
 
 def sweep(members: Sequence[Member], options: Options, folder: Path, report: Report) -> list[Outcome | None]:
-    """The outcomes of members, in their order, as far as the folder does not have them; failed ones are repeated.
+    """The outcomes of members, in their order; only failed ones and those not in the folder are computed.
 
     The second and later members begin when the first one is stepped, as its code is compiled then. A member whose
     process ends without an outcome is repeated once. After Ctrl-C or SIGTERM all members write a checkpoint;
     KeyboardInterrupt is raised when they have ended; a second one kills them.
 
-    Raises CaseError for a folder that another sweep uses, or that holds something else.
+    Raises CaseError for a folder that another sweep uses, or that has other contents.
     """
     with _marks_in(folder) as marks:
         found = {m.key: None if options.anew else outcome_in(folder, m.key) for m in members}
@@ -106,7 +106,7 @@ def _marks_in(folder: Path) -> Iterator[Marks]:
 
 
 class _Work:
-    """The members of a sweep that are missing, and what is under way."""
+    """The missing and the running members of a sweep."""
 
     def __init__(
         self,
@@ -141,7 +141,7 @@ class _Work:
         return self._found
 
     def _submit(self, workers: Workers) -> None:
-        """Begin members as far as there is room; only one until code is compiled."""
+        """Begin members while there is room; only one until code is compiled."""
         while self._waiting and workers.has_room(len(self._under_way)):
             if self._under_way and not self._found and not self._marks.begun.exists():
                 return
@@ -166,7 +166,7 @@ class _Work:
         )
 
     def _take(self, performed: Performing, workers: Workers) -> None:
-        """Keep the outcome of a member; one whose process was lost is repeated, or has failed."""
+        """Keep the outcome of a member; a member whose process was lost is repeated once, then counted as failed."""
         member = self._under_way.pop(performed)
         try:
             self._found[member.key] = performed.result()
@@ -182,7 +182,7 @@ class _Work:
             self._found[member.key] = Outcome(member.name, failure=f"{type(error).__name__}: {error}")
 
     def _end(self, workers: Workers) -> None:
-        """Ask all members to end, and wait for those under way; kill them if another signal arrives."""
+        """Request all members to end, and wait for running ones; kill them if another signal arrives."""
         try:
             self._marks.stop.touch()
             workers.dismiss()

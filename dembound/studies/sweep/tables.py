@@ -26,7 +26,7 @@ from dembound.studies.sweep.values import shown_by_default, unit_of
 from dembound.version import __version__
 
 MISSING = "not done"
-"""State of members that a stopped sweep has left."""
+"""State of members that a stopped sweep has not done."""
 
 OF_STATISTICS = ("quantity", "unit", "count", "mean", "spread", "interval", "low", "high")
 """Columns of statistics, after those of the keys: see `Statistic`; low and high are the ends of the interval."""
@@ -61,7 +61,7 @@ class Swept:
 
     @property
     def shown(self) -> list[str]:
-        """The quantities that are printed and drawn: the requested ones, by default those of `shown_by_default`.
+        """The quantities that are printed and drawn: the requested ones, else `shown_by_default`.
 
         Raises CaseError for one that no member has.
         """
@@ -101,7 +101,7 @@ def write_tables(swept: Swept, folder: Path) -> list[Path]:
 
 
 def _write_csv(path: Path, rows: Iterable[Sequence[Any]]) -> None:
-    """Write rows, completely or not at all; what is missing is empty."""
+    """Write rows, completely or not at all; missing values are empty."""
     with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         for row in rows:
             csv.writer(file).writerow(["" if each is None or each != each else each for each in row])

@@ -15,10 +15,10 @@ LEFT_OUT = {
     *("name", "title", "keys", "version", "seconds", "wall_time", "threads", "particle_steps_per_second"),
     *("memory_bytes", "laws", "warnings", "reduced", "not_reduced", "resumed", "particle"),
 }
-"""Entries of a summary that are no results, or that differ from one run of a case to the next."""
+"""Entries of a summary that are not results, or that differ between runs of the same case."""
 
 MOST_SHOWN = 6
-"""Number of quantities that are printed and drawn where none is asked for."""
+"""Number of quantities that are printed and drawn by default."""
 
 COMPONENTS = ("x", "y", "xy")
 """Names of the entries of lists of two or three numbers."""
@@ -43,10 +43,10 @@ UNITS = {
     "Pa": ("stress", "emod", "pb_emod", "C11", "C22", "C12", "C66", "youngs_modulus", "strength"),
     ENERGY: ("absorbed", "came_in", "stored"),
 }
-"""Units of the last part of a name, without component; all others are pure numbers, but for the next."""
+"""Unit -> last parts of names, without component; other names are pure numbers unless within `WITHIN`."""
 
 WITHIN = {"energy": ENERGY, "stress": "Pa", "pull_back_strength": "Pa"}
-"""Units of all numbers within an entry of the summary."""
+"""Entry of the summary -> unit of all numbers within it."""
 
 
 def values_of_run(folder: Path, summary: Mapping[str, Any]) -> dict[str, float]:
@@ -82,7 +82,7 @@ def _of_monitors(record: Path) -> Iterator[tuple[str, float]]:
 
 
 def values_of_calibration(found: Sequence[Calibration]) -> dict[str, float]:
-    """The calibrated factors by key, and of each the number of passes and M_out/M_in of the last one."""
+    """The calibrated factors by key, each with its number of passes and M_out/M_in of the last pass."""
     values: dict[str, float] = dict(changes_of(found))
     for key, each in zip(changes_of(found), found, strict=True):
         values[f"{key}.passes"] = float(len(each.beta))

@@ -35,8 +35,8 @@ class Workers(ABC):
 
     Attributes
     ----------
-    lost : errors of a future whose process has ended before its task. tries : how often a task is then submitted.
-    are_elsewhere : whether they go on when this process has ended.
+    lost : errors of a future whose process has ended before its task. tries : number of submissions of such a task.
+    are_elsewhere : whether they continue when this process has ended.
     """
 
     lost: tuple[type[Exception], ...]
@@ -56,7 +56,7 @@ class Workers(ABC):
 
     @abstractmethod
     def kill(self) -> None:
-        """End all that is under way at once."""
+        """End all running tasks at once."""
 
 
 class Process(NamedTuple):
@@ -68,11 +68,11 @@ class Process(NamedTuple):
 
 
 class Processes(Workers):
-    """Processes of this machine, each in a pool of its own: one that is killed takes no other one with it.
+    """Processes of this machine, each in its own pool, so that a killed process does not end others.
 
     Parameters
     ----------
-    count : of processes, which begin to import at once. stop : file that they make if this process is killed.
+    count : of processes. stop : file that they make if this process is killed.
     """
 
     lost = (BrokenProcessPool,)
@@ -97,7 +97,7 @@ class Processes(Workers):
         return under_way < self._count
 
     def submit(self, task: Task) -> Performing:
-        """Begin a task in a process that waits; one that has ended is replaced."""
+        """Begin a task in an idle process; a process that has ended is replaced."""
         for process, performed in [each for each in self._working if each[1].done()]:
             self._working.remove((process, performed))
             is_lost = isinstance(performed.exception(), self.lost)
@@ -117,14 +117,14 @@ class Processes(Workers):
             process.child.kill()
 
     def dismiss(self) -> None:
-        """End the processes without a task, and those that still import what they need for it."""
+        """End the processes without a task, and those that are still importing modules."""
         busy = [process for process, performed in self._working if process.number.done() and not performed.done()]
         for process in self._all():
             if process not in busy:
                 process.child.kill()
 
     def close(self) -> None:
-        """Wait for the tasks under way; all processes end at once after them, as Python's own end takes a second."""
+        """Wait for running tasks, then end all processes at once, as a regular exit of Python takes a second."""
         wait_for([performing for _, performing in self._working])
         self.dismiss()
         for process in self._all():
@@ -148,7 +148,7 @@ def _signals_blocked() -> Iterator[None]:
 
 
 def _prepare(stop: Path) -> None:
-    """Leave signals to the process that has started this one; should that be killed, end as if it had asked to."""
+    """Leave signals to the parent process; if it is killed, end as on its request."""
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
     look_at_imports()
@@ -179,7 +179,7 @@ class Cluster(Workers):
         self._executor = client.get_executor(pure=False)
 
     def has_room(self, under_way: int) -> bool:
-        """Always: the scheduler keeps what waits."""
+        """True: the scheduler queues tasks."""
         return True
 
     def submit(self, task: Task) -> Performing:
@@ -192,7 +192,7 @@ class Cluster(Workers):
         return performing
 
     def kill(self) -> None:
-        """Members under way go on, until they find the file that asks them to stop."""
+        """Running members continue until they find the file that requests them to stop."""
         self._executor.shutdown(wait=False)
 
 
