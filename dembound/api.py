@@ -110,7 +110,7 @@ def run(
     Parameters
     ----------
     progress : receives progress and warnings; by default warnings are issued as Python warnings. threads : cores to
-    use; by default as many as there are. Results do not depend on it.
+    use, by default all; results do not depend on it.
 
     Raises CaseError if the case cannot be run, PackingError if its brick cannot be packed, RunError if the run fails.
     """
@@ -120,7 +120,7 @@ def run(
 
 
 def _estimated(case: Case, folder: Path) -> Results:
-    """The results of a run, after the estimate of its errors if its case asks for that."""
+    """The results of a run, after the estimate of its errors if its case requests it."""
     if failed := estimate_if_asked(case, folder):
         warnings.warn(f"{case.name}: {failed}", stacklevel=3)
     return Results(folder)
@@ -131,8 +131,8 @@ def estimate(results: Path | str, *, repeat: bool = False, threads: int | None =
 
     Parameters
     ----------
-    results : folder of the results, to which the estimate is added. repeat : whether a run with cracks is made once
-    more with 0.98 of its time step. threads : as for `run`.
+    results : folder of the results, to which the estimate is added. repeat : whether a run with cracks is repeated with
+    0.98 of its time step. threads : as for `run`.
 
     Raises CaseError for a run with neither monitors nor more than ten cracks, or that is not complete, and a repetition
     of a run without cracks.
@@ -184,7 +184,7 @@ def resume(
 
 @contextmanager
 def _threads(threads: int | None) -> Iterator[None]:
-    """Use so many threads inside, if there are that many; None: as many as there are."""
+    """Use at most a number of threads inside; None: all."""
     before = numba.get_num_threads()
     numba.set_num_threads(before if threads is None else max(1, min(threads, before)))
     try:
@@ -196,7 +196,7 @@ def _threads(threads: int | None) -> Iterator[None]:
 def calibrate(case: Case, side: str, **options: Any) -> tuple[Case, Calibration]:
     """Find the factor β of one side for P or S waves; returns the case with this β, and the record of the calibration.
 
-    options : those of `dembound.studies.calibration.calibrate`: motion, method, start, tolerance, full, report.
+    options : motion, method, start, tolerance, full, report, see `dembound.studies.calibration.calibrate`.
 
     Raises CaseError when the side has no dashpots or its motion is held, RunError when β does not converge.
     """
@@ -207,7 +207,7 @@ def calibrate(case: Case, side: str, **options: Any) -> tuple[Case, Calibration]
 def calibrate_all(case: Case, **options: Any) -> tuple[Case, list[Calibration]]:
     """Find all factors β of all sides with dashpots, for the waves whose motion is not held; see `calibrate`.
 
-    options : as of `calibrate`, except motion.
+    options : as for `calibrate`, without motion.
     """
     found = all_sides.calibrate_all(_of_disks(case), **options)
     return change(case, all_sides.changes_of(found)), found

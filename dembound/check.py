@@ -19,9 +19,9 @@ TRIAL_STEPS, TRIALS = 20, 3
 
 
 def check(case: Case, results: Path = Path("results")) -> tuple[dict[str, str], list[str]]:
-    """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time.
+    """Facts about the run of a case, ready to print, and warnings. Runs a few steps to estimate the time.
 
-    results : folder in which the run would write its own, whose disk has to have the space.
+    results : folder in which the run would write its own; the free space of its disk is checked.
     """
     planned = plan(case)
     require_stages(planned)
@@ -51,7 +51,7 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
 
 
 def _errors(planned: Plan) -> Entries:
-    """Errors of a run that formulas give without its motion, and the command that estimates the others."""
+    """Errors of a run that formulas give without its motion, and the command that estimates other errors."""
     from dembound.accuracy.judges import judge_of
 
     case = planned.scene.case

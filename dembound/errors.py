@@ -23,10 +23,12 @@ _HIDDEN = (
 )
 
 HIDDEN = re.compile(f"[{_HIDDEN}]")
-"""Characters that reorder a text or cannot be seen, so that it looks like another one."""
+"""Characters that reorder a text or are invisible, so that it looks like another one."""
 
 CONTROL = re.compile(rf"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff{_HIDDEN}]")
-"""Characters that no name or title may have: these, control characters, ends of lines, and bytes that are not text."""
+"""Characters that names and titles must not have: those in `HIDDEN`, control characters, ends of lines, bytes that are
+not text.
+"""
 
 
 def escaped(found: re.Match[str]) -> str:
@@ -61,17 +63,17 @@ class CaseError(DemboundError):
 
 
 class NameMissingError(CaseError, KeyError):
-    """A name that results do not have; the message has those they have. Also a KeyError, as of any mapping."""
+    """A name that results do not have; the message lists the existing names. Also a KeyError, as of any mapping."""
 
     __str__ = Exception.__str__  # without the quotes of a KeyError
 
 
 class NumberMissingError(CaseError, IndexError):
-    """A number beyond those that results have; the message has their range. Also an IndexError, as of any list."""
+    """A number outside the range of results, which the message gives. Also an IndexError, as of any list."""
 
 
 class RecordError(CaseError):
-    """A record of results that cannot be read, is damaged, or lacks what every record has."""
+    """A record of results that cannot be read, is damaged, or is incomplete."""
 
     exit_code = 5
 
@@ -89,7 +91,7 @@ class NotAccurateError(DemboundError):
 
 
 class PackingError(DemboundError):
-    """A packing that did not reach the stress, the force balance or the size asked for."""
+    """A packing that did not reach the requested stress, force balance or size."""
 
     exit_code = 4
 

@@ -1,8 +1,8 @@
-"""Requests to end: they are noted, and obeyed where `look` is called, between two pieces of work.
+"""Requests to end: they are noted, and obeyed at calls of `look`, between two pieces of work.
 
-An exception that a handler of signals raised would be lost wherever Python drops exceptions, as in the callbacks of
-compilers, and could leave a file or a lock half-way. So nothing is raised where a request arrives, but by the next call
-of `look`: between imports, kernels that are compiled, blocks of steps, iterations, files and pictures.
+An exception raised by a handler of signals would be lost where Python drops exceptions, as in callbacks of compilers,
+and could leave a file or a lock half-way. So only the next call of `look` raises: between imports, compiled kernels,
+blocks of steps, iterations, files and pictures.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ INTERRUPTED = 130
 """Exit code after Ctrl-C."""
 
 TOGETHER = 0.1
-"""Seconds in which signals are one request: ``timeout`` sends its signal twice, terminals and wrappers both send it."""
+"""Seconds within which signals are one request: ``timeout`` sends its signal twice, as do a terminal and a wrapper."""
 
 
 class Stopped(KeyboardInterrupt):
@@ -37,7 +37,7 @@ class Stopped(KeyboardInterrupt):
 
 
 def exit_code_of(stop: KeyboardInterrupt) -> int:
-    """Exit code of a process that ends with it."""
+    """Exit code of a process that ends with this signal."""
     return stop.exit_code if isinstance(stop, Stopped) else INTERRUPTED
 
 
@@ -52,7 +52,7 @@ class Interrupts:
     A request is a signal, or a file that appears. A second signal acts at once, as it would outside. Inside another
     statement requests to either are noted. Threads other than the main one receive no signals.
 
-    On leaving, a signal that nobody has looked at raises `Stopped`, so that none is lost.
+    On leaving, a signal that `look` has not raised raises `Stopped`, so that none is lost.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Interrupts:
 
     @property
     def caught(self) -> int | None:
-        """Number of the signal that was requested to end with, None before."""
+        """Number of the signal of the request to end, None before."""
         if self._signal is None and self._stop is not None and os.path.exists(self._stop):
             return signal.SIGTERM
         return self._outer.caught if self._signal is None and self._outer is not None else self._signal
@@ -117,7 +117,7 @@ def look() -> None:
 
 @contextmanager
 def put_off() -> Iterator[None]:
-    """Inside, `look` raises nothing: for work that cannot be left half-done, and is soon over."""
+    """Inside, `look` raises nothing: for short work that must not be left half-done."""
     token = _is_put_off.set(True)
     try:
         yield
@@ -126,7 +126,7 @@ def put_off() -> Iterator[None]:
 
 
 class _Imports:
-    """A finder of modules that finds none, but looks for requests to end whenever one is to be imported."""
+    """A finder of modules that finds none, but checks for requests to end at every import."""
 
     def find_spec(self, *arguments: Any) -> None:
         """Look."""
@@ -134,7 +134,7 @@ class _Imports:
 
 
 def look_at_imports() -> None:
-    """Look for requests to end between imports, too, from now on."""
+    """Also check for requests to end between imports from now on."""
     sys.meta_path.insert(0, _Imports())  # type: ignore[arg-type]  # as find_spec is all that importing needs
 
 
@@ -142,7 +142,7 @@ def look_at_imports() -> None:
 def whole_process() -> Iterator[None]:
     """Note requests to end of this process from now on, also between imports; a second signal ends it at once.
 
-    To be used once, in the main thread, by a process that has nothing else to do.
+    To be used once, in the main thread, by a process that does nothing else.
     """
     for number in obeyed():
         signal.signal(number, signal.SIG_DFL)

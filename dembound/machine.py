@@ -1,4 +1,4 @@
-"""RAM, disks and cores of this machine, and a setting by which removed arrays return their RAM."""
+"""RAM, disks and cores of this machine, and a setting by which freed arrays return their RAM."""
 
 import ctypes
 import os
@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
 OWN_PAGES = 1 << 20
-"""Bytes from which on an array has pages of its own, which go back to the system when the array is removed.
+"""Bytes above which an array has its own pages, which go back to the system when the array is freed.
 
 By default glibc raises this limit up to 32 MB as arrays are removed, and keeps their pages: a run of a million disks
 then takes a quarter more RAM, depending on the order in which arrays come and go."""
@@ -26,7 +26,7 @@ class Memory(NamedTuple):
 
 
 def give_back_at_once() -> None:
-    """Let the pages of removed arrays go back to the system, in the whole process; without glibc nothing changes."""
+    """Let the pages of freed arrays go back to the system, in the whole process; without glibc nothing changes."""
     if sys.platform == "linux":
         choose = getattr(ctypes.CDLL(None), "mallopt", None)
         if choose is not None:
@@ -34,7 +34,7 @@ def give_back_at_once() -> None:
 
 
 def one_thread_for_matrices() -> None:
-    """Have numpy and scipy, if they are not yet imported, solve with one thread, unless the environment has others.
+    """Have numpy and scipy, if not yet imported, solve with one thread, unless the environment says otherwise.
 
     Matrices of some hundred rows gain nothing from threads, and lose much where other programs need the cores.
     """
@@ -97,7 +97,7 @@ def _of_groups(root: Path) -> Iterator[Memory]:
 
 
 def _groups(root: Path) -> set[Path]:
-    """The folders of this process's groups and of those they are in."""
+    """The folders of this process's control groups and of their parent groups."""
     mount, found = root / "sys/fs/cgroup", set()
     try:
         lines = (root / "proc/self/cgroup").read_text().splitlines()
@@ -112,7 +112,7 @@ def _groups(root: Path) -> set[Path]:
 
 
 def _number(path: Path) -> float | None:
-    """The number in a file; None if it has none, as where there is no limit ("max")."""
+    """The number in a file; None if it has none, such as "max" for no limit."""
     try:
         return float(path.read_text())
     except (OSError, ValueError):

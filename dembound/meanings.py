@@ -1,7 +1,7 @@
-"""The physical meanings of numbers in case files: which sizes are likely, and what an unlikely one probably is.
+"""The physical meanings of numbers in case files: likely sizes, and probable mistakes for unlikely ones.
 
-Every number of a table has a meaning (`table.quantity`). One with likely sizes is compared with them before a run; a
-number whose size says nothing by itself has a meaning without them, with the reason.
+Every number of a table has a meaning (`table.quantity`). Numbers are compared with the likely sizes of their meaning
+before a run; a meaning of any size gives the reason.
 
 Sources of the sizes: Mavko, Mukerji & Dvorkin, The Rock Physics Handbook (2009), for soils and rocks; Ashby, Materials
 Selection in Mechanical Design (2011), for metals and plastics.
@@ -16,9 +16,9 @@ from dembound.words import percent
 
 
 class Slip(NamedTuple):
-    """A usual mistake: the value is given in another unit, or is another number.
+    """A usual mistake: a value in another unit, or of another quantity.
 
-    what : in words, after "likely". mend : the value to write, from the one given.
+    what : in words, after "likely". mend : from the given value to the correct one.
     """
 
     what: str
@@ -34,7 +34,7 @@ class Meaning:
     why : the reason for the sizes; for a meaning without sizes, the reason why there are none.
     low, high : sizes below and above which a number other than 0 is unlikely; whose : things of such sizes, in words.
     usual : sizes within which a corrected value must be to be offered.
-    slips : the usual mistakes. spared : sizes outside the limits that are likely all the same.
+    slips : the usual mistakes. spared : likely sizes outside the limits.
     """
 
     why: str
@@ -51,7 +51,7 @@ class Meaning:
         return self.low == 0.0 and self.high == math.inf
 
     def doubt(self, value: float, unit: str, *, given: bool = True) -> str | None:
-        """Why a value is unlikely, in words, and a correction if it is given; None for a likely one.
+        """Reason why a value is unlikely, in words, with a correction if it was given; None for a likely value.
 
         given : False for values derived from others.
         """
@@ -72,7 +72,7 @@ class Meaning:
         return f"{self.low:g} to {self.high:g}"
 
     def _mended(self, value: float) -> Iterator[tuple[Slip, float]]:
-        """The slips after which a value would be a usual one, with that value."""
+        """The slips that explain a value, with the corrected values, which are usual."""
         for slip in self.slips:
             if self.usual[0] <= abs(mended := slip.mend(value)) <= self.usual[1]:
                 yield slip, mended
@@ -238,13 +238,13 @@ MEANINGS: dict[str, Meaning] = {
 """Name -> meaning."""
 
 FADED = 0.01
-"""Least amplitude that an attenuation should leave of a wave along a bar, over its initial one."""
+"""Least amplitude of a wave along a bar with attenuation, over its initial one."""
 
 
 def fading(place: str, exponent: float, length: float) -> Iterator[str]:
     """Message about an attenuation, at a place, that leaves nothing of a wave.
 
-    exponent : of the decay along the bar; length : of that, m.
+    exponent : of the decay along the bar; length : of the bar, m.
     """
     if (left := math.exp(-exponent)) < FADED:
         yield (
@@ -264,4 +264,4 @@ OF_UNITS = {
     "N/m": "force",
     "s": "duration",
 }
-"""Units whose numbers have one meaning, so that it need not be given."""
+"""Units whose numbers have only one meaning, which need not be given."""

@@ -12,8 +12,8 @@ EQUAL = 1e-6
 """Relative difference from the smallest distance up to which other distances count as equal to it.
 
 Points that are equally near to a place are at least a diameter D apart, so the distance is D/2 or more, while
-coordinates X are rounded to 1e-16 X: far less than 1e-6 D/2 in bodies of less than 1e8 diameters. It also takes up the
-rounding of places that were typed with ten digits in bodies of 1e3 diameters."""
+coordinates X are rounded to 1e-16 X: far less than 1e-6 D/2 in bodies of less than 1e8 diameters. It also covers the
+rounding of places given with ten digits in bodies of 1e3 diameters."""
 
 
 def nearest(points: np.ndarray, places: np.ndarray) -> np.ndarray:

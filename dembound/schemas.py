@@ -1,7 +1,6 @@
 """The case files of all kinds of bodies: reading and changing them.
 
-Apart from `kinds`, only this file names the kinds. Cases are read, described and listed without importing what runs
-them.
+Apart from `kinds`, only this file names the kinds. Reading, describing and listing cases does not import their runs.
 """
 
 from collections.abc import Mapping
@@ -31,7 +30,7 @@ def loads(text: str, folder: Path = Path(), name: str = "case", files: Mapping[s
 def with_changes(case: K, changes: Mapping[str, Any]) -> K:
     """The case with some keys changed, see `case.writer.with_changes`; its kind of body remains.
 
-    Raises CaseError also for changes that make another kind of it.
+    Also raises CaseError for changes that make it a case of another kind.
     """
     return _of_same(case, writer.with_changes(case, changes, SCHEMAS))
 
@@ -44,7 +43,7 @@ def checked(case: K) -> K:
 
 
 def _of_same(case: K, made: Case) -> K:
-    """A case that was made from another one, with its kind, its origin and its silent waves."""
+    """A case made from another one, with the kind, origin and silent waves of the other."""
     return replace(
         as_kind(made, type(case), "is of another kind of body after these changes, must be of the same"),
         origin=case.origin,

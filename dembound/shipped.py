@@ -90,12 +90,12 @@ def _files(name: str) -> Iterator[tuple[Path, Path]]:
 
 
 def _names_by_group() -> list[list[str]]:
-    """The groups, the cases of no group, and those of each group."""
+    """The groups, the cases without a group, and the cases of each group."""
     return [groups(), *([name for name in names() if name.rpartition("/")[0] == group] for group in ("", *groups()))]
 
 
 def _read_by(case: Case) -> Iterator[Path]:
-    """The files that the waves of a case are read from, where it names them by relative paths."""
+    """The files of the waves of a case that are given by relative paths."""
     here = case.folder.resolve()
     for wave in case.wave.values():
         for path in wave.moved(here, here.parent).values():

@@ -16,7 +16,7 @@ from dembound.meanings import MEANINGS, OF_UNITS
 T = TypeVar("T")
 
 SMALLEST, LARGEST = 1e-30, 1e30
-"""Sizes of numbers, in SI units, between which products of them neither overflow nor vanish."""
+"""Least and largest size of numbers, in SI units: products of a few neither overflow nor vanish."""
 
 LARGEST_WHOLE = 2**63 - 1
 """The largest whole number of a TOML file."""
@@ -51,7 +51,7 @@ class Table(BaseModel):
 
 
 def usable(value: T) -> T:
-    """The value of any key itself, if all numbers in it can be computed with and all texts are one line.
+    """The value of a key, if all its numbers are within the limits and all its texts are one line.
 
     Raises ValueError, with the limits, if not.
     """
@@ -106,7 +106,7 @@ def quantity(default: Any = ..., *, unit: str, help: str, means: str | None = No
     default : the value when the key is absent; ``...`` makes the key required.
     unit : SI unit, "1" for a pure number.
     help : one sentence with the meaning of the key.
-    means : of a number, its meaning in `MEANINGS`, which has the likely sizes; absent: the only one of its unit.
+    means : meaning of a number in `MEANINGS`, with its likely sizes; absent: the only meaning of its unit.
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).
     """
     assert means is None or means in MEANINGS, means
@@ -115,7 +115,7 @@ def quantity(default: Any = ..., *, unit: str, help: str, means: str | None = No
 
 
 def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tuple[type[T], ...]:
-    """These types of tables, and those that other installed packages register under the entry point group `group`.
+    """Types of tables, with those that other installed packages register under the entry point group `group`.
 
     A type that cannot be used is left out, with an `UnusableTypeWarning` that gives the reason.
     """

@@ -5,4 +5,4 @@ import time
 __version__ = "0.1.0"
 
 IMPORT_BEGAN = time.perf_counter()
-"""Used for the summary's list of the time each part of a run took."""
+"""Begin of the import, for the summary's times of the parts of a run."""

@@ -4,13 +4,16 @@ import math
 from collections.abc import Iterator, Sequence
 
 Entries = Iterator[tuple[str, str]]
-"""Names, each with what is said under it, in the order in which they are printed."""
+"""Names and their texts, in the order of printing."""
 
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 """Prefixes of units, the largest first."""
 
 UPWARDS = ("Pa", "N", "N/m", "J", "J/m", "Hz")
-"""Units that have only prefixes above 1, as mPa would be read as MPa; others have only those below, as speeds."""
+"""Units with prefixes above 1 only, as mPa would be read as MPa.
+
+Other units, such as of speeds, have only those below 1.
+"""
 
 
 def percent(share: float, digits: int = 2) -> str:
@@ -20,13 +23,13 @@ def percent(share: float, digits: int = 2) -> str:
 
 
 def with_unit(value: float, unit: str, digits: int = 3) -> str:
-    """A number in an SI unit as text, with the prefix that suits it: 1.25e6 Pa is "1.25 MPa"."""
+    """A number in an SI unit as text with a suitable prefix: 1.25e6 Pa is "1.25 MPa"."""
     (text,), prefixed = in_one_unit([value], unit, digits)
     return f"{text} {prefixed}"
 
 
 def in_one_unit(values: Sequence[float], unit: str, digits: int = 3) -> tuple[list[str], str]:
-    """Numbers as text with so many digits, and their unit with the prefix that suits the largest."""
+    """Numbers as text with a number of digits, and their unit with a suitable prefix for the largest."""
     sizes = [abs(value) for value in values if math.isfinite(value)]
     largest = float(f"{max(sizes, default=0.0):.{digits}g}")  # 999,999 Pa is 1 MPa
     fitting = [each for each in PREFIXES if (each[0] >= 1.0 if unit in UPWARDS else each[0] <= 1.0)]
@@ -35,7 +38,7 @@ def in_one_unit(values: Sequence[float], unit: str, digits: int = 3) -> tuple[li
 
 
 def columns(rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
-    """Rows of equally many cells as lines with aligned columns, the first so many to the left, others to the right."""
+    """Rows of equally many cells as lines with aligned columns, the first few to the left, others to the right."""
     wide = [max(map(len, cells)) for cells in zip(*rows, strict=True)]
     return [
         "  ".join(

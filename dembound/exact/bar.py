@@ -51,7 +51,10 @@ def bar_velocity(
     impedance: float,
     far_end: End = "free",
 ) -> np.ndarray:
-    """Velocity (k,) m/s, positive away from the loaded end, for an impedance ρc in Pa·s/m; the rest as `bar_stress`."""
+    """Velocity (k,) m/s, positive away from the loaded end, for an impedance ρc in Pa·s/m.
+
+    Other arguments as in `bar_stress`.
+    """
     far = {"free": 1.0, "fixed": -1.0, "absorbing": 0.0}[far_end]
     velocity = np.zeros_like(time)
     for turn, way in _passages(place, length, time.max() * speed):

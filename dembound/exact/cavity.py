@@ -8,8 +8,8 @@ transforms of displacement and stresses (tension positive) are, with k = s/c_p a
     A = p̂ / [(λ+2μ) k K₀(ka) + 2μ K₁(ka)/a] ,
 
 so that σ_r = −p at the wall; inverted by `transform.respond`. At the front, t = (r − a)/c_p, the velocity is
-p √(a/r)/(ρc_p); the front's share √(a/r) e^{−k(r−a)} of velocity and stresses is taken out of the transforms and added
-in closed form, which keeps steep fronts steep.
+p √(a/r)/(ρc_p); the front's share √(a/r) e^{−k(r−a)} of velocity and stresses is subtracted from the transforms and
+added in closed form, which keeps steep fronts steep.
 
 A line source. A line of isotropic moment M(t) per unit length (N; the body force −M ∇δ, M > 0 is an explosion) moves
 the full space by û = M̂ k K₁(kr)/(2πρc_p²), as this cavity does outside of it with
@@ -18,8 +18,8 @@ the full space by û = M̂ k K₁(kr)/(2πρc_p²), as this cavity does outside 
 
 if the pressure is slow, T ≫ a/c_p. In an intact body radial forces of q (N/m) per metre of a circle of radius a have
 the moment M = πa² q · 2I₁(ka)/(ka), where the last factor is 1 if they are slow, and two pairs of forces ±F at distance
-d, one along each axis, M = Fd. A pressure in a hole has (c_p/c_s)² times as much as the same forces in an intact body,
-because the wall yields more than the body that has been taken out.
+d, one along each axis, M = Fd. A pressure in a hole has (c_p/c_s)² times the moment of the same forces in an intact
+body, because the wall yields more than intact material.
 """
 
 import math
@@ -31,7 +31,7 @@ from dembound.exact.solid import Solid
 from dembound.exact.transform import Signal, respond
 
 SAMPLES = 2000
-"""Number of times at which the largest pressure is looked for."""
+"""Number of times at which the largest pressure is sought."""
 
 
 class CavityMotion(NamedTuple):

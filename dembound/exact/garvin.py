@@ -161,7 +161,7 @@ def _rayleigh(p: np.ndarray, eta_a: np.ndarray, b: float) -> tuple[np.ndarray, n
 def _sum(rays: list[_Ray], times: np.ndarray, rate: Signal, panels: int) -> np.ndarray:
     """Σ ∫ M′ Im[F dp] (2, k) with `panels` Gauss panels on each piece of time between arrivals.
 
-    Rays are added before they are integrated: late, those of P to P and of P to S grow as τ², and nearly cancel.
+    Rays are added before they are integrated: at late times P to P and P to S grow as τ² and nearly cancel.
     """
     rays = sorted(rays, key=lambda ray: ray.arrival)
     total = np.zeros((2, len(times)))
@@ -176,10 +176,10 @@ def _sum(rays: list[_Ray], times: np.ndarray, rate: Signal, panels: int) -> np.n
 
 
 def _piece(rays: list[_Ray], begin: float, end: np.ndarray, times: np.ndarray, rate: Signal, panels: int) -> np.ndarray:
-    """The part (2, k) of that integral from `begin` to `end`, (k,) or (1,), at times (k,), over rays that have begun.
+    """The part (2, k) of the integral from `begin` to `end`, (k,) or (1,), at times (k,), over rays that have begun.
 
     With τ = begin cosh ξ, ξ = ξ_end (1 − v³), 0 < v < 1, nothing is infinite at the beginning, and nodes are
-    concentrated at the end, where M′ begins: late after a short pulse that is all there is.
+    concentrated at the end, where M′ begins; late after a short pulse nothing else contributes.
     """
     v = ((np.arange(panels)[:, None] + 0.5 + 0.5 * NODES) / panels).ravel()
     weights = np.tile(WEIGHTS, panels) / (2 * panels) * 3.0 * v**2

@@ -32,7 +32,7 @@ BLOCK = 16384
 """Number of values computed at once: few enough for the processor's cache, enough to make calls cheap."""
 
 LoadFrom = Callable[..., np.ndarray]
-"""Gives the load that acts with a slowness, at all times or at some."""
+"""Returns the load that acts with a slowness, at all times or at some."""
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ def _integral(
     residue: np.ndarray,
     panels: int,
 ) -> np.ndarray:
-    """The regular part of that integral (2, k), with the given number of Gauss panels on each of its pieces.
+    """The regular part of the integral (2, k), with a number of Gauss panels on each of its pieces.
 
     The pieces end at P, S and Rayleigh arrival. p = low + width·sin²(πv/2), 0 < v < 1, removes the square roots at
     their ends. It also concentrates nodes near p_R, so that the quotient there keeps its digits.
@@ -202,7 +202,7 @@ def _piece(
     width: np.ndarray,
     panels: int,
 ) -> np.ndarray:
-    """The part (2, k') of that integral from slowness `low` on, over widths (k',) or (1,), for times `chosen` (k',)."""
+    """The part (2, k') of the integral from slowness `low` on, over widths (k',) or (1,), for times `chosen` (k',)."""
     nodes = ((np.arange(panels)[:, None] + 0.5 + 0.5 * NODES) / panels).ravel()
     slopes = np.tile(WEIGHTS, panels) / (2 * panels) * 0.5 * math.pi * np.sin(math.pi * nodes)
     total = np.zeros((2, len(chosen)))

@@ -7,7 +7,7 @@ A wave exp i(kx − ωt) in a bar of radius a satisfies (Pochhammer 1876, Chree 
 
 with c_1 and c_2 the speeds of P and S waves. Its first mode begins at c_0 = √(E/ρ) for long waves, with Rayleigh's
 correction c/c_0 = 1 − ν²π²(a/Λ)², Λ the wavelength, and ends at the speed of Rayleigh waves for short ones.
-c/c_0 depends on a/Λ and Poisson's ratio ν alone (tables by Bancroft 1941).
+c/c_0 depends only on a/Λ and Poisson's ratio ν (tables by Bancroft 1941).
 
 Divided by p J₁(pa) J₁(qa), and with F(z²) = z J₀(z)/J₁(z), which is real for negative z², too, it is
 
@@ -30,7 +30,7 @@ POINTS = 300
 """Entries of a table of speeds, between which a spline leaves errors of 1e-7."""
 
 BRACKETS = 400
-"""Speeds among which the slowest root is looked for."""
+"""Number of speeds among which the slowest root is sought."""
 
 
 def phase_speed(ratio: float, poisson: float) -> float:
@@ -86,7 +86,7 @@ def _table(poisson: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _equation(speed: np.ndarray, wavenumber: float, poisson: float) -> np.ndarray:
-    """The left side for c/c_0 and ka, both a = 1."""
+    """The left side of the frequency equation for c/c_0 and ka, with a = 1."""
     square = wavenumber**2
     stiff = (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson)  # c_0²/c_1²
     p = square * (speed**2 * stiff - 1.0)

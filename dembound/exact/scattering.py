@@ -37,10 +37,10 @@ MOST = 2**16
 """Largest number of samples in time; orders are as many as the highest frequency needs."""
 
 BLOCK = 128
-"""Number of frequencies computed at once, with the orders of the highest of them."""
+"""Number of frequencies computed at once, with the orders of the highest."""
 
 SAMPLES = 2000
-"""Number of times at which the size of a wave is looked for."""
+"""Number of times at which the size of a wave is sought."""
 
 WaveKind = Literal["p", "sv"]
 

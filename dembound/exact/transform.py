@@ -4,9 +4,9 @@ The response to a signal p(t) has the transform H(s)·p̂(s). On the line s = c 
 
     u(t) = e^{ct}/2π ∫ H(c + iω) p̂(c + iω) e^{iωt} dω ,
 
-which is a discrete Fourier transform over a window W of time. What happens beyond the window is added to what happens
-in it, but multiplied by e^{−cW}, so nothing has to be over at its end. With c = ln(10⁸)/W that error is 1e-8 of the
-largest response, and what the sampling leaves grows by at most e^{ct} = 10 in the eighth of the window that is used.
+which is a discrete Fourier transform over a window W of time. Motion beyond the window is added to the motion in it,
+multiplied by e^{−cW}, so nothing has to be over at its end. With c = ln(10⁸)/W that error is 1e-8 of the largest
+response, and the error of sampling grows by at most e^{ct} = 10 in the eighth of the window that is used.
 """
 
 import math
@@ -21,7 +21,7 @@ Response = Callable[[np.ndarray], list[np.ndarray]]
 """Transforms of several kinds, each (…, m), of the response to a unit impulse at m complex frequencies s (rad/s)."""
 
 WINDOW = 8.0
-"""Length of the window over the latest time asked for."""
+"""Length of the window over the latest requested time."""
 
 DAMPING = math.log(1e8)
 """cW: an event one window later is damped by e to its power."""
@@ -76,7 +76,7 @@ class _Frequencies:
         self._values: list[np.ndarray] = []
 
     def sum(self, signal: Signal, samples: int, times: np.ndarray) -> list[np.ndarray]:
-        """Responses (…, k) at times (k,) s to a signal with so many samples in the window."""
+        """Responses (…, k) at times (k,) s to a signal with a number of samples in the window."""
         from scipy.interpolate import CubicSpline
 
         step, rate = self._length / samples, DAMPING / self._length
@@ -97,7 +97,7 @@ class _Frequencies:
         return responses
 
     def _add(self, number: np.ndarray) -> None:
-        """Compute the response at frequencies of these numbers where it is not yet known."""
+        """Compute the response at the frequencies with these numbers where it is not yet known."""
         new = np.setdiff1d(number, self._number)
         if len(new) > 0 or not self._values:
             more = self._response((DAMPING + 2j * math.pi * new) / self._length)

@@ -1,4 +1,4 @@
-"""The level floor that holes leave beside a side of the ground, such as that of a cut, or in front of a slope."""
+"""The level floor that holes leave beside a side of the ground, as in a cut or in front of a slope."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -16,7 +16,7 @@ FINE = 8
 class Floor(NamedTuple):
     """A floor beside the left or right side of a rectangle, with no ground above.
 
-    height : y, m. width : length over which it is level within half a diameter, from the side inwards, m.
+    height : y, m. width : m, length from the side inwards over which it is level within half a diameter.
     """
 
     height: float
@@ -26,8 +26,8 @@ class Floor(NamedTuple):
 def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) -> Floor | None:
     """The floor beside the left or right side of a box (left, bottom, right, top; m); None if no hole lowers it there.
 
-    diameter : mean diameter of the disks, m. Where holes leave less than half a diameter of ground at the top or at the
-    side, they count as reaching it.
+    diameter : mean diameter of the disks, m. Holes that leave less than half a diameter of ground at the top or at the
+    side count as reaching it.
     """
     if not holes:
         return None

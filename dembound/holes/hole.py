@@ -13,13 +13,14 @@ Apart = Callable[[int, float], float]
 """Distance (m) of a wall across an axis, at a place (m), from the nearest plane between disks."""
 
 WALL = 0.4
-"""Error beside a round hole in a lattice under a pressure, times its disks along the radius: compared with exact
-solutions the median of 0.41 with 3.5 to 20 of them and three places of the centre, at 1 to 2.5 radii
-(benchmarks/walls.py). The lattice acts as a hole that is larger by 0.2 D."""
+"""Error beside a round hole in a lattice under a pressure, times the number of disks along its radius: the median of
+0.41, compared with exact solutions, with 3.5 to 20 disks and three places of the centre, at 1 to 2.5 radii
+(benchmarks/walls.py). The lattice acts as a hole that is larger by 0.2 D.
+"""
 
 
 class Hole(Table, ABC):
-    """An area without particles: those centred in it are removed, and also those that this separates from the body."""
+    """An area without particles: particles centred in it, and those it separates from the body, are removed."""
 
     type: str
     name: FileName = quantity(..., unit="1", help="name of the hole in loads and messages")
@@ -43,9 +44,9 @@ class Hole(Table, ABC):
         """The smallest rectangle around it: x0, y0, x1, y1 in m."""
 
     def wall_error(self, diameter: float, apart: Apart) -> float:
-        """Error of the motion that a pressure makes beside it in a lattice of disks of a diameter (m), RMS over RMS.
+        """Error of the motion by a pressure in it, beside it in a lattice of disks of a diameter (m), RMS over RMS.
 
-        By default for a round hole, whose shape is known to a disk: `WALL` over the disks in its smaller half.
+        The default is for a round hole: `WALL` over the number of disks in its smaller half.
         """
         return WALL / (self.smaller_half / diameter)
 
@@ -57,5 +58,5 @@ class Hole(Table, ABC):
 
     @property
     def outline(self) -> Outline | None:
-        """The rim of the hole, which a pressure on its wall needs; None unless it is a simple closed curve."""
+        """The rim of the hole, on which a pressure acts; None unless it is a simple closed curve."""
         return None

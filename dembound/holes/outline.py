@@ -13,8 +13,10 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 ITERATIONS = 20
-"""Newton steps for the nearest point of an ellipse; 8 reach rounding errors where axes are as 1 to 10, 16 for 1 to
-1000."""
+"""Number of Newton steps for the nearest point of an ellipse.
+
+8 reach rounding errors for axes of 1 to 10, 16 for 1 to 1000.
+"""
 
 ROUNDING = 1e-9
 """Distance over the size of an outline up to which a place is on a line."""
@@ -45,8 +47,8 @@ class Outline(ABC):
     def within(self, box: tuple[float, float, float, float]) -> list[tuple[float, float]]:
         """The parts that lie within a box (left, bottom, right, top; m): where they begin, and how long they are.
 
-        In parameters; all of a curve begins at 0 and is as long as the period. What runs along a side of the box does
-        not lie within it.
+        Both are in parameters; a whole curve begins at 0 and is as long as the period. Parts along a side of the box
+        are not within it.
         """
         levels = ((0, box[0]), (0, box[2]), (1, box[1]), (1, box[3]))
         cuts = np.unique(np.concatenate([self.crossings(axis, level) for axis, level in levels]) % self.period)
@@ -104,7 +106,7 @@ class EllipseOutline(Outline):
     def nearest(self, places: np.ndarray) -> np.ndarray:
         """Eccentric angles (k,) of the points nearest to places (k, 2) m.
 
-        By the point in whose centre of curvature's direction the place lies: of a circle that is found at once.
+        Each step takes the point whose centre of curvature lies in the direction of the place: exact for a circle.
         """
         own = (places - self._centre) @ self._turn.T
         sign, place = np.where(own < 0.0, -1.0, 1.0), np.abs(own)
@@ -167,7 +169,7 @@ class PolygonOutline(Outline):
         return found % self.period
 
     def crossings(self, axis: int, level: float) -> np.ndarray:
-        """Lengths (k,) m of points whose coordinate along an axis is `level` (m); of edges on this line both ends."""
+        """Lengths (k,) m of points whose coordinate along an axis is `level` (m); both ends of edges on this line."""
         begin, end = self.corners[:, axis] - level, np.roll(self.corners[:, axis], -1) - level
         crosses = np.flatnonzero(begin * end < 0.0)
         part = begin[crosses] / (begin - end)[crosses]
@@ -176,7 +178,7 @@ class PolygonOutline(Outline):
 
     @property
     def crosses_itself(self) -> bool:
-        """Whether two edges that do not follow each other meet, so that inside and outside are not defined."""
+        """Whether two edges that are not neighbours meet, so that inside and outside are not defined."""
         count = len(self.corners)
         first, second = np.triu_indices(count, 2)
         apart = ~((first == 0) & (second == count - 1))

@@ -11,8 +11,9 @@ from dembound.holes.outline import PolygonOutline
 from dembound.table import Box, quantity, shifted_box
 
 STRAIGHT = 0.2
-"""Error beside a rectangle between disks of a lattice under a pressure, times the disks along its smaller half: 0.22
-and 0.20 with 3 and 12 of them, of first order, compared with disks 3 and 5 times smaller (benchmarks/walls.py)."""
+"""Error beside a rectangle with walls between disks of a lattice under a pressure, times the number of disks along its
+smaller half: 0.22 and 0.20 with 3 and 12 disks, compared with disks 3 and 5 times smaller (benchmarks/walls.py).
+"""
 
 
 class Rectangle(Hole):
@@ -44,9 +45,9 @@ class Rectangle(Hole):
         return self.corners
 
     def wall_error(self, diameter: float, apart: Apart) -> float:
-        """Error of walls between disks, and what walls elsewhere take off the width: half of it over the smaller half.
+        """Error with walls between disks, plus that of other walls: half the change of width over the smaller half.
 
-        What a hole does grows with its size, by as large a part; both may add or cancel.
+        The effect of a hole grows in proportion to its size; both errors may add or cancel.
         """
         along = self.smaller_half / diameter
         misfit = max(apart(k % 2, wall) for k, wall in enumerate(self.box)) / self.smaller_half

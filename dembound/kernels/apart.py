@@ -1,9 +1,9 @@
 """Kernels that are compiled when they are first called, separately from their callers, and shared out among threads.
 
-Numba copies the code of a called function into that of its caller, where it is optimised and translated anew, at every
-level between, and also where the case never calls it. Code that calls a kernel with `@apart` or `@in_chunks` contains a
-pointer, which is null until the first call asks for the kernel to be compiled, or loaded. Each call passes all arrays,
-some hundred nanoseconds, so only loops over particles, contacts or ties are worth it.
+Numba copies the code of a called function into that of its caller, and optimises and translates it again at every
+level, even if the case never calls it. Code that calls a kernel with `@apart` or `@in_chunks` contains a pointer, which
+is null until the first call has the kernel compiled, or loaded. Each call passes all arrays, some hundred nanoseconds,
+so only loops over particles, contacts or ties are worth it.
 """
 
 import base64
@@ -33,7 +33,10 @@ _RESOLVE = "dembound_compiled_kernel"
 
 
 def compiled(kernel: Any, arguments: tuple[Any, ...], returned: Any) -> int:
-    """Address of a kernel for arguments of these types, compiled, or loaded; raises TypeError if it returns another."""
+    """Address of a kernel, compiled or loaded for arguments of given types.
+
+    Raises TypeError for another return type.
+    """
     with put_off():
         kernel.compile(arguments)
     found: Any = kernel.overloads[arguments]
@@ -64,7 +67,7 @@ numba.get_num_threads()  # makes the functions known by which compiled code star
 
 
 def address(context: Any, builder: Any, kernel: Any, arguments: tuple[Any, ...], returned: Any) -> Any:
-    """Write the code that looks up the address of a kernel, and asks for it at the first call."""
+    """Write the code that looks up the address of a kernel, and requests it at the first call."""
     module, name = kernel.py_func.__module__, kernel.py_func.__name__
     kind = context.call_conv.get_function_type(returned, arguments).as_pointer()
     known = cgutils.add_global_variable(builder.module, kind, f".{module}.{name}")
@@ -111,18 +114,18 @@ def _callable(kernel: Any, own: tuple[Any, ...], returned: Any, call: Callable[.
 
 
 def apart(returned: Any = types.none) -> Callable[[Any], Callable[..., Any]]:
-    """A decorator of a compiled kernel that is compiled separately from its callers; all arguments by place.
+    """A decorator of a kernel that is compiled separately from its callers; all arguments are positional.
 
-    It must be a name of its module. returned : type of its result. Called from Python it is the kernel itself.
+    The kernel must be a name of its module. returned : type of its result. Called from Python it is the kernel itself.
     """
     return lambda kernel: kernel if config.DISABLE_JIT else _callable(kernel, (), returned, call_at)  # type: ignore[attr-defined]
 
 
 def in_chunks(kernel: Any) -> Callable[..., Any]:
-    """A compiled kernel of chunks first to last − 1, its first two arguments, for others to call without these two.
+    """A kernel of chunks first to last − 1, its first two arguments, which callers leave out.
 
-    The `CHUNKS` chunks are shared out among the threads. What a chunk does must not depend on others; the kernel must
-    be a name of its module, and return nothing. Called from Python it computes all chunks in turn.
+    The `CHUNKS` chunks are shared out among the threads. A chunk must not depend on others; the kernel must be a name
+    of its module, and return nothing. Called from Python it computes all chunks in turn.
     """
     if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
         return wraps(kernel)(lambda *arguments: kernel(0, CHUNKS, *arguments))

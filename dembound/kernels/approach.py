@@ -1,6 +1,6 @@
-"""How far two disks may have moved relative to each other since the pairs were listed.
+"""Bounds on the relative motion of disks since the pairs were listed.
 
-Waves carry neighbours along together, often by many times the gap up to which pairs are listed. The disks are therefore
+Waves move neighbours together, often by many times the gap up to which pairs are listed. The disks are therefore
 sorted into cells, and only disks in the same cell or in two that touch are compared, by the boxes that contain
 the displacements of each cell. Disks in other cells are so far apart that they cannot meet before one has moved by
 `cells.reach`.
@@ -13,7 +13,7 @@ from dembound.kernels.apart import apart, in_chunks
 from dembound.kernels.common import CHUNKS, FAST, MAKES, largest
 
 ACROSS = ((0, 0), (1, 0), (-1, 1), (0, 1), (1, 1))
-"""Steps to a cell itself and to half of those that touch it."""
+"""Steps from a cell to itself and to half of the cells that touch it."""
 
 
 @njit(**FAST)
@@ -99,7 +99,7 @@ def approach(u, begin, origin, cells):
 @in_chunks
 @njit(**FAST)
 def _farthest(first_chunk, last_chunk, cells, boxes, far):
-    """Fill far (chunks,) with the farthest that disks of each chunk of cells may have moved from others."""
+    """Fill far (chunks,) with the largest relative displacement of disks in each chunk of cells and neighbours."""
     count = cells.start.size - 1
     for chunk in range(first_chunk, last_chunk):
         most = 0.0

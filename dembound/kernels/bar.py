@@ -157,7 +157,7 @@ def break_at_limit(number, u, v, step, bonds):
 
 @njit(**FAST)
 def plane_force(k, u, bonds):
-    """Force (N, tension positive) through plane k, between nodes k and k + 1, of all that crosses it."""
+    """Force (N, tension positive) of all springs and bonds across plane k, between nodes k and k + 1."""
     total = bonds.spring[k] * (u[k + 1] - u[k])
     for row in range(bonds.bond.shape[0]):
         p = row + 1
@@ -237,7 +237,7 @@ def _move_unsupported(u, v, bonds, step, u_next, nodes):
 
 @njit(cache=True, fastmath=FASTMATH | {"reassoc"}, error_model="numpy")
 def _drag_work(mean, v, drag):
-    """Work (J/s) of dashpots drag (n,) N·s/m that act on mean velocities: in a step, and from its middle to its end."""
+    """Power (J/s) of dashpots drag (n,) N·s/m on mean velocities: in a step, and from its middle to its end."""
     whole = 0.0
     late = 0.0
     for i in range(mean.size):
@@ -248,7 +248,7 @@ def _drag_work(mean, v, drag):
 
 @njit(**FAST)
 def _note_drag(v, mean, before, nodes, drag, step, work):
-    """Add the energy taken by attenuation to the ledger; for supported nodes it is part of the outside's work."""
+    """Add the energy taken by attenuation to the ledger; for supported nodes it is part of the work from outside."""
     for s in range(nodes.size):
         i = nodes[s]
         mean[i] = 0.5 * (before[s] + v[i])

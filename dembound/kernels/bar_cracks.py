@@ -4,8 +4,8 @@ The traction of a crack of opening w is σ_t(1 − w/w_c) with w_c = 2G_f/σ_t. 
 share of it: with stiffness k and limit e_0 its force falls along a line from ke_0 at the elongation e_0 to zero at w_c.
 All bonds end at the same elongation w_c, whatever their length: if the bar beside the crack is strained by σ/E, a bond
 of length ξ has e = w + ξσ/E and bears σ/σ_t of its largest force, so their sum is the traction above, at every w, and
-∫f de over all of them is ½w_c Σke_0 = ½w_cσ_tA = G_fA. Unloading is a line to the origin; what is pressed together has
-the stiffness of a whole bond.
+∫f de over all of them is ½w_c Σke_0 = ½w_cσ_tA = G_fA. Unloading is a line to the origin; in compression a bond has its
+whole stiffness.
 
 A change of stiffness by Δk between two steps, with elongations e⁻ and e, takes −½Δk e e⁻ from the energy that central
 differences conserve. Stiffness is lowered only while e and e⁻ have the same sign, and raised only when the sign
@@ -93,7 +93,7 @@ def _watch(u, row, broken, number, soft):
 
 @njit(**FAST)
 def _begin(row, i, e, gain, stiffness, number, step, soft):
-    """Add a bond to those that open, at elongation e (m) and so many times its strength at the slowest rate."""
+    """Add a bond to the opening ones, at elongation e (m) and a factor of its strength at the slowest rate."""
     q, law = soft.listed[0], soft.laws[soft.part[i]]
     soft.row[q], soft.first[q], soft.began[q], soft.whole[q] = row, i, number, stiffness
     soft.limit[q], soft.apart[q] = gain * max(row + 1, 1) * law[ELONGATION], law[APART] / gain
@@ -104,7 +104,7 @@ def _begin(row, i, e, gain, stiffness, number, step, soft):
 
 @njit(**FAST)
 def _begin_row(u, row, stiffness, broken, number, step, soft):
-    """Let the bonds of a row open that have reached their limit.
+    """Let bonds of a row that have reached their limit open.
 
     Of two neighbouring planes that exceed it equally the left one opens, and unloads the other; one that still exceeds
     its limit a step later opens then. Longer bonds cross the same plane together with their neighbours.
@@ -125,7 +125,7 @@ def _begin_row(u, row, stiffness, broken, number, step, soft):
 @apart(types.float64)
 @njit(**FAST)
 def soften(number, u, v, step, bonds):
-    """Adjust all bonds that open, and those that begin to, in step `number`; returns the energy (J) they take.
+    """Adjust all bonds that open or begin to open in step `number`; returns the energy (J) they take.
 
     bonds : see tables.BarBonds; u (n,) m now, v (n,) m/s half a step (s) earlier.
     """

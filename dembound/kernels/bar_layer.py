@@ -10,7 +10,7 @@ with u as the mean ¼(u⁻ + 2u + u⁺) of three steps, and h = Δt/2:
     f ← [(1 − dh) f + kΔt (v_j − v_i)] / (1 + dh)
     v ← [(1 − dh)(1 − γh) v + Δt (F/m − dγu)] / ((1 + dh)(1 + γh))
 
-In steps, too, the layer is then the bar with D + d in place of D = (2/Δt) tanh(Δt ∂t/2), at every frequency.
+The discrete layer is then also the bar with D + d in place of D = (2/Δt) tanh(Δt ∂t/2), at every frequency.
 """
 
 from numba import njit

@@ -15,7 +15,7 @@ from dembound.kernels.tables import Bonded, SeamEnds
 
 @njit(**FAST)
 def begin(bonded):
-    """Compute anew, before the first step, how far particles have moved."""
+    """Compute the displacement of particles anew before the first step."""
     bonded.way[0] = 0.0
     bonded.way[1] = 0.0
 
@@ -86,7 +86,7 @@ def move(bonded, u, u_next, v, body, nodes):
 
 @njit(**FAST)
 def finish(bonded, v, body, nodes, work):
-    """Add the energy taken by local damping to the ledger, and the distance particles have moved."""
+    """Add the energy taken by local damping to the ledger, and update the distance particles have moved."""
     note_damping(bonded.damped, work)
     most = largest(bonded.fastest)
     begin = bonded.contacts.begin

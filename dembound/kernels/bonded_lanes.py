@@ -136,7 +136,7 @@ def _move(begin, end, u, v, rows, pairs, contacts, stray, stray_start, stray_end
 
 @njit(**FAST)
 def begin(lanes):
-    """Compute anew, before the first step, how far particles have moved."""
+    """Compute the displacement of particles anew before the first step."""
     law.begin(lanes.bonded)
 
 
@@ -172,7 +172,7 @@ def move(lanes, u, u_next, v, body, nodes):
 
 @njit(**FAST)
 def finish(lanes, v, body, nodes, work):
-    """Enter what local damping took, and how far particles have travelled."""
+    """Add the energy taken by local damping to the ledger, and update the distance particles have moved."""
     law.finish(lanes.bonded, v, body, nodes, work)
 
 

@@ -1,8 +1,8 @@
-"""Bundles, named tuples of arrays (tables/), by their addresses: the loop is the same for all types of them.
+"""Bundles, named tuples of arrays (tables/), by their addresses, so that the loop is the same for all types.
 
 `Written` holds the numbers of a bundle in RAM. Compiled code takes the address, of type `At`, in place of the
-bundle: every attribute that it reads is loaded where it is used. Passed as named tuples all arrays would be taken
-apart and put together again in each function that passes them on: a third to a half of the time of compiling.
+bundle: every attribute that it reads is loaded where it is used. As named tuples all arrays would be taken apart and
+put together again in each function that passes them on, which takes a third to a half of the time of compiling.
 """
 
 import ctypes
@@ -45,7 +45,7 @@ class At(types.Type):
 
     @property
     def mangling_args(self) -> tuple[str, tuple[Any, ...]]:
-        """A short name in those of compiled functions, which have a number as well."""
+        """A short name within the names of compiled functions, which also have a number."""
         return f"at{self.instance_class.__name__}", ()
 
     @property
@@ -152,7 +152,7 @@ class Written:
             _put(part, self.numbers, first, self.address)
 
     def takes(self, bundle: NamedTuple) -> bool:
-        """Write what is new in another bundle over this one; False if it has another type, and nothing is written."""
+        """Write the changes of another bundle over this one; False, without writing, if its type differs."""
         parts = _parts(bundle)
         if len(parts) != len(self._parts):
             return False
@@ -202,7 +202,7 @@ for _class in vars(tables).values():
 
 
 def _loaded(context: Any, builder: Any, kind: Any, place: Any) -> Any:
-    """The value of this type whose numbers begin at a place; it does not change while compiled code runs."""
+    """The value of a type whose numbers begin at a place; it does not change while compiled code runs."""
     if isinstance(kind, types.Array):
         data, *others = (_load(builder, builder.gep(place, [_NUMBER(k)])) for k in range(_HEAD, _count(kind)))
         shape, strides = others[: kind.ndim], others[kind.ndim :]
@@ -243,7 +243,7 @@ def _field(context: Any, builder: Any, at: Any, address: Any, name: str) -> Any:
 
 
 def _known(typed: Callable[..., Any], lower: Callable[..., Any]) -> Callable[..., Any]:
-    """A function that compiled code can call: typed by its arguments' types, written by `lower`.
+    """A function for compiled code: typed by its arguments' types, written by `lower`.
 
     Called from Python, without compiling, it returns its first argument.
     """

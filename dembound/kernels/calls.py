@@ -1,7 +1,7 @@
-"""Kernels that the loop calls: of laws, of ties, and of forces that rotate, by their addresses.
+"""Kernels of laws, ties and rotating forces, which the loop calls by their addresses.
 
-Each kernel is called with the addresses of its bundle, of the motion at the step, and of the data given for all steps
-(bundles.py), so that it and the loop are compiled separately.
+Each kernel gets the addresses of its bundle, of the motion at the step, and of the data for all steps (bundles.py), so
+that kernels and the loop are compiled separately.
 """
 
 from typing import Any, NamedTuple, Self
@@ -50,7 +50,7 @@ class Given(NamedTuple):
 
 
 def _examples() -> tuple[Motion, Given]:
-    """Bundles of the types that all have."""
+    """Bundles of the types in every call."""
     number, value, row, layer = np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3, 3))
     body = tables.Body(value, value, value, row, 0.0, 0.0)
     supports = tables.Supports(number, row, row, row, row, row, layer, number, row)
@@ -59,7 +59,7 @@ def _examples() -> tuple[Motion, Given]:
 
 _MOTION, _GIVEN = map(kind_of, _examples())
 motion_at, given_at = reader(_MOTION), reader(_GIVEN)
-"""Functions of an address that the loop has of a `Motion`, and of what is `Given`."""
+"""Functions from the address of a `Motion` and of `Given` to their bundles."""
 
 
 @njit(**FAST)
@@ -114,7 +114,7 @@ def _turning_work(turning, motion, step, number, given):
 
 
 BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH, ACROSS, TURN, TURNING_WORK = range(1, 10)
-"""Columns of the tables of bundles, see `entered`: what is called for laws, for ties, and for forces that rotate."""
+"""Columns of the tables of bundles, see `entered`: kernels of laws, of ties, and of rotating forces."""
 
 ROLES = {
     BEGIN: Role(begin, _begin),
@@ -195,14 +195,14 @@ def _measure_all(bundles, column, motion, step, number, given):  # type: ignore[
 
 
 _CALLED = (BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH), (ACROSS,), (TURN, TURNING_WORK), (), ()
-"""Columns of the kernels of laws, ties, forces that rotate, motions and what is given."""
+"""Columns of the kernels of laws, ties, rotating forces, motions and given data."""
 
 Kept = dict[tuple[int, int], tuple[Written, list[int]]]
-"""Bundles as they were last entered, with their rows of addresses, by table and place: what has not changed is kept."""
+"""Bundles of the last call with their rows of addresses, by table and place; unchanged rows are kept."""
 
 
 _KERNELS: dict[tuple[Any, ...], list[int]] = {}
-"""Addresses of kernels by role, 0 for none, of all types of bundles so far, by table and `bundles.kinds_of_parts`."""
+"""Addresses of kernels by role, 0 for none, for all types of bundles so far, by table and `bundles.kinds_of_parts`."""
 
 
 def _kernels(bundle: Any, table: int) -> list[int]:
@@ -238,9 +238,9 @@ def entered(
 ) -> tuple[Any, ...]:
     """Arguments of the loop: tables of addresses, those of motions (k,), and the address of the given data.
 
-    Valid as long as kept. A row of a table has the address of a bundle's numbers, then of its kernels by role, 0 for
-    none. Without compiling the loop takes the bundles themselves. Raises TypeError for motions or data of unexpected
-    types.
+    They are valid while `kept` is. A row of a table has the address of a bundle's numbers, then of its kernels by role,
+    0 for none. Without compiling the loop takes the bundles themselves. Raises TypeError for motions or data of
+    unexpected types.
     """
     if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
         return laws, ties, turnings, motions, given

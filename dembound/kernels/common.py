@@ -8,7 +8,7 @@ from numba import njit
 U = np.uint64  # unsigned indices avoid numba's test for negative ones
 
 FASTMATH = {"contract", "nsz"}
-"""Fused multiply-add only: it rounds less and does not depend on threads."""
+"""Fast-math option: fused multiply-add only, which rounds less and does not depend on threads."""
 
 FAST: dict[str, Any] = {
     "cache": True, "fastmath": FASTMATH, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True,
@@ -30,7 +30,9 @@ EXACT_MAKES = EXACT | {"_nrt": True}
 """`EXACT` for functions that create arrays."""
 
 REST = 1e-250
-"""Speeds below this are set to zero: they would decay into denormal numbers, which are a hundred times slower."""
+"""Speed (m/s) below which speeds are set to zero: they would decay into denormal numbers, which are a hundred times
+slower.
+"""
 
 DONE, LIST_ENDS, LAW_ENDS, TRIGGERED, BROKE = 0, 1, 2, 3, 4
 """Reasons why the loop returned.

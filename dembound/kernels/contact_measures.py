@@ -1,4 +1,4 @@
-"""Measures of contacts with a history that leave them as they are: how far they may still move, and their energy."""
+"""Measures of history-dependent contacts that do not change them: motion left before a limit, and energy."""
 
 import numpy as np
 from numba import njit, types
@@ -15,7 +15,7 @@ TURN = 0.01
 @apart(types.float64)
 @njit(**MAKES)
 def slack(u, contacts, limits, keeps_slip):
-    """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
+    """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative after it has left.
 
     A pair leaves it where a contact that has a stiffness opens, closes or slides, a bond reaches its strength, or, if
     geometry follows the motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no
@@ -72,7 +72,7 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
 
 @njit(**MAKES)
 def strain_energy(u, contacts, geometry):
-    """Energy (J) stored in contacts and in bonds at displacements u (3, n), with the tangential ones of the last push.
+    """Energy (J) stored in contacts and in bonds at displacements u (3, n), with shear and slip of the last push.
 
     With the geometry REFERENCE shear and slip are not read.
     """

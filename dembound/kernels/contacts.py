@@ -1,4 +1,4 @@
-"""Contacts with a history: PFC2D's linear contact (no tension, Coulomb friction) with a parallel bond that breaks.
+"""History-dependent contacts: PFC2D's linear contact (no tension, Coulomb friction) with a parallel bond that breaks.
 
 A pair's motion is three numbers: the distance of the centres, the tangential displacement `shear` of the two surfaces
 (counted along the path, as the tangent turns with the pair) and the relative rotation. The bond resists all three from
@@ -26,9 +26,9 @@ NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
 UPDATED, BONDED, REFERENCE, SLID = 0, 1, 2, 3
 """Geometries of normals and arms.
 
-UPDATED: they follow the motion. BONDED, for ``geometry = "reference"``: those of intact bonds keep their initial
-values. REFERENCE: all keep them, and contacts that are closed at the start neither open nor slide. SLID, only for
-energies: as REFERENCE, for contacts that slid earlier."""
+UPDATED: they follow the motion. BONDED, for ``geometry = "reference"``: intact bonds keep the initial geometry.
+REFERENCE: all pairs keep it, and contacts that are closed at the start neither open nor slide. SLID, only for energies:
+REFERENCE for contacts that slid earlier."""
 
 CLOSING = 1.05
 """Factor of a contact's first push after it was open.
@@ -57,7 +57,7 @@ def _bond_state(Fn, Fs, M, per_area, per_section, limits):
 
 @njit(**FAST, inline="always")
 def closing_work(stiffness, before, now, had_closed, push):
-    """Energy (J) taken by a contact's normal force in a step in excess of the stored energy; negative if released.
+    """Energy (J) taken by a contact's normal force in a step beyond the stored energy; negative if released.
 
     stiffness : k_n, N/m; before, now : overlap (m) before and after the step, negative for a gap; had_closed : whether
     the force of the step before was a first push (`CLOSING`); push : the force now, N. Forces at whole steps do the
@@ -161,8 +161,9 @@ def push(u, v, step, number, contacts, limits, lost, begin):
 
     Contacts and bonds at their limits slide and break; number is that of the step. lost (chunks, 4) receives the energy
     (J) taken in this step by friction, by cracks and by contacts that open and close, and the number of bonds that
-    broke. Friction and cracks take none in pairs whose force changes its sign in the step: the energy that they then
-    add counts, negative, with opening and closing. begin : the first pair. Returns the number of bonds that broke.
+    broke. In pairs whose force changes its sign in the step friction and cracks take no energy; the energy that they
+    then add is subtracted from that by opening and closing. begin : the first pair. Returns the number of bonds that
+    broke.
     """
     _push(u, v, step, number, contacts, limits, lost, begin)
     return int(column_sum(lost, 3))

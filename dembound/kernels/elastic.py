@@ -155,7 +155,7 @@ def finish(links, v, body, nodes, work):
 
 @njit(**FAST)
 def begin_watch(watched):
-    """Compute anew, before the first step, the distance of all contacts from their limits."""
+    """Compute the distance of all contacts from their limits anew before the first step."""
     watched.way[0] = 0.0
     watched.way[1] = 0.0
 
@@ -186,7 +186,7 @@ def move_watched(watched, u, u_next, v, body, nodes):
 
 @njit(**FAST)
 def finish_watched(watched, v, body, nodes, work):
-    """Add the energy taken by local damping to the ledger, and the distance surfaces have moved."""
+    """Add the energy taken by local damping to the ledger, and update the distance surfaces have moved."""
     finish(watched.links, v, body, nodes, work)
     most = largest(watched.links.fastest)
     for s in range(nodes.size):

@@ -7,8 +7,8 @@ number of slots to the neighbours' row. With Δ = u_j − u_i the force on i is
     F_y = k_xy Δ_x + k_yy Δ_y + k_yθ θ_j + own_y θ_i
     M   = k_θx Δ_x + k_θy Δ_y + k_θθ θ_j + own_θ θ_i
 
-which is elastic.py's law multiplied out; what θ_i adds is one constant for all contacts of a row. A contact that not
-all copies have also has a mask of those that do. Contacts that no row shares, strays, are computed one by one before.
+which is elastic.py's law multiplied out; the factor of θ_i is one constant for all contacts of a row. A contact that
+only some copies have also has a mask of these. Contacts that no row shares, strays, are computed one by one before.
 """
 
 import numpy as np
@@ -107,7 +107,7 @@ def _force_blocks(rows, first, last, u, force):
 
 @njit(**INLINED)
 def _gathered(rows, block, r, column, u, body):
-    """Forces on the disks of a block, but for steady loads, their displacements, and what turns forces into speeds.
+    """Forces on the disks of a block without steady loads, displacements, and factors from forces to speeds.
 
     Returns forces and moment, displacements, Δt over mass and over moment of inertia, and whether the block is special.
     """

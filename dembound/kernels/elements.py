@@ -26,7 +26,7 @@ _STEP = U(LANES)
 
 @njit(**WITHIN)
 def shape_of(elements, blocks, block):
-    """The shape that the elements of a block have."""
+    """The shape of the elements of a block."""
     k = U(blocks.shapes[block])
     return Shape(
         elements.gradient_x[k],
@@ -119,7 +119,7 @@ def block_forces(points, shape, blocks, block, u, space):
 
 @njit(**WITHIN)
 def _look_back(points, shape, absorber, layer, space):
-    """Add to U and V the velocities in A and B times τ, the larger one of both axes."""
+    """Add to U and V the velocities in A and B times τ, the larger τ of both axes."""
     count = len(points)
     size = U(shape.weight.size) * _STEP
     first = U(layer) * U(2 * count) * _STEP

@@ -1,7 +1,7 @@
-"""Forces that rotate with the side they act on, by the mean rotation of this side and the opposite one.
+"""Forces that rotate with their side, by the mean rotation of this side and the opposite one.
 
-So forces on opposite sides remain opposite: a body that bends, whose ends rotate in opposite directions, is not pushed
-away.
+So forces on opposite sides remain opposite, and a body that bends, whose ends rotate in opposite directions, is not
+pushed away.
 
 The forces that balance the stress of a settled body at its sides are part of that stress, so they rotate with the body.
 With fixed directions, a body under pressure p that is not held would be unstable: forces ±pH on the two ends of a body
@@ -81,9 +81,10 @@ def side_rotations(u, followers):
 @apart(types.float64)
 @njit(**MAKES)
 def turn_forces(followers, u, v, load, step):
-    """Rotate the forces with their sides at displacements u (3, n), in load (3, n); returns work (J) of half a step.
+    """Rotate the forces with their sides at displacements u (3, n), in load (3, n).
 
-    This is the work of the change of force by rotation, with the velocities v (3, n) of half a step earlier.
+    Returns their work (J) in half a step. The work is that of the change of force by rotation, with the velocities v
+    (3, n) of half a step earlier.
     """
     node, side, force = followers.node, followers.side, followers.force
     steady, extra = followers.steady, followers.extra

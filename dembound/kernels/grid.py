@@ -1,11 +1,11 @@
 """The law of a grid of spectral elements, and its step of central differences.
 
-First every block of eight elements computes its forces, moves the nodes that no other element has, and stores its
-forces on the others. Then each of these sums the forces of its at most four elements, in a fixed order, and is moved:
+First every block of eight elements computes its forces, moves the nodes inside elements, and stores its forces on
+shared nodes. Then each shared node sums the forces of its at most four elements, in a fixed order, and is moved, with
 the same bits for any number of threads. Nodes have no rotation, no local damping, and stay at rest on outer edges.
 
-In the ledger, the work done on absorbing elements counts as damping when it is done: the other elements have lost it.
-The sum of it with kinetic energy and the strain energy of the others is conserved, exactly as by central differences.
+In the ledger, work done on absorbing elements counts as damping at once. Its sum with the kinetic energy and the strain
+energy of the other elements is conserved as by central differences.
 """
 
 from numba import get_thread_id, njit
@@ -192,7 +192,7 @@ def move(grid, u, u_next, v, body, nodes):
 
 @njit(**FAST)
 def finish(grid, v, body, nodes, work):
-    """Add to the ledger, as taken by damping, the work that elements which absorb have taken."""
+    """Add the work taken by absorbing elements to the ledger, as damping."""
     if grid.blocks.layers == 0:
         return
     late = 0.0

@@ -1,6 +1,6 @@
-"""The elastic law on rows of copies where one component of the motion is held: the other two, eight copies at once.
+"""The elastic law on rows of copies, eight at once, where one of the three components of motion is held.
 
-The law is that of elastic_lanes.py without the rows and columns of the held component, so it gives the same answer.
+The law is that of elastic_lanes.py without the rows and columns of the held component, so its results are the same.
 With p a translation and q the other component that moves, and w = q_j, less q_i if q is a translation too:
 
     F_p = k_pp (p_j − p_i) + k_pq w + own_p θ_i

@@ -1,4 +1,4 @@
-"""The step of central differences on blocks of eight disks: what kernels of rows of copies share."""
+"""The step of central differences on blocks of eight disks: functions for kernels of rows of copies."""
 
 from numba import njit
 
@@ -19,7 +19,7 @@ def kick(v, f, b):
 
 @njit(**INLINED)
 def local_damping(v, f, damp):
-    """The force of local damping (Cundall: −damp·|F|·sign(v)), turned round."""
+    """The negative force of local damping (Cundall: −damp·|F|·sign(v))."""
     return choose(at_most(magnitude(v), 0.0), 0.0, with_sign(damp * magnitude(f), v))
 
 
@@ -89,7 +89,7 @@ def next_place(rows, block, group, column, r):
 
 @njit(**INLINED)
 def go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, step, v, u_next):
-    """Store velocities and the displacements that follow; of supported disks forces in place of displacements."""
+    """Store velocities and new displacements; for supported disks forces in place of displacements."""
     store(v[0], i, now_x)
     store(v[1], i, now_y)
     store(v[2], i, now_t)

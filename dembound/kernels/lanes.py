@@ -1,8 +1,8 @@
 """Lanes: eight numbers that are loaded, computed and stored at once, those of eight copies of a particle.
 
-A kernel that reads `x = load(u, i)` and `f = k * (load(u, j) - x)` computes for slots i … i + 7 what the same line with
-`u[i]` and `u[j]` computes for slot i. The compiler turns each operation into one instruction of AVX-512, two of AVX2
-or four of NEON and SSE2; results are the same bits but for fused multiply-adds, which not all machines have.
+A kernel with `x = load(u, i)` and `f = k * (load(u, j) - x)` computes for slots i … i + 7 the same as with `u[i]` and
+`u[j]` for slot i. The compiler turns each operation into one instruction of AVX-512, two of AVX2 or four of NEON and
+SSE2; results are the same bits but for fused multiply-adds, which not all machines have.
 
 Without compiling (NUMBA_DISABLE_JIT=1) the functions below run as Python, on arrays of eight.
 """
@@ -122,7 +122,7 @@ def combine(
 ) -> None:
     """Multiply N groups of eight doubles by a matrix (N·N,), row by row.
 
-    points : N numbers, of which only the count N is used, as it is known when a kernel is compiled. given, found
+    points : N numbers, only used for their count N, which is known when a kernel is compiled. given, found
     : contiguous arrays (n,), in which the groups begin at i, i + stride, … and j, j + stride, …; both may be the same.
     """
     groups = int(stride) * np.arange(len(points))[:, None] + np.arange(LANES)
@@ -132,7 +132,7 @@ def combine(
 def combine_more(
     points: tuple, matrix: np.ndarray, given: np.ndarray, i: int, found: np.ndarray, j: int, stride: int
 ) -> None:
-    """Combine lanes and add the result to what is in `found`."""
+    """Combine lanes and add the result to `found`."""
     groups = int(stride) * np.arange(len(points))[:, None] + np.arange(LANES)
     found[int(j) + groups] += matrix.reshape(len(points), -1) @ given[int(i) + groups]
 
@@ -145,7 +145,7 @@ def _widened(builder: Any, number: Any) -> Any:
 
 
 def _compiled(function: Any, result: Any, *arguments: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Let code that a function of (builder, values…) generates stand for another function in compiled kernels.
+    """Replace a function in compiled kernels by code that a function of (builder, values…) generates.
 
     arguments : the numba types it takes; where one of them is `lanes` a number will do. Of arrays the code gets the
     address of the first double.
@@ -191,12 +191,12 @@ def _are_numbers(kinds: Any) -> bool:
 
 
 def _instruction(function: Any, name: str) -> None:
-    """Let an LLVM instruction for two lanes stand for an operator."""
+    """Replace an operator by an LLVM instruction for two lanes."""
     _compiled(function, lanes, lanes, lanes)(lambda builder, a, b: getattr(builder, name)(a, b, flags=_FLAGS))
 
 
 def _intrinsic(function: Any, name: str, count: int) -> None:
-    """Let an LLVM intrinsic for lanes stand for a function."""
+    """Replace a function by an LLVM intrinsic for lanes."""
     kind = ir.FunctionType(_DOUBLES, [_DOUBLES] * count)
 
     def call(builder: Any, *values: Any) -> Any:

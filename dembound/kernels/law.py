@@ -1,4 +1,4 @@
-"""The functions that the loop calls for a law, for a tie, and for forces that rotate.
+"""The functions that the loop calls for laws, ties and rotating forces.
 
 Each of these is a named tuple of arrays (tables/), a bundle, whose type determines which kernels are called. A new law
 is a bundle with its kernels, registered with `is_law`; the loop is not changed.
@@ -100,9 +100,10 @@ def is_law(
     push: Kernel | None = None,
     note: Kernel | None = None,
 ) -> None:
-    """Register bundles of this type as a law with these kernels; see the function of the same name in this module.
+    """Register bundles of a type as a law with these kernels.
 
-    The type must be importable by its name, as the code compiled for it is kept on disk.
+    Each is explained at the function of its name in this module. The type must be importable by its name, as the code
+    compiled for it is kept on disk.
     """
     for name, kernel in locals().copy().items():
         if name != "bundle":
@@ -121,7 +122,7 @@ def is_turning(bundle: type, *, turn: Kernel, turning_work: Kernel) -> None:
 
 
 def answer(function: Kernel, bundle: type, kernel: Kernel | None) -> None:
-    """Make a generic function call a kernel where its first argument is a bundle of this type.
+    """Make a generic function call a kernel if its first argument is a bundle of this type.
 
     kernel : None if there is nothing to do, in functions that are called for all laws.
     """

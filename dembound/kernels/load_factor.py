@@ -1,4 +1,4 @@
-"""The factor of the waves at which a pair first reaches a limit of its elastic law."""
+"""The least factor of the waves at which a pair reaches a limit of its elastic law."""
 
 import numpy as np
 from numba import njit

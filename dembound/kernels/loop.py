@@ -37,7 +37,7 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log, kept
 
     u, u_next, v : (3, n) displacement now, work space for the next one, velocity half a step earlier; u contains the
     result. laws, ties : tuples of bundles, a law for every part. turning : tables.Followers, or None. The other bundles
-    are explained in tables/. kept : entries of an earlier call, of which only the changed ones are entered anew.
+    are explained in tables/. kept : table entries of an earlier call, of which only changed ones are made anew.
     """
     for c in range(3):
         if body.free[c] == 0.0:

@@ -1,7 +1,7 @@
 """Pairs of disks with small gaps, found by a grid of cells.
 
 The grid is a table with wrap-around: cells beyond its end are entered at its beginning. Disks that share a cell only by
-that are distinguished by their distance, so the table stays small when single disks are far away.
+wrapping are distinguished by their distance, so the table stays small when single disks are far away.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Forces of pairs with a history in rows of copies, eight pairs at once (lanes.py).
+"""Forces of history-dependent pairs in rows of copies, eight pairs at once (lanes.py).
 
 The formulas are those of contacts.py. A block of eight pairs is computed pair by pair in the step in which one breaks,
 and, where intact bonds keep the geometry of the start, from then on.
@@ -58,7 +58,7 @@ def _slide(normal, arms, i, j, v):
 def _contact(
     k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, friction, taken
 ):
-    """Normal and shear force of contacts, whose slip and whether they have closed are stored; see `_act`."""
+    """Normal and shear force of contacts; their slip and closing are stored; see `_act`."""
     overlap = (k[q, U(3)] - k[q, U(2)]) - stretch
     slip = load(contacts.slip, c)
     N = k[q, U(5)] * overlap

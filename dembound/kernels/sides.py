@@ -115,7 +115,8 @@ def _steady(c, sides, o, load):
 def _of_batch(b, step, u, supports, across, followed, moved, sides):
     """Force (N) of batch b in this step, its power (W), that with velocities before the step, and absorbed power.
 
-    The power of incident waves adds to no force; it comes in once what leaves by forces is added to what is absorbed.
+    The power of incident waves adds to no force; it counts as incoming once energy that leaves by forces counts as
+    absorbed.
     """
     kind, c, first, last = sides.kind[b], U(sides.component[b]), sides.start[b], sides.start[b + 1]
     signal = sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
@@ -151,7 +152,7 @@ def _note_motion(row, u, body, sides, sums):
 
 @njit(**FAST, inline="always")
 def _note_halves(body, sides, sums):
-    """Fill sides.work[1], the work up to the beginning of this step, from that before it."""
+    """Fill sides.work[1], the work up to the beginning of this step, from the work half a step earlier."""
     work = sides.work
     for o in range(work.shape[1]):
         for c in range(2):
@@ -170,7 +171,7 @@ def _note_halves(body, sides, sums):
 @apart()
 @njit(**FAST)
 def note_sides(step, row, is_last, motion, given):
-    """Add the work of all sides in this step to sides.work[0], and write what else is recorded of them.
+    """Add the work of all sides in this step to sides.work[0], and write their other records.
 
     row : of sides.record, −1 where this step has none; is_last : whether sides.work[1] is needed. motion, given :
     addresses of a calls.Motion before the step, and of calls.Given after it.

@@ -65,7 +65,7 @@ def move_particle(i, fx, fy, moment, u, v, body, u_next):
 
 @njit(**FAST)
 def clear(values):
-    """Set all of values (k, m) to zero; with an assignment numba would compile its messages for seconds."""
+    """Set all values (k, m) to zero; an assignment would make numba compile error messages for seconds."""
     for i in range(values.shape[0]):
         for c in range(values.shape[1]):
             values[i, c] = 0.0
@@ -151,7 +151,7 @@ def note_top_speeds(begin, end, v, top_speed):
 
 @njit(**FAST)
 def note_after(step, v, probes, record, tracked, peaks):
-    """Record the quantities that are only available after a step."""
+    """Record the quantities that are known only after a step."""
     for p in range(probes.size):
         for c in range(3):
             record[step, p, 3 + c] += 0.5 * v[c, probes[p]]

@@ -1,4 +1,4 @@
-"""Sums whose bits do not depend on how many of them are computed at once, unlike those of matrix products."""
+"""Sums whose bits do not depend on how many are computed at once, unlike matrix products."""
 
 from numba import njit
 

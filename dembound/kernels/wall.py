@@ -8,10 +8,10 @@ stiff as the bond, ends at the point where both disks touch. There the grid has 
 with U the displacements of the nodes of one element, N their shape functions, and c from the motion of the packing's
 disks beyond the mean gradient. The reaction on the nodes is the exact transpose, so a tie takes no energy. Elongations
 are those of u + ηv, with velocities v half a step behind: the part with η is a dashpot beside every half bond, which
-takes out motion that the grid cannot follow.
+damps motion that the grid cannot follow.
 
-A particle with a twin in the free-field column is tied by its motion relative to the twin: the grid then has the
-scattered waves only.
+A particle with a twin in the free-field column is tied by its motion relative to the twin: the grid then has only the
+scattered waves.
 """
 
 from typing import Any
@@ -52,7 +52,7 @@ def _collect(points, within, e, u, v, lag, ties):
 
 @njit(**_WITHIN)
 def _see(points, within, block, ties):
-    """Fill the fields of a block, the grid's motion at the points of its ties."""
+    """Fill the fields of a block with the grid's motion at the points of its ties."""
     count = len(points)
     first = U(block) * U(count) * _STEP
     for c in range(2):
@@ -74,7 +74,7 @@ def _see(points, within, block, ties):
 
 @njit(**_WITHIN)
 def _react(points, within, block, ties):
-    """Add the forces on the nodes of the block's element to ties.reaction, from what is conjugate in its fields."""
+    """Add the forces on the nodes of the block's element to ties.reaction, from the conjugate forces in its fields."""
     count = len(points)
     first = U(block) * U(count) * _STEP
     for c in range(2):
@@ -115,7 +115,7 @@ def _corrector(block, component, ties, gradient):
 
 @njit(**_WITHIN)
 def _pull(block, u, v, lag, ties):
-    """Replace a block's fields by what is conjugate to them in the forces on the grid, and ties.own by the particles'.
+    """Replace a block's fields by their conjugate forces on the grid, and ties.own by the forces on the particles.
 
     Returns the energy (J) of the ties in lanes.
     """
@@ -212,7 +212,7 @@ def wall_forces(ties, u, v, force):
 
 @njit(**FAST)
 def repeated_forces(repeats, u, v, force):
-    """Add to force (k, 3) at some lines what it has from earlier ties at others; u, v : (3, n), of no use."""
+    """Repeat forces (k, 3) of earlier ties at some lines on other lines; u, v : (3, n), without effect."""
     for r in range(repeats.source.size):
         for c in range(3):
             force[repeats.target[r], c] += force[repeats.source[r], c]

@@ -113,7 +113,7 @@ class Law(ABC):
         vectors : (b, 2) m, from i to j at the start.
         bonded : whether the pairs have bonds.
         gaps_close : whether pairs with a gap have a contact that acts once it closes; not in laws without history.
-        locked_in : part of the overlaps that gives a force from the start; with 0, overlapping disks just touch.
+        locked_in : part of the overlaps that causes a force from the start; with 0, overlapping disks just touch.
         """
         distance = np.hypot(*vectors.T)
         pair = self.springs(moduli, radius_i, radius_j)

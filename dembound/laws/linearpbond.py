@@ -9,7 +9,7 @@ from dembound.laws.elastic import Elastic
 
 
 class LinearPBond(Elastic):
-    """The springs of the elastic law, with a history."""
+    """The springs of the elastic law, in a history-dependent law."""
 
     name: ClassVar[str] = "linearpbond"
     has_history: ClassVar[bool] = True

@@ -24,5 +24,5 @@ class Beside(ABC):
     def motion(self, values: np.ndarray, of: str, time: float) -> dict[str, np.ndarray]:
         """Motion (m, 3) of these nodes by prefix of its name, from the motion of all nodes (n, 3) of the scene.
 
-        The prefix "" is the total motion. of : "displacement" or "velocity"; time : s, of the values.
+        The prefix "" is the total motion. of : "displacement" or "velocity"; time : of the values, s.
         """

@@ -1,4 +1,4 @@
-"""The motion of a place that is no node, from the motion of several nodes."""
+"""The motion of a place between nodes, from the motion of several nodes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

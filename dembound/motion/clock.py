@@ -1,4 +1,4 @@
-"""Measures the time of the parts of a run."""
+"""The time of the parts of a run."""
 
 import time
 from collections import defaultdict
@@ -39,7 +39,7 @@ class Clock:
 
     @contextmanager
     def with_compiling(self) -> Iterator[None]:
-        """Count the time inside for compiling kernels, or loading compiled ones, as a separate section "compile"."""
+        """Count the time for compiling or loading kernels inside as a separate section "compile"."""
         with event.install_listener("numba:compiler_lock", _Compiling(self)):
             yield
 

@@ -1,4 +1,4 @@
-"""Looks for requests to end while kernels are compiled or loaded, from the import of this module on."""
+"""Checks for requests to end while kernels are compiled or loaded, from the import of this module on."""
 
 from numba.core import event
 
@@ -6,14 +6,14 @@ from dembound.interrupts import look
 
 
 class _Looks(event.Listener):
-    """Looks before a kernel is compiled or loaded, and before every pass of the compiler."""
+    """Checks before a kernel is compiled or loaded, and before every pass of the compiler."""
 
     def on_start(self, event: event.Event) -> None:
         """Look."""
         look()
 
     def on_end(self, event: event.Event) -> None:
-        """Does nothing, as the next pass or kernel looks."""
+        """Do nothing: the next pass or kernel checks."""
 
 
 for _kind in ("numba:compiler_lock", "numba:run_pass"):

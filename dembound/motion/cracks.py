@@ -6,15 +6,15 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 MANY = 10
-"""Most broken bonds of a run without a note that it is one draw of many."""
+"""Largest number of broken bonds of a run without a note that it is one draw of many."""
 
 
 @dataclass(frozen=True)
 class Cracks:
     """Bonds that broke, k of them, in the order in which they broke.
 
-    step (k,) int64; pair (k, 2) int64 nodes; position (k, 2) m, between the two in that step; shear (k,) bool, True for
-    shear, False for tension.
+    step (k,) int64; pair (k, 2) int64 nodes; position (k, 2) m, the middle of the pair in that step; shear (k,) bool,
+    True for shear, False for tension.
     """
 
     step: np.ndarray

@@ -18,7 +18,7 @@ def echoes(planned: Plan) -> Entries:
 
 
 def _echoes(planned: Plan) -> Iterator[str]:
-    """A line for each artificial side without waves: when its first echo comes to a monitor."""
+    """A line for each artificial side without waves with the time of its first echo at a monitor."""
     scene = planned.scene
     sources = planned.kind.sources(scene)
     speed, places = planned.kind.front(scene, planned.time_step).speed, monitored(scene)

@@ -13,8 +13,8 @@ from dembound.motion.threads import threads_for
 TOLERANCE = 1e-3
 """Relative residual at which the iteration for the eigenvalue ends.
 
-The residual is added to the eigenvalue, so the step is too small by at most 0.05 %. Lattices need it, as their largest
-eigenvalues are close to each other.
+The residual is added to the eigenvalue, so the step is too small by at most 0.05 %. Lattices need this tolerance, as
+their largest eigenvalues are close to each other.
 """
 
 LEAST, MOST = 40, 1000
@@ -49,8 +49,8 @@ def largest_eigenvalue(
     Linear Algebra Appl. 34, 235–258). The vectors are not scaled to unit size, which would take another pass; their
     sizes go into the factors of the next step. The start is random but fixed: the result is the same in every run.
 
-    An eigenvalue lies within the residual of the one found. That this is the largest one is not certain, but very
-    likely (`LEAST`).
+    An eigenvalue lies within the residual of the computed one. It is very likely (`LEAST`), but not certain, that this
+    is the largest one.
 
     Raises RunError when the iteration does not converge.
     """
@@ -83,7 +83,7 @@ def largest_eigenvalue(
 def _start(layout: Layout, mass: np.ndarray, inertia: np.ndarray, moves: np.ndarray) -> tuple[np.ndarray, float]:
     """Random displacements (3, slots) m and their size √⟨u, u⟩, zero for components that cannot move, moves (3, n).
 
-    Times the root of the mass, all directions are equally likely. They are drawn node by node.
+    All directions of displacements times the root of the mass are equally likely. They are drawn node by node.
     """
     start = np.random.default_rng(0).standard_normal(moves.shape)
     start *= moves

@@ -1,10 +1,11 @@
 """The energy ledger: stored, supplied and dissipated energy of a run.
 
 For central differences the balance is exact with ½m v⁻·v⁺ (the velocities half a step before and after), the strain
-energy of the step itself, and for the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. The first is divided into the
-kinetic energy of the mean velocity, ⅛m (v⁻ + v⁺)², and −⅛m (v⁺ − v⁻)², of second order in the step: it is more than the
-kinetic energy where velocities change their sign within a step, as at impacts. Energy that contacts take or give as
-they open or close within a step has its own column. The remaining error comes from rotating normals and from rounding.
+energy of the step itself, and for the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. The product ½m v⁻·v⁺ is
+divided into the kinetic energy of the mean velocity, ⅛m (v⁻ + v⁺)², and −⅛m (v⁺ − v⁻)², of second order in the step:
+the latter exceeds the kinetic energy where velocities change their sign within a step, as at impacts. Energy that
+contacts take or give as they open or close within a step has its own column. The remaining error comes from rotating
+normals and from rounding.
 """
 
 from dataclasses import dataclass, fields
@@ -20,10 +21,10 @@ GAIN = 0.5
 """Energy gained over supplied energy at which a run stops."""
 
 ROUNDING = 1e-9
-"""Energies below this share of the largest count as zero: rounding errors of sums over contacts are smaller."""
+"""Share of the largest energy below which energies count as zero: rounding errors of sums over contacts are smaller."""
 
 AT_REST = 1e-13
-"""Share of the energy stored at the start below which what was supplied is rounding of it, as of a body at rest."""
+"""Share of the energy stored at the start below which supplied energy is rounding, as for a body at rest."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +36,8 @@ class Entry:
     and driven loads; loads, the part of `outside` by loads; damping, friction, crack, dissipated by each, friction of a
     bar by impacts of its ranges; closing, taken by contacts that open and close within a step, less the energy added by
     sliding contacts and breaking bonds whose force changes its sign in one (see kernels.contacts.push); law_switch,
-    added by a change of method or law; stepping, at most 0, contribution of velocities that change within a step to the
-    stored energy; supplied, the kinetic energy at the start plus the largest values so far of outside, at any step, and
+    added by a change of method or law; stepping, at most 0, contribution to the stored energy of velocities that change
+    within a step; supplied, the kinetic energy at the start plus the largest values so far of outside, at any step, and
     of load, at any entry; error, stored and dissipated energy minus the energy that came in and the kinetic energy at
     the start.
     """
@@ -93,7 +94,7 @@ class Ledger(Tracker):
     Parameters
     ----------
     run : the run, whose strain energy at the start is subtracted; energies are those of its whole scene.
-    interval : steps from one entry to the next; the first entry is at the start. last : step of one more entry; by
+    interval : steps from one entry to the next; the first entry is at the start. last : step of another entry; by
     default none.
     """
 
@@ -115,7 +116,7 @@ class Ledger(Tracker):
         self._space: list[np.ndarray] = []
 
     def handle(self, run: Run) -> None:
-        """Begin an entry, or complete the one begun one step earlier."""
+        """Begin an entry, or complete the entry begun one step earlier."""
         if self._begun is not None:
             self._enter(run, self._begun)
             self._begun = None
@@ -178,7 +179,10 @@ class Ledger(Tracker):
         return kinetic, stepping
 
     def _supplied(self, outside: float, load: float) -> float:
-        """The most energy (J) supplied until an entry, from the largest work outside, and load; 0 if it is rounding."""
+        """Largest energy (J) supplied until an entry, by boundaries and driven loads, and by steady loads.
+
+        0 if it is rounding.
+        """
         self._most = max(self._most[0], outside), max(self._most[1], load)
         supplied = self._came + sum(self._most)
         return supplied if supplied > AT_REST * sum(self._first) else 0.0
@@ -188,7 +192,7 @@ class Ledger(Tracker):
         return np.zeros(0) if run.sides is None else run.sides.stored(u, run.state.datum)
 
     def _watch(self) -> None:
-        """Raise RunError if the run has gained energy that was not supplied, as with a step too large for its law."""
+        """Raise RunError if the run has gained energy without supply, as with too large a step for its law."""
         first, last = self.entries[0], self.entries[-1]
         came, gained = last.supplied, (last.error - last.closing) - (first.error - first.closing)
         stored = self._weight * sum(self._first)

@@ -42,7 +42,7 @@ class Reduction(Generic[S]):
     """The scene that is stepped in place of another one.
 
     scene : the smaller scene, or the same where no reduction applies.
-    refused : the reductions that the case asks for and that cannot be made, each in a line with the reason.
+    refused : the requested reductions that are impossible, each in a line with the reason.
     """
 
     scene: S
@@ -68,7 +68,7 @@ class Plan(Generic[S]):
 
 
 class Finding(NamedTuple):
-    """A number found by a run, and its unit."""
+    """A number from a run, and its unit."""
 
     value: float
     unit: str
@@ -152,7 +152,7 @@ class Kind(ABC, Generic[C, S]):
         """Time step to run with and the stability limit (s); raises CaseError for a given step above the limit."""
 
     def reduced(self, scene: S) -> Reduction[S]:
-        """A smaller scene from whose motion that of the given scene follows; by default the scene itself."""
+        """A smaller scene whose motion gives that of the scene; by default the scene itself."""
         return Reduction(scene)
 
     @abstractmethod
@@ -163,7 +163,7 @@ class Kind(ABC, Generic[C, S]):
         """
 
     def trackers(self, run: Run) -> list[Tracker]:
-        """Additional trackers that the case of a run asks for; by default none."""
+        """Additional trackers that the case of a run requires; by default none."""
         return []
 
     @abstractmethod
@@ -191,7 +191,7 @@ class Kind(ABC, Generic[C, S]):
 
     @abstractmethod
     def storage(self, scene: S) -> Storage:
-        """Bytes on disk of what is written of a scene."""
+        """Bytes on disk of the results of a scene."""
 
     def stage_keys(self, scene: S) -> dict[str, Any]:
         """All inputs that determine the results of the stages before a run, as plain JSON values by key."""
@@ -232,7 +232,7 @@ class Kind(ABC, Generic[C, S]):
     def findings(self, scene: S, run: Run, inside: Box | None = None) -> dict[str, Finding]:
         """Numbers by name that are compared between runs in addition to histories; by default none.
 
-        inside : where in the scene they are found, by default everywhere.
+        inside : part of the scene in which they are sought, by default all.
         """
         return {}
 
@@ -257,7 +257,7 @@ class Kind(ABC, Generic[C, S]):
 
     @abstractmethod
     def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
-        """A field of a record at every snapshot, by default the one that pictures of a run show.
+        """A field of a record at every snapshot, by default the field of a run's pictures.
 
-        exaggerate : how many times their displacement nodes are moved. Raises CaseError without snapshots or the field.
+        exaggerate : factor of the displacements of nodes. Raises CaseError without snapshots or the field.
         """

@@ -1,4 +1,4 @@
-"""The order in which kernels hold the nodes of a scene: every node has a slot, and some slots have no node."""
+"""The order of the nodes of a scene in kernels: every node has a slot, and some slots have no node."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -58,7 +58,7 @@ class Layout:
     def gather(self, values: np.ndarray) -> np.ndarray:
         """Values (..., slots) reordered by node (..., n), not to be written to; a view where possible.
 
-        Contiguous by row, as in a checkpoint: the order in which numpy adds numbers up depends on it.
+        It is contiguous by row, as in a checkpoint, because numpy's order of summation depends on this.
         """
         gathered = values[...] if self.is_plain else np.take(values, self.slot, axis=-1)
         gathered.flags.writeable = False

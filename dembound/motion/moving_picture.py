@@ -1,4 +1,4 @@
-"""The interface of pictures that change with time to what shows them, such as pages and movies."""
+"""The interface of pictures that change with time, for pages and movies."""
 
 from typing import Protocol
 
@@ -21,7 +21,7 @@ class MovingPicture(Protocol):
     words: str
 
     def caption(self, index: int) -> str:
-        """The time of a frame, and what has happened until then, in words."""
+        """The time of a frame, and events until then, in words."""
 
     def frame(self, index: int, pixels: int) -> np.ndarray:
         """One frame as a picture (rows, pixels, 3) of red, green and blue from 0 to 255."""

@@ -98,7 +98,7 @@ class System:
     ----------
     steady : (3, n) N and N·m, all steady forces that kernels add, or (3, 0) for none.
     turning : the steady forces that rotate with their sides; None if there are none.
-    refused : cheaper laws that the case asks for and that cannot be used, each in a line with the reason.
+    refused : requested cheaper laws that cannot be used, each in a line with the reason.
     """
 
     refused: tuple[str, ...] = ()
@@ -175,13 +175,13 @@ class System:
         return {name: (np.concatenate([known[name][0] for known in each]), unit) for name, (_, unit) in each[0].items()}
 
     def snapshot_beside(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """Values of the nodes after those that are recorded as particles, values (m, …); by default none."""
+        """Values (m, …) of the nodes after those recorded as particles; by default none."""
         return {}
 
     def contact_forces(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Columns of the contacts of the whole scene at displacements (3, n), by name: values (b, …) and unit.
 
-        Empty by default, and unless the case asks for them.
+        Empty by default, and unless the case requests them.
         """
         return {}
 

@@ -1,7 +1,7 @@
 """Ways of waves through a scene: from where they start, over its sides, to its monitors.
 
-All ways are straight and their waves as fast as the fastest of the medium, so the times are those before which nothing
-can have arrived. A way over a side is the straight one to the mirror image of its end.
+All ways are straight, and their waves as fast as the fastest of the medium, so that nothing can arrive before these
+times. A way over a side is straight to the mirror image of its end.
 """
 
 from collections.abc import Sequence
@@ -20,8 +20,8 @@ PRECURSOR = 10.0
 class Front:
     """The fastest waves of a medium of particles.
 
-    In a row of particles a apart, ω = cq(1 − (qa)²/24): an impulse that has come s = ct has a front shaped like Airy's
-    function of (x − s)/(sa²/8)^(1/3). Ahead of x = s it fades, to a part of 1e-9 at ten times that length.
+    In a row of particles a apart, ω = cq(1 − (qa)²/24): an impulse that has travelled s = ct has a front shaped like
+    Airy's function of (x − s)/(sa²/8)^(1/3). Ahead of x = s it decays, to 1e-9 at ten times (sa²/8)^(1/3).
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Source:
     Attributes
     ----------
     box : x0, y0, x1, y1 in m, infinite along a driven side.
-    start, over : s, when it starts to move, and when it has ended; infinite if it never ends.
+    start, over : s, begin and end of its motion; infinite if it never ends.
     slowest : m/s, of the waves it sends.
     is_local : whether it is confined to a place, and so does not move a free-field column in the same way.
     """
@@ -72,15 +72,15 @@ class Source:
 
 
 def first_arrivals(sources: Sequence[Source], front: Front, places: np.ndarray) -> np.ndarray:
-    """Times (k,) s before which no wave reaches places (k, 2) m, but for precursors; infinite without any source."""
+    """Times (k,) s before which no wave except precursors reaches places (k, 2) m; infinite without any source."""
     times = [source.start + source.distance(places) / front.speed for source in sources if front.speed > 0.0]
     return np.min(times, axis=0) if times else np.full(len(places), np.inf)
 
 
 def plane_needed(side: str, sources: Sequence[Source], places: np.ndarray, front: Front, duration: float) -> float:
-    """Place (m along its normal) of a side from which nothing comes back to places (k, 2) m within `duration` (s).
+    """Place (m along its normal) of a side from which no reflection reaches places (k, 2) m within `duration` (s).
 
-    Infinitely far inwards where nothing comes at all.
+    Infinitely far inwards if no wave arrives at all.
     """
     axis, sign = normal_axis(side), 1.0 if is_far(side) else -1.0
     needed = -np.inf

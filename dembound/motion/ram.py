@@ -1,7 +1,7 @@
-"""The RAM a run needs, and the refusal of a run that needs more than this machine has.
+"""The RAM a run needs, and an error for a run that needs more than this machine has.
 
-A run needs most in its largest stage: the program, plus the arrays of the stage, counted from their
-shapes. What a stage needs beyond the arrays that remain is the temporary arrays of its largest moment.
+A run needs the most RAM in its largest stage: the program, plus the arrays of the stage, counted from their shapes,
+including the temporary arrays of its largest moment.
 """
 
 import time
@@ -46,7 +46,10 @@ def record_bytes(monitors: int, block: int, width: int, lines: float) -> float:
 
 
 def largest(stages: dict[str, float], case: Case) -> float:
-    """Bytes of the program in the largest stage of a run, stages : bytes of the arrays of each but its pictures."""
+    """Bytes of the program in the largest stage of a run.
+
+    Stages : bytes of the arrays of each stage before pictures.
+    """
     need = PROGRAM + max(stages.values())
     return max(need, PICTURES) if case.output.pictures else need
 

@@ -17,7 +17,7 @@ from dembound.motion.layout import Layout
 from dembound.motion.part import System
 
 RUNAWAY = 1e4
-"""A node faster than all waves together by this factor is unphysical: resonance gives factors of ten."""
+"""Factor by which the speed of a node may exceed that of all waves together: resonance gives factors of ten."""
 
 FASTEST = 1e100
 """Speed (m/s) above which energies approach the largest double, 1e308 J."""
@@ -130,7 +130,7 @@ class Scene(ABC):
     @property
     @abstractmethod
     def threads(self) -> int:
-        """Threads its steps use."""
+        """Number of threads of its steps."""
 
     @property
     @abstractmethod
@@ -181,7 +181,7 @@ class Scene(ABC):
 
     @property
     def whole(self) -> "Scene":
-        """The scene of the case, where this one is stepped in place of it; by default itself."""
+        """The scene of the case, if this one is stepped in its place; by default itself."""
         return self
 
     @property
@@ -191,7 +191,7 @@ class Scene(ABC):
 
     @property
     def reduced(self) -> tuple[str, ...]:
-        """A line for each way in which this scene is smaller than the whole one."""
+        """A line for each reduction of the whole scene to this one."""
         return ()
 
     def widened(self, name: str, values: np.ndarray) -> np.ndarray:
@@ -215,7 +215,10 @@ class Scene(ABC):
 
     @property
     def twin(self) -> np.ndarray | None:
-        """(n,) node to whose velocity the dashpots of each node are relative, itself for none; None: all for none."""
+        """(n,) node to whose velocity the dashpots of each node are relative, the node itself for none.
+
+        None: no such node.
+        """
         return None
 
     @property

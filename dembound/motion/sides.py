@@ -34,7 +34,7 @@ class _Batch(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """Samples of the sides at each `every`-th step, of which `first` came before.
+    """Samples of the sides at each `every`-th step; `first` samples were taken earlier.
 
     record : (rows, s, 5) mean displacement, since the start, and force of every side, see `tables.Sides`.
     """
@@ -45,12 +45,12 @@ class Samples(NamedTuple):
 
     @classmethod
     def between(cls, step: int, later: int, every: int, sides: int) -> Samples:
-        """Rows of the steps from `step` on and before `later`, to be filled; none if every is 0."""
+        """Empty rows for the steps from `step` on and before `later`; none if every is 0."""
         first, last = (-(-of // max(1, every)) for of in (step, later))
         return cls(every, first, np.empty((last - first if every > 0 else 0, sides, 5)))
 
     def before(self, later: int) -> Samples:
-        """Rows before a step, such as the last one that was done."""
+        """Rows of the steps before a step, such as the last one done."""
         return self._replace(record=self.record[: max(0, -(-later // max(1, self.every)) - self.first)])
 
     @property
@@ -134,7 +134,7 @@ class NodeSides:
         )
 
     def _mean(self, edge: Edge) -> tuple[np.ndarray, np.ndarray]:
-        """Nodes (m,) whose displacements, with weights (m,), have the mean of a side; by share of its diameters."""
+        """Nodes (m,) and weights (m,) of the mean displacement of a side; by share of its diameters."""
         node, member = np.unique(self._like[edge.nodes], return_inverse=True)
         return node, np.bincount(member, edge.diameters / edge.diameters.sum(), len(node))
 
@@ -154,7 +154,7 @@ class NodeSides:
             yield from batches
 
     def _of_supports(self, number: int, edge: Edge, nodes: np.ndarray, shares: Shares) -> Iterator[_Batch]:
-        """The batches of one side: what it adds to the rows of the support table at nodes (k,)."""
+        """The batches of one side: its contributions to the rows of the support table at nodes (k,)."""
         if edge.side not in shares.sides:
             return
         own = (shares.side == shares.sides.index(edge.side)) & np.isin(shares.node, nodes)
@@ -285,7 +285,7 @@ def _bearers(
 def _in_proportion(
     share: np.ndarray, known: list[tuple[np.ndarray, np.ndarray, np.ndarray]], node: np.ndarray
 ) -> np.ndarray:
-    """Shares (s, 2, q) of nodes (q,) by known forces of sides, recorded over acting ones; as they are without any."""
+    """Shares (s, 2, q) of nodes (q,) by known forces of sides, recorded over acting ones; unchanged without any."""
     forces, total = np.zeros_like(share), np.zeros_like(share[0])
     for row, (nodes, acting, shown) in zip(forces, known, strict=True):
         here = np.searchsorted(node, nodes)

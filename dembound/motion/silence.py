@@ -29,10 +29,10 @@ class Silent:
 def silent_rule(scene: Scene, sources: Sequence[Source]) -> Silent:
     """The rule for a case with ``until = "silent"``; scene : the whole one, with its sources.
 
-    The run goes on until the waves of every source have ended and have come to every monitor, at the speed of the
-    slowest; of a source that never ends, until they have begun. By default all monitors must be silent for the length
-    of the longest wave, and long enough for a slow wave to get from any monitor to any side and back: then no echo is
-    on its way that has left a monitor and has not come back.
+    The run goes on until the waves of every source have ended and reached every monitor, at the speed of the slowest;
+    for a source that never ends, until they have begun. By default all monitors must be silent for the length of the
+    longest wave, and long enough for a slow wave to travel from any monitor to any side and back, so that no echo is
+    still on its way.
     """
     run, places = scene.case.run, monitored(scene)
     earliest = max((_passed(source, places) for source in sources), default=0.0)
@@ -72,7 +72,7 @@ def last_loud(speeds: np.ndarray, level: float, peaks: np.ndarray) -> int:
 class Silence(Tracker):
     """Ends a run when all monitors have been silent for long enough; a monitor that has not moved yet is silent, too.
 
-    It checks after every return of the loop, which it neither makes nor changes, so histories have the same bits.
+    It checks after every return of the loop without changing these returns, so histories have the same bits.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class Silence(Tracker):
         self._loud = -1
 
     def handle(self, run: Run) -> None:
-        """Do nothing, as it is never due."""
+        """Do nothing: this tracker is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Find the last step at which any monitor was loud, and end the run if that is long ago."""

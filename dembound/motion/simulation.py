@@ -20,10 +20,10 @@ from dembound.motion.threads import threads_for
 from dembound.motion.trackers import Records, Tracker, Watch
 
 AT_ONCE = 20_000_000
-"""Nodes times steps between two looks for a request to end: 0.2 s to 2 s on one core."""
+"""Nodes times steps between two checks for a request to end: 0.2 s to 2 s on one core."""
 
 LEAST_AT_ONCE = 128
-"""Steps in any case: a return of the loop takes as long as one or two of them."""
+"""Least number of steps between two checks: a return of the loop takes as long as one or two steps."""
 
 
 class Simulation:
@@ -101,7 +101,7 @@ class Simulation:
         self.state.owners |= {tracker.name: tracker for tracker in trackers}
 
     def forget_trackers(self) -> None:
-        """Remove all trackers after the run, some of which refer to it: its arrays are then removed with it."""
+        """Remove all trackers after the run, some of which refer to it, so that its arrays can be freed."""
         self.trackers.clear()
         self.state.owners.clear()
 
@@ -143,7 +143,7 @@ class Simulation:
         return self.scene.side_peaks(side, self.state.peaks)
 
     def _hand_round(self, record: np.ndarray | None) -> None:
-        """Pass the last record of the probes, if any, to all trackers, and call those that are due."""
+        """Pass the last record of the probes, if any, to all trackers, and call trackers that are due."""
         with self.clock.of("record"), put_off():
             for tracker in self.trackers:
                 if record is not None:

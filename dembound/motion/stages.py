@@ -1,4 +1,4 @@
-"""The stages before a run, such as a static one: what is kept of them, so that none has to be repeated."""
+"""The stages before a run, such as a static one, kept so that none has to be repeated."""
 
 from __future__ import annotations
 
@@ -21,4 +21,4 @@ class Stages:
         """Called before the first step of a stage; may set the simulation to a state reached before."""
 
     def finish(self, name: str, arrays: Arrays) -> None:
-        """Receives the results of a stage that is over."""
+        """Receives the results of a completed stage."""

@@ -1,4 +1,4 @@
-"""Bytes on disk, counted from the shapes of what is written."""
+"""Bytes on disk, counted from the shapes of written arrays."""
 
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ POINT = 24.0
 class Storage(NamedTuple):
     """Bytes on disk of a scene.
 
-    header : of what is written once. snapshot : of a snapshot, in the record and in all files for ParaView.
+    header : of data written once. snapshot : of a snapshot, in the record and in all files for ParaView.
     checkpoint : of a checkpoint, and of a settled state.
     """
 
@@ -24,13 +24,13 @@ class Storage(NamedTuple):
 
 
 def paraview_bytes(files: ParaView, vtu: float, vtkhdf: float) -> float:
-    """Bytes of the files for ParaView that a case asks for, from the bytes of each form."""
+    """Bytes of the requested files for ParaView, from the bytes of each format."""
     return vtu * (files != "vtkhdf") + vtkhdf * (files != "vtu")
 
 
 def mesh_bytes(points: float, point_data: float, cells: float, corners: int, cell_data: float) -> float:
-    """Bytes of a VTU file with so many points and cells, from the bytes of data for each.
+    """Bytes of a VTU file from numbers of points and cells, and the bytes of data for each.
 
-    Of cells there are the numbers of their corners (4 bytes), where they end (4) and their types (8).
+    Cells have the numbers of their corners (4 bytes), where they end (4) and their types (8).
     """
     return TEXT * (points * (POINT + point_data) + cells * (4.0 * corners + 12.0 + cell_data))

@@ -6,7 +6,9 @@ from contextlib import contextmanager
 import numba
 
 PARTICLES_PER_THREAD = 40_000
-"""Below this a step takes less than 0.2 ms, and much of it would be the synchronisation of threads."""
+"""Number of particles below which a step takes less than 0.2 ms, much of which would be the synchronisation of
+threads.
+"""
 
 
 def thread_count_for(particles: int) -> int:

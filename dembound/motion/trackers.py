@@ -19,7 +19,7 @@ NEVER = 2**62
 class Run(Protocol):
     """Data of a run that trackers use: scene, parts, state, time step (s), clock; setting `stopped` ends the run.
 
-    sides : those whose forces are measured, None for none; side_samples : of the last steps.
+    sides : the measured sides, None for none; side_samples : of the last steps.
     """
 
     scene: Scene
@@ -98,7 +98,7 @@ class Watch(Every):
     name = "watch"
 
     def see(self, run: Run) -> None:
-        """Do nothing, as the check is made after every return of the loop."""
+        """Do nothing: `observe` checks after every return of the loop."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Raise RunError, with time and place, when a node is faster than waves can make it."""
@@ -121,7 +121,7 @@ class Records(Tracker):
 
     Attributes
     ----------
-    records : those received, (steps, p, columns) each, see `Simulation.advance`.
+    records : (steps, p, columns) each, see `Simulation.advance`.
     """
 
     name = "records"
@@ -130,7 +130,7 @@ class Records(Tracker):
         self.records: list[np.ndarray] = []
 
     def handle(self, run: Run) -> None:
-        """Do nothing, as it is never due."""
+        """Do nothing: this tracker is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Keep the record."""

@@ -1,4 +1,4 @@
-"""Scenes at rest without loads and waves, in which noise is stepped to measure how large a time step is stable."""
+"""Scenes at rest without loads and waves, in which noise is stepped to measure the largest stable time step."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Trial:
     limit : s, the stability limit computed from the largest eigenvalue; step : s, of the case.
     system : its parts and ties for a time step (s); new for every run.
     is_linear : whether forces are linear, so that central differences conserve an energy exactly.
-    step_cost : time of a step on one core, counted, ns.
+    step_cost : estimated time of a step on one core, ns.
     """
 
     name: str
@@ -43,8 +43,8 @@ class Trial:
     def noise(self, part: str | None = None) -> np.ndarray:
         """Random velocities (3, n), m/s and rad/s, of all nodes or of those of one part; the same in every call.
 
-        Scaled with the root of the mass, all directions are equally likely: every mode of vibration has the same
-        expected energy. There is neither momentum nor angular momentum: a free body would drift and rotate, and the
+        All directions of velocities times the root of the mass are equally likely, so every mode of vibration has the
+        same expected energy. Momentum and angular momentum are zero, as a free body would drift and rotate, and the
         rounding error of its displacements would grow. A body of which a component is held cannot rotate as a whole.
         """
         scene = self.scene
@@ -71,7 +71,8 @@ class Trial:
         """Names of the parts in which noise is put: all parts, each of which moves independently of those after it.
 
         A body and its continuum are tied: the energy of each is at most that of the noise in it. Under a
-        history-dependent law only the last recorded part, the body, as the energies of a ledger are those of all parts.
+        history-dependent law noise is put only in the last recorded part, the body, as a ledger has the energies of all
+        parts.
         """
         system = self.system(self.step)
         parts = system.parts if self.is_linear else system.recorded_parts[-1:]

@@ -22,7 +22,7 @@ TYPED = 5e-6
 """Relative difference allowed between a size and whole bricks: sizes may have six digits, as 5.19615 m for 3√3 m."""
 
 MOST_IN_BRICK = 1_000_000
-"""Largest number of disks of a random brick, which is packed in hours; scenes are made of many bricks."""
+"""Largest number of disks of a random brick, which takes hours to pack; scenes are made of many bricks."""
 
 # Confining stress over contact modulus if the case gives none: 4.5 contacts per disk, and eight times the stress ρcv of
 # a wave of 0.5 m/s at 1000 m/s.
@@ -44,8 +44,8 @@ class Packing(Table, ABC):
 
     Attributes
     ----------
-    is_lattice : whether all disks are equal and have the same surroundings, so that they only stand for the ground, and
-        disks of another size stand for it as well; else the packing is one of many of the same ground, as random ones.
+    is_lattice : whether all disks are equal and have the same surroundings, so that they represent the ground, as disks
+    of other sizes do; else, as for random packings, the packing is one of many of the same ground.
     packed_under_stress : whether a brick is packed under stress, which needs contacts with a stiffness.
     regular_sides : sides (left, right, bottom, top) whose disks form one row, so that they can be half cells.
     """
@@ -116,7 +116,7 @@ class Packing(Table, ABC):
         return left, bottom, left + width, bottom + height
 
     def gaps(self, ground: Box) -> dict[str, float]:
-        """Distance (m) by which a ground goes on beyond each of the box's sides, except those at its end."""
+        """Distance (m) by which the ground goes on beyond each side of the box, without sides at its end."""
         (left, bottom, right, top), own = ground, self.box
         gaps = {"left": own[0] - left, "right": right - own[2], "bottom": own[1] - bottom, "top": top - own[3]}
         return {side: gap for side, gap in gaps.items() if gap > TYPED * max(right - left, top - bottom)}
@@ -135,7 +135,7 @@ class Packing(Table, ABC):
         return self.radius if self.is_lattice and inside else 0.0
 
     def scaled(self, factor: float) -> dict[str, float]:
-        """The keys that disks of other sizes have, with their values: all sizes of particles, times a factor."""
+        """The keys for disks of another size, with their values: all sizes of particles times a factor."""
         return {key: factor * value for key, value in self.given().items() if self.described(key).get("means") == SIZE}
 
     def reseeded(self, by: int) -> Self | None:

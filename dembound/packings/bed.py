@@ -91,7 +91,7 @@ class Bed:
         )
 
     def crowd(self, loose: np.ndarray) -> None:
-        """Increase the radii of the loose disks (n,) bool a little; those already at the largest radius are removed.
+        """Increase the radii of the loose disks (n,) bool a little; disks already at the largest radius are removed.
 
         PFC treats floaters in the same way (Potyondy & Cundall 2004). This leaves no holes and hardly changes the
         distribution of the radii. A disk that is loose at every allowed radius carries no force and can be removed.

@@ -1,7 +1,7 @@
 """Packed bricks kept on disk, one file per set of parameters.
 
 A brick depends only on its parameters, so a file is never out of date. It ends with a digest of all bytes before it;
-a file that is damaged, or whose brick is none, is packed again and replaced, with a line in the log.
+a damaged file, or one without a valid brick, is packed again and replaced, with a line in the log.
 """
 
 import contextlib
@@ -27,10 +27,10 @@ LOGGER = logging.getLogger(__name__)
 FORMAT = 3  # raise it whenever the packing procedure or the file layout changes
 
 LOOK = 0.5
-"""Seconds between two looks for a request to end, while another process packs."""
+"""Seconds between two checks for a request to end, while another process packs."""
 
 DIGEST = hashlib.sha256
-"""Computes the digest at the end of a file, which is still an NPZ file: such files may be followed by anything."""
+"""Computes the digest at the end of a file, which is still a valid NPZ file."""
 
 
 def cache_folder() -> Path:
@@ -59,7 +59,7 @@ def load_or_pack(key_params: Mapping[str, Any], pack: Callable[[], Brick]) -> Br
 def _alone(path: Path) -> Iterator[bool]:
     """Inside, no other process holds this lock; yields whether another one had to be waited for.
 
-    Where no lock can be made, as in a folder without permission to write, nothing is waited for.
+    If no lock can be made, as in a folder without permission to write, it does not wait.
     """
     lock, waited = FileLock(path), False
     with contextlib.suppress(OSError, NotImplementedError):

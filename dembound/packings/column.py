@@ -16,7 +16,7 @@ from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, Column, tile
 
 TYPED = 1e-9
-"""Part of a height by which places at its ends may be beyond."""
+"""Part of a height by which places may be beyond its ends."""
 
 APART = 2.0
 """Gap between column and body in mean diameters; it is only used in pictures."""

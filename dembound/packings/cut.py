@@ -1,4 +1,4 @@
-"""The contacts that end at the sides of a body or at a hole: those of the infinite tiling with disks beyond."""
+"""The contacts of the infinite tiling that the sides of a body or a hole cut."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class CutContacts:
     node : (e,) int64, disk of the body.
     contact_type : (e,) int64, the contact of the brick.
     is_second : (e,) bool, whether the body's disk is the contact's second one.
-    other : (e,) int64, the disk of the brick that the one beyond is a copy of.
+    other : (e,) int64, the disk of the brick of which the one beyond is a copy.
     tile : (e, 2) int64, in which copy of the brick it is, counted as in the body.
     image : (e, 2) int64, that copy less the one of the body's disk.
     side : (e,) int64, the side it lies beyond: 0 left, 1 right, 2 bottom, 3 top; of two the first; −1 in a hole.
@@ -53,7 +53,7 @@ class CutContacts:
     side: np.ndarray
 
     def only(self, chosen: np.ndarray) -> CutContacts:
-        """Some of them, chosen (e,) bool."""
+        """Some of the contacts, chosen (e,) bool."""
         return CutContacts(**{name: values[chosen] for name, values in vars(self).items()})
 
     def vectors(self, brick: Brick) -> np.ndarray:
@@ -68,7 +68,7 @@ def cut_contacts(
     periodic: tuple[bool, bool] = (False, False),
     tops: Mapping[str, float] = NO_TOPS,
 ) -> CutContacts:
-    """The contacts of a body with disks beyond these sides; where a disk is beyond two sides, both must be of them.
+    """The contacts of a body with disks beyond some sides; for a disk beyond two sides both must be among them.
 
     periodic : whether the body is periodic along x and along y, so that nothing is beyond its sides there. tops : by
     side, the height (m) above which no disks are beyond; absent: they are as high as the body.

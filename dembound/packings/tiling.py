@@ -10,7 +10,7 @@ from dembound.packings.brick import Brick
 
 
 class Column(NamedTuple):
-    """A column of bricks beside a body: number of its disks, and its attributes of the same names as of an assembly."""
+    """A column of bricks beside a body: number of its disks, and attributes with the names of an assembly's."""
 
     disks: int
     copies: tuple[int, int]
@@ -28,15 +28,15 @@ class Assembly:
     positions : (n, 2) m.
     radii : (n,) m.
     brick_particle : (n,) int32, the disk of the brick that this one is a copy of (its twin).
-    tile : (n, 2) int32, in which copy of the brick it is, along x and y; in a row that closes the frame one more.
+    tile : (n, 2) int32, number of its copy of the brick along x and y; one more in a row that closes the frame.
     pairs : (b, 2) int32, contacts i → j, sorted by i, then by contact_type.
     contact_type : (b,) int32, the contact of the brick that this one is a copy of: its vector points from i to j.
     copies : number of bricks along x and y.
     size : (2,) m, the scene: copies · brick size.
     extent : (2,) m, the body: as `size`, plus the row that closes the frame if there is one. origin : (2,) m, the lower
-    left corner of its first brick. column : of an assembly whose first disks are those of a column of bricks beside the
-    body, see column.py; None: there is none. loose : number of disks
-    left out because the cut at an open edge, or a hole, removed all their connections to the body.
+    left corner of its first brick. column : the column of bricks beside the body, whose disks come first, see
+    column.py; None: there is none. loose : number of disks left out because the cut at an open edge, or a hole, removed
+    all their connections to the body.
     """
 
     positions: np.ndarray
@@ -75,7 +75,7 @@ class Assembly:
         )
 
     def without(self, removed: np.ndarray) -> tuple["Assembly", np.ndarray]:
-        """The assembly without some disks, removed (n,) bool, and without those that this separates from the body.
+        """The assembly without some disks, removed (n,) bool, and without disks that this separates from the body.
 
         Returns it and the indices (m,) of its disks, in order. Raises PackingError when no disk remains.
         """
@@ -152,7 +152,7 @@ def disks_around(brick: Brick, begin: np.ndarray, place: tuple[float, float]) ->
 
 
 def count_disks(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> int:
-    """Number of disks of `tile` with these parameters, before disks without connection are left out."""
+    """Number of disks of `tile` with the same parameters, including disks without connection."""
     across, up = (
         count + (not wraps and bool(row.any()))
         for count, wraps, row in zip(copies, periodic, brick.edge_rows.T, strict=True)

@@ -154,7 +154,7 @@ def _grows(item: h5py.HLObject) -> bool:
 
 
 def _require_like(file: h5py.File, name: str, expected: h5py.HLObject, rows: int) -> None:
-    """Raise RecordError if a record lacks a group, dataset or rows of its layout, or has numbers that are not finite."""
+    """Raise RecordError if a record lacks a group, dataset or rows of its layout, or numbers are not finite."""
     found = file.get(name)
     if found is None or hasattr(found, "dtype") != hasattr(expected, "dtype"):
         raise _lacking(file, name)

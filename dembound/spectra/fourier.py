@@ -5,13 +5,13 @@ import math
 import numpy as np
 
 BANDWIDTH = 40.0
-"""Exponent b of the smoothing window, whose main lobe is from f/1.2 to 1.2 f: the usual one for seismograms."""
+"""Exponent b of the smoothing window, with a main lobe from f/1.2 to 1.2 f, as usual for seismograms."""
 
 PADDING = 8
-"""Samples with zeros over those of a history: bins are eight times finer than 1/length."""
+"""Number of samples with zeros over that of a history: bins are eight times finer than 1/length."""
 
 SHOWN = 400
-"""Frequencies of smoothed spectra."""
+"""Number of frequencies of smoothed spectra."""
 
 
 def fourier_spectrum(values: np.ndarray, time_step: float, length: int | None = None) -> tuple[np.ndarray, np.ndarray]:
@@ -34,7 +34,7 @@ def fourier_spectrum(values: np.ndarray, time_step: float, length: int | None = 
 
 
 def shown_frequencies(samples: int, time_step: float) -> np.ndarray:
-    """Frequencies (SHOWN,) in Hz at equal ratios, from one period in so many samples to two samples in a period."""
+    """Frequencies (SHOWN,) in Hz at equal ratios, from one period in the record to two samples in a period."""
     return np.geomspace(1.0 / (samples * time_step), 0.5 / time_step, SHOWN)
 
 

@@ -8,13 +8,13 @@ DAMPING = 0.05
 """The usual share of the critical damping."""
 
 FINER = 10
-"""Samples in place of each one of a record, see `response_spectrum`."""
+"""Number of samples that replace each one of a record, see `response_spectrum`."""
 
 PERIODS = 100
-"""Periods of a response spectrum."""
+"""Number of periods of a response spectrum."""
 
 SAMPLES_PER_PERIOD = 8
-"""Samples of a record in the shortest period shown; a finer one is within 1 − cos(π/80) = 0.08 % of a crest."""
+"""Samples of a record in the shortest period; an interpolated one is within 1 − cos(π/80) = 0.08 % of a crest."""
 
 
 class Response(NamedTuple):
@@ -40,13 +40,13 @@ def response_spectrum(
 ) -> Response:
     """The response spectrum of a base's acceleration (n,) in m/s², sampled every time_step (s), zero outside.
 
-    Between samples the record is the band-limited function through them, ten times as many of which are joined by
-    straight lines; the motion under these is exact (`relative_displacement`). The largest displacement is sought in the
-    record and half a period beyond, after which the oscillator, then free, no longer reaches it.
+    Between samples the record is the band-limited function through them, of which ten times as many samples are joined
+    by straight lines; the motion under these lines is exact (`relative_displacement`). The largest displacement is
+    sought in the record and half a period beyond, after which the oscillator, then free, no longer reaches it.
 
     Parameters
     ----------
-    periods : (p,) of the undamped oscillators, s. damping : share ζ of the critical one, below 1.
+    periods : (p,) of the undamped oscillators, s. damping : ζ, share of the critical damping, below 1.
     """
     from scipy.signal import resample
 

@@ -47,7 +47,7 @@ class Sides(NamedTuple):
 
     @classmethod
     def none(cls) -> "Sides":
-        """The table of no side."""
+        """A table without sides."""
         number, value = np.zeros(0, dtype=np.int64), np.zeros(0)
         return cls(
             kind=number,
