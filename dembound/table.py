@@ -115,7 +115,7 @@ def quantity(default: Any = ..., *, unit: str, help: str, means: str | None = No
 
 
 def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tuple[type[T], ...]:
-    """Types of tables, with those that other installed packages register under the entry point group `group`.
+    """Types of tables, laws or formats, with those that other packages register as entry points of `group`.
 
     A type that cannot be used is left out, with an `UnusableTypeWarning` that gives the reason.
     """
@@ -140,7 +140,7 @@ def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tu
 
 
 def name_of(table: type[Any]) -> str | None:
-    """Name of a type in case files: the literal at its key, or a law's `name`; None without one."""
+    """Name of a type: the literal at its key in case files, or else its attribute `name`; None without one."""
     fields = getattr(table, "model_fields", {})
     literals = [get_args(fields[key].annotation) for key in DISCRIMINATORS if key in fields]
     name = literals[0][0] if literals and literals[0] else getattr(table, "name", None)
@@ -154,7 +154,7 @@ def _flaw(table: Any, base: type[Any], taken: Collection[str | None]) -> str | N
     if missing := sorted(getattr(table, "__abstractmethods__", ())):
         return f"lacks {', '.join(missing)}"
     if (name := name_of(table)) is None:
-        return "has no name for case files: needs a Literal at type or pattern, or for a law its name"
+        return "has no name: needs a Literal at type or pattern, or for laws and formats of records the attribute name"
     return f'is called "{name}", which is taken' if name in taken else None
 
 

@@ -112,22 +112,32 @@ def read_columns(path: Path) -> Columns:
     return _numbers(path, rows, separator)
 
 
-def _text(path: Path) -> str:
-    """The text of a file, of any usual encoding."""
+def content_of(path: Path) -> bytes:
+    """All bytes of a file; raises CaseError for a path that is no file or cannot be read."""
     if not path.is_file():
         raise CaseError([f'"{path}" is not a regular file' if path.exists() else f'no file "{path}"'])
     try:
-        content = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise CaseError([f'"{path}" cannot be read: {error.strerror}']) from None
+
+
+def decoded(content: bytes) -> str:
+    """The text of a file in any usual encoding."""
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return content.decode("utf-16", errors="replace")
-    if b"\0" in content:
-        raise CaseError([f'"{path}" is not a text of columns of numbers: it has bytes that no text has'])
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         return content.decode("latin-1")  # where µ is the only usual character beyond ASCII
+
+
+def _text(path: Path) -> str:
+    """The text of a file; raises CaseError for one that is none."""
+    text = decoded(content_of(path))
+    if "\0" in text:
+        raise CaseError([f'"{path}" is not a text of columns of numbers: it has bytes that no text has'])
+    return text
 
 
 def _separator(text: str) -> str:

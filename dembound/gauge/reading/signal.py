@@ -79,7 +79,7 @@ def read_signal(path: Path, reading: Reading | None = None, usual: str = "Pa") -
     time = seconds * np.array(columns.values(at))
     values = unit.size * np.array(columns.values(of))
     _require_sound(columns, time, values)
-    time, values, even = _evenly(path, time, values)
+    time, values, even = evenly(path, time, values)
     values, measured, notes = _converted(values, unit, reading)
     replaced = [*_replaced(columns, at, reading.time_unit, is_time=True), *_replaced(columns, of, reading.unit)]
     name = f"column {of + 1}" + (f", {columns.names[of]}" if columns.names[of] else "")
@@ -165,8 +165,15 @@ def _require_sound(columns: Columns, time: np.ndarray, values: np.ndarray) -> No
         raise CaseError([f"{columns.path}: has no signal, all values are {values[0]:g}"])
 
 
-def _evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Times and values (k,) at even times, and notes on changes."""
+def evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Times and values (k,) at even times, and notes on changes.
+
+    Parameters
+    ----------
+    path : the file, for errors. time, values : (k,), finite, the times not decreasing and not all equal.
+
+    Raises CaseError for equal times that rounding does not explain, and for gaps.
+    """
     even = np.linspace(time[0], time[-1], len(time))
     step = float(even[1] - even[0])
     off = float(np.abs(time - even).max()) / step

@@ -1,0 +1,49 @@
+"""ASCII files of K-NET and KiK-net (NIED, Japan): 17 lines of header, then integers of one component.
+
+The integers have an offset, which stays in the values; "Max. Acc." in the header is without it.
+"""
+
+from collections.abc import Sequence
+
+from dembound.records.channel import Record
+from dembound.records.formats.format import Format
+from dembound.records.formats.source import DECIMAL, Flaw, Source
+
+HEADER = 17
+DIRECTIONS = {
+    **{str(number): f"{name} (borehole)" for number, name in enumerate(("N-S", "E-W", "U-D"), start=1)},
+    **{str(number): f"{name} (surface)" for number, name in enumerate(("N-S", "E-W", "U-D"), start=4)},
+}
+"""Components by their numbers in files of KiK-net."""
+
+
+class Knet(Format):
+    """Values are integers times the "Scale Factor", as 3920(gal)/6182761."""
+
+    name = "K-NET or KiK-net"
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the header begins with the origin time and has a sampling frequency."""
+        return lines[0].startswith("Origin Time") and any(line.startswith("Sampling Freq") for line in lines[:HEADER])
+
+    def read(self, source: Source) -> Record:
+        """The component of the file."""
+
+        def stated(key: str, pattern: str) -> tuple[str, ...]:
+            return tuple(map(str, source.found(rf"^{key}\s+{pattern}", 0, HEADER, key.replace("\\", "")).groups()))
+
+        (rate,) = stated(r"Sampling Freq\(Hz\)", rf"({DECIMAL})")
+        (duration,) = stated(r"Duration Time\(s\)", rf"({DECIMAL})")
+        full, unit, steps = stated("Scale Factor", rf"({DECIMAL})\((\w+)\)/({DECIMAL})")
+        (peak,) = stated(r"Max\. Acc\. \(gal\)", rf"({DECIMAL})")
+        (station,), (direction,) = stated("Station Code", r"(\S+)"), stated(r"Dir\.", r"(\S+)")
+        (origin,) = stated("Origin Time", r"(\S.*\S)")
+        if not (0.0 < float(rate) <= 1e6 and 0.0 < float(duration) <= 1e6 and float(steps) > 0.0):
+            raise Flaw("sampling frequency, duration and scale factor must be positive")
+        numbers = source.free(HEADER, round(float(duration) * float(rate))) * (float(full) / float(steps))
+        component = DIRECTIONS.get(direction, direction)
+        channel = source.channel(
+            component, source.measured(unit), numbers, 1.0 / float(rate), peak=peak, without_mean=True
+        )
+        kind = "KiK-net" if direction in DIRECTIONS else "K-NET"
+        return Record(kind, f"{station}, earthquake of {origin}", (channel,))

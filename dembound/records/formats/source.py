@@ -1,0 +1,208 @@
+"""The text of a file of ground motion, its numbers, and the channels made of them."""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal, InvalidOperation
+from pathlib import Path
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.gauge.estimates import FEWEST
+from dembound.gauge.reading.signal import evenly
+from dembound.records.channel import Channel, Quantity
+from dembound.table import LARGEST, SMALLEST
+from dembound.waves.unit_names import unit_named
+
+MOTIONS: dict[str, Quantity] = {
+    "accelerations": "acceleration",
+    "velocities": "velocity",
+    "displacements": "displacement",
+}
+"""Quantities by their names in `unit_names`."""
+
+USUAL = "g, gal, cm/s², m/s², cm/s, m/s, cm or m"
+SI = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
+
+PEAK_TOLERANCE = 1e-3
+"""Share of a stated peak by which that of the samples may differ, beside the rounding of the stated one."""
+
+COUNT = r"(\d{1,9})"
+DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[Ee][+-]?\d+)?"
+"""Patterns of a number of samples and of any number."""
+
+NUMBER = re.compile(DECIMAL)
+LAYOUT = re.compile(r"\(\s*(\d*)\s*[a-z]+(\d+)(?:\.\d+)?[^()]*\)", re.IGNORECASE)
+END = re.compile(r"\s*(/&|end-of-data)", re.IGNORECASE)
+"""The line behind the samples of a channel, in formats with several channels in a file."""
+
+
+class Flaw(Exception):  # noqa: N818  # what is wrong with a file, not with the program
+    """What is wrong in a file, in one line without its path."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file that is being read.
+
+    path; lines : without their ends; unit : of its values where the header has none or another one, None for that of
+    the header; remarks : what the reader notices on its way.
+    """
+
+    path: Path
+    lines: Sequence[str]
+    unit: str | None = None
+    remarks: list[str] = field(default_factory=list)
+
+    def line(self, index: int) -> str:
+        """A line by its index; raises Flaw if the file ends before."""
+        if index >= len(self.lines):
+            raise Flaw(f"ends within the header, at line {len(self.lines)}")
+        return self.lines[index]
+
+    def found(self, pattern: str, begin: int, end: int, what: str) -> re.Match[str]:
+        """The first match in these lines, whatever the case of letters; raises Flaw, with `what`, without one."""
+        text = "\n".join(self.lines[begin:end])
+        if (match := re.search(pattern, text, re.IGNORECASE | re.MULTILINE)) is None:
+            raise Flaw(f"lines {begin + 1} to {end} do not state {what}")
+        return match
+
+    def fields(self, first: int, count: int, layout: str) -> list[str]:
+        """`count` fields of a Fortran layout such as "(8f9.6)", from line index `first` on.
+
+        Raises Flaw for another layout, and for a file or channel that ends before.
+        """
+        (per, width), rows = _columns_of(layout), rows_of(count, layout)
+        if first + rows > len(self.lines):
+            raise Flaw(f"ends at line {len(self.lines)}, before {count} numbers")
+        for index in range(first, first + rows):
+            if END.match(self.lines[index]):
+                raise Flaw(
+                    f"line {index + 1} ends the channel after {per * (index - first)} of {count} numbers or fewer"
+                )
+        lines = self.lines[first : first + rows]
+        return [line[at : at + width] for line in lines for at in range(0, per * width, width)][:count]
+
+    def fixed(self, first: int, count: int, layout: str) -> np.ndarray:
+        """The numbers (count,) of `fields`; raises Flaw as well for what is no number."""
+        fields = self.fields(first, count, layout)
+        try:
+            return np.array([float(text) for text in fields])
+        except ValueError:
+            wrong = next(index for index, text in enumerate(fields) if not NUMBER.fullmatch(text.strip()))
+            number = first + 1 + wrong // _columns_of(layout)[0]
+            raise Flaw(f'line {number} has "{fields[wrong].strip()}" in place of a number') from None
+
+    def free(self, first: int, count: int) -> np.ndarray:
+        """All numbers from line index `first` to the end of the file, separated by blanks or signs.
+
+        Raises Flaw for fewer than `count`, and for other text; more ones are remarked on.
+        """
+        found: list[float] = []
+        for index, line in enumerate(self.lines[first:], start=first):
+            if NUMBER.sub("", line).strip(" \t\x1a"):
+                raise Flaw(f'line {index + 1} has "{line.strip()[:30]}" in place of numbers')
+            found += map(float, NUMBER.findall(line))
+        if len(found) < count:
+            raise Flaw(f"ends at line {len(self.lines)}, after {len(found)} of {count} samples")
+        if len(found) > count:
+            self.remarks.append(f"the header states {count} samples, the file has {len(found)}")
+        return np.array(found)
+
+    def measured(self, text: str) -> tuple[Quantity, float]:
+        """Quantity and size in SI of a unit in the header, or of the unit that is given instead.
+
+        Raises Flaw if none of both is one of a motion.
+        """
+        stated, given = unit_named(text), unit_named(self.unit) if self.unit else None
+        if given is not None and (stated is None or stated.quantity == given.quantity):
+            if stated is not None and stated.size != given.size:
+                self.remarks.append(f"--unit: {self.unit} given, the header says {text.strip()}")
+            stated = given
+        if stated is None:
+            said = (
+                f'the unit "{text.strip()}" of the values is not known'
+                if text.strip()
+                else "states no unit of the values"
+            )
+            raise Flaw(f"{said}; give it by --unit: {USUAL}")
+        if stated.quantity not in MOTIONS:
+            raise Flaw(f"has {stated.quantity} ({text.strip()}), must have {', '.join(MOTIONS)}")
+        return MOTIONS[stated.quantity], stated.size
+
+    def evenly(self, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Times (k,) s and values at even times; raises Flaw for times that do not increase or have gaps."""
+        if len(time) < FEWEST:
+            raise Flaw(f"has {len(time)} samples, must have {FEWEST} or more")
+        if not np.isfinite(time).all() or (np.diff(time) < 0.0).any() or time[0] == time[-1]:
+            raise Flaw("must have times that increase")
+        try:
+            time, values, notes = evenly(self.path, time, values)
+        except CaseError as error:
+            raise Flaw(error.problems[0].removeprefix(f"{self.path}: ")) from None
+        self.remarks.extend(notes)
+        return time, values
+
+    def channel(
+        self,
+        component: str,
+        unit: tuple[Quantity, float],
+        numbers: np.ndarray,
+        time_step: float,
+        begin: float = 0.0,
+        peak: str = "",
+        without_mean: bool = False,
+    ) -> Channel:
+        """A channel in SI.
+
+        Parameters
+        ----------
+        unit : by `measured`. numbers : (n,) in this unit. peak : as the header states it in this unit; other text for
+        none. without_mean : whether the stated peak is one of the numbers without their mean.
+
+        Raises Flaw for too few samples, samples that are not finite, and a time step that is not positive.
+        """
+        quantity, size = unit
+        values = size * numbers
+        if len(values) < FEWEST:
+            raise Flaw(f"has {len(values)} samples, must have {FEWEST} or more")
+        if not (wrong := np.abs(values) <= LARGEST).all():
+            raise Flaw(f"sample {int(np.argmin(wrong)) + 1} is {numbers[np.argmin(wrong)]:g}, must be finite")
+        if not SMALLEST <= time_step <= LARGEST:
+            raise Flaw(f"the time step is {time_step:g} s, must be positive")
+        stated, rounding = _with_rounding(peak)
+        if stated is not None:
+            found = float(np.abs(values - values.mean() if without_mean else values).max())
+            if abs(found - size * stated) > size * (PEAK_TOLERANCE * stated + rounding):
+                name, si = component or "channel", SI[quantity]
+                said = f"the header states a peak of {size * stated:.4g} {si}, the samples have {found:.4g} {si}"
+                self.remarks.append(f"{name}: {said}")
+        return Channel(component, quantity, values, time_step, begin, None if stated is None else size * stated)
+
+
+def rows_of(count: int, layout: str) -> int:
+    """Lines of `count` numbers in a Fortran layout; raises Flaw for another text."""
+    return -(-count // _columns_of(layout)[0])
+
+
+def _columns_of(layout: str) -> tuple[int, int]:
+    """Numbers in a line and characters of a number in a Fortran layout; raises Flaw for another text."""
+    found = LAYOUT.search(layout)
+    if found is None or not (size := (int(found[1] or 1), int(found[2])))[0] * size[1]:
+        raise Flaw(f'"{layout.strip()}" is not a layout such as (8f9.6)')
+    return size
+
+
+def _with_rounding(text: str) -> tuple[float | None, float]:
+    """Size of a number, None for other text, and half of its last digit."""
+    try:
+        number = Decimal(text.strip())
+        exponent = number.as_tuple().exponent
+    except InvalidOperation:
+        return None, 0.0
+    size = abs(float(number))
+    if not isinstance(exponent, int) or not math.isfinite(size) or size > LARGEST:
+        return None, 0.0
+    return size, 0.5 * 10.0 ** max(min(exponent, 300), -300)
