@@ -3,6 +3,9 @@
 import re
 from typing import Any
 
+from docutils.nodes import SkipNode
+from latex2mathml.converter import convert
+
 from dembound.version import __version__
 
 project = "dembound"
@@ -20,6 +23,7 @@ html_title = "dembound"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_sphinx = False
+html_math_renderer = "mathml"
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 default_role = "code"
@@ -44,6 +48,19 @@ def in_fields(app: Any, what: str, name: str, item: Any, options: Any, lines: li
     lines[:] = text.split("\n")
 
 
+def in_line(writer: Any, node: Any) -> None:
+    """Write an equation within a line as MathML, which browsers draw without a script."""
+    writer.body.append(convert(node.astext()))
+    raise SkipNode
+
+
+def displayed(writer: Any, node: Any) -> None:
+    """Write a displayed equation as MathML."""
+    writer.body.append(f'<div class="math">{convert(node.astext(), display="block")}</div>')
+    raise SkipNode
+
+
 def setup(app: Any) -> None:
-    """Have the sections of docstrings read."""
+    """Have the sections of docstrings read, and equations written as MathML."""
     app.connect("autodoc-process-docstring", in_fields)
+    app.add_html_math_renderer("mathml", (in_line, None), (displayed, None))
