@@ -113,7 +113,7 @@ def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
         return
     listed = ", ".join(f"{1e6 * step:.3g}" for step in steps)
     yield (
-        f"bar.range: Δx/c differs, {listed} µs, so fronts of impacts swing from step to step, by some 20 % of the "
+        f"bar.range: Δx/c differs, {listed} µs, so fronts of impacts oscillate from step to step, by some 20 % of the "
         "stress, which can break bonds though the stress at nodes does not show it; choose spacings with one Δx/c, and "
         "run.courant = 1.0"
     )

@@ -60,9 +60,9 @@ def _swings(case: BarCase, file: h5py.File) -> Iterator[str]:
     snapshots = [group["velocity"][:, 0] for group in snapshots_of(file)]
     swing = max((0.5 * float(np.abs(np.diff(each)).max()) for each in snapshots if len(each) > 1), default=0.0)
     if swing > 0.0:
-        breaks = "" if np.isinf(case.bar.least_strength) else "; springs bear it, too, so late breaks may come from it"
+        breaks = "" if np.isinf(case.bar.least_strength) else "; it loads springs, too, and may cause late breaks"
         yield (
-            f"output.snapshots: their velocities swing from step to step, by up to {swing:.2g} m/s, which impacts "
+            f"output.snapshots: their velocities oscillate from step to step, by up to {swing:.2g} m/s, which impacts "
             f"leave at the limit of the time step; stresses and monitors are free of it{breaks}"
         )
 

@@ -42,7 +42,7 @@ class MatchedLayer(Drivable):
         None,
         unit="1",
         means="share",
-        help="R0, what the outer end returns in theory; absent: 10^−(4 + N/20), at least 1e-12",
+        help="R0, theoretical reflection of the outer end; absent: 10^−(4 + N/20), at least 1e-12",
         gt=0.0,
         lt=1.0,
     )

@@ -36,7 +36,7 @@ class Dashpots(Boundary):
         "matched",
         unit="1",
         means="factor of dashpots",
-        help="factor β of the dashpots across the side's normal, likewise",
+        help='factor β of the dashpots across the side\'s normal; "matched": that of the impedance of the packing',
     )
     half_mass: bool = quantity(
         False,

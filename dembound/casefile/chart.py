@@ -31,10 +31,10 @@ class Chart(Table):
         3, unit="1", means="count", help="timed runs of every choice, after one that compiles", ge=1, le=MOST_REPEATS
     )
     reference: ReferenceName | None = quantity(
-        None, unit="1", help="what errors are measured against; absent: the first that the case allows"
+        None, unit="1", help="reference of the errors; absent: the first that the case allows"
     )
     until: End = quantity(
         "break",
         unit="1",
-        help='up to when histories are compared: "break", the first spall or broken bond of the reference; "end"',
+        help='end of the compared histories: "break", the first spall or broken bond of the reference; "end"',
     )

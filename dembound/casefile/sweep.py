@@ -24,7 +24,7 @@ class Sweep(Table):
         unit="1",
         help="whether the first values of all keys are one member, the second ones the next; else all combinations",
     )
-    action: Action = quantity("run", unit="1", help="what is done with every member")
+    action: Action = quantity("run", unit="1", help="action for every member")
     method: Method = quantity("impedance", unit="1", help="how β is calibrated")
     processes: int | None = quantity(
         None,

@@ -66,7 +66,7 @@ def require_linear(name: str) -> None:
     History-dependent laws are linear until something opens, slides or breaks, which runs detect.
     """
     if not (LAWS[name].is_linear or LAWS[name].has_history):
-        raise CaseError([f'material.law: is "{name}", which is not linear; errors are known of linear laws alone'])
+        raise CaseError([f'material.law: is "{name}", which is not linear; errors are known only for linear laws'])
 
 
 BoundaryTable, HoleTable, MethodTable = one_of("type", BOUNDARIES), one_of("type", HOLES), one_of("type", METHODS)

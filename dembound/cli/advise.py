@@ -62,7 +62,7 @@ Of = Annotated[
 Seeds = Annotated[
     int,
     typer.Option(
-        min=1, help="Random packings with which the case is run, to see how much depends on them.", metavar="N"
+        min=1, help="Number of random packings with which the case is run, to see how results scatter.", metavar="N"
     ),
 ]
 Longest = Annotated[

@@ -56,7 +56,7 @@ def boundary(
     output: Annotated[Path, PICTURE] = Path("boundary.png"),
     title: PictureTitle = None,
     quick: Annotated[
-        bool, typer.Option("--quick", help="A first answer in milliseconds: by a continuum in place of the disks.")
+        bool, typer.Option("--quick", help="Quick estimate with a continuum in place of the disks.")
     ] = False,
     table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,

@@ -53,7 +53,7 @@ def chart(
         ChartReference | None,
         typer.Option(
             metavar="REFERENCE",
-            help="Errors are those against: exact, an exact solution; extended, the same scene so large that nothing "
+            help="Reference of the errors: exact, an exact solution; extended, the same scene so large that nothing "
             "returns; finer, of bars, finite differences at Courant number 1 and a finer spacing; finest, the choice "
             "with the most nodes times steps. By default the first that the case allows.",
         ),
@@ -71,7 +71,9 @@ def chart(
     repeats: Annotated[
         int | None, typer.Option(min=1, help="Timed runs of every choice; by default 3, or the case's.")
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Run only what the chart of before does not have.")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Run only choices that an earlier chart does not have.")
+    ] = False,
     output: Output = Path("results"),
     title: PictureTitle = None,
     changes: Settings = None,

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 Repeat = Annotated[
     bool,
-    typer.Option("--repeat", help="Run once more with 0.98 of the time step: how much of the cracks is chance."),
+    typer.Option(
+        "--repeat", help="Repeat the run with 0.98 of its time step, to see how much of the cracks is chance."
+    ),
 ]
 
 

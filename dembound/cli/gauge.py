@@ -31,9 +31,11 @@ def gauge(
         Path, typer.Argument(metavar="RECORD", help="Text file with columns of time and signal, or a run's results.")
     ],
     monitor: Annotated[str | None, typer.Option(metavar="NAME", help="Monitor of the results.")] = None,
-    position: Annotated[float | None, typer.Option(help="Gauge from the loaded end (m).")] = None,
+    position: Annotated[float | None, typer.Option(help="Position of the gauge from the loaded end (m).")] = None,
     length: Annotated[float | None, typer.Option(help="Length of the bar (m).")] = None,
-    density: Annotated[float | None, typer.Option(help="Its density (kg/m³), for --free-end and for E = ρc².")] = None,
+    density: Annotated[
+        float | None, typer.Option(help="Density of the bar (kg/m³), for --free-end and for E = ρc².")
+    ] = None,
     spall: Annotated[float | None, typer.Option(help="Where the bar spalled, from the loaded end (m).")] = None,
     free_end: Annotated[
         str | None,
@@ -43,7 +45,9 @@ def gauge(
         bool,
         typer.Option("--estimate", help="Take speed and attenuation from tension peaks, though the results have them."),
     ] = False,
-    peaks: Annotated[int | None, typer.Option(help="As --estimate, from this number of first peaks.", min=2)] = None,
+    peaks: Annotated[
+        int | None, typer.Option(help="Take speed and attenuation from this number of first tension peaks.", min=2)
+    ] = None,
     pulse_end: Annotated[
         float | None, typer.Option(help="Time at which the incident pulse has passed (s); by default when it returns.")
     ] = None,
@@ -51,7 +55,8 @@ def gauge(
         float | None, typer.Option(help="Wave speed (m/s) of another test; else the results', or estimated from peaks.")
     ] = None,
     attenuation: Annotated[
-        float | None, typer.Option(help="Attenuation (1/m) of another test; else as the speed.")
+        float | None,
+        typer.Option(help="Attenuation (1/m) of another test; else the results', or estimated from peaks."),
     ] = None,
     output: Annotated[Path | None, PICTURE] = None,
     title: PictureTitle = None,

@@ -49,7 +49,9 @@ class BarOptions:
     specimen_length: Annotated[float, _of_bars("Length of the specimen (m).")]
     specimen_diameter: Annotated[float | None, _of_bars("Diameter of the specimen (m).")] = None
     specimen_area: Annotated[float | None, _of_bars("Or its area (m²).")] = None
-    bar_length: Annotated[float | None, _of_bars("Of each bar (m), to stop before its end sends waves back.")] = None
+    bar_length: Annotated[float | None, _of_bars("Length of each bar (m), to stop before its end reflects waves.")] = (
+        None
+    )
     attenuation: Annotated[float, _of_bars("Of the bars (1/m).")] = 0.0
     dispersion: Annotated[
         bool,
@@ -93,15 +95,15 @@ class PulseOptions:
     second_column: Annotated[
         str | None, typer.Option(metavar="NAME|NUMBER", help="Its column or monitor.", rich_help_panel=PULSES)
     ] = None
-    second_gauge: Annotated[float | None, typer.Option(help="From it to the specimen (m).", rich_help_panel=PULSES)] = (
-        None
-    )
+    second_gauge: Annotated[
+        float | None, typer.Option(help="From the second gauge to the specimen (m).", rich_help_panel=PULSES)
+    ] = None
     incident_window: Window = None
     reflected_window: Window = None
     transmitted_window: Window = None
     opposite: Annotated[
         bool,
-        typer.Option("--opposite", help="The transmission bar's gauge has the other sign.", rich_help_panel=PULSES),
+        typer.Option("--opposite", help="The transmission bar's gauge has the opposite sign.", rich_help_panel=PULSES),
     ] = False
 
 

@@ -120,9 +120,7 @@ def view_disks(
             "--output", "-o", "--picture", help="Picture to write (PNG) instead of opening a window.", callback=png
         ),
     ] = None,
-    exaggerate: Annotated[
-        float, typer.Option(help="Show disks moved by this many times their displacement; 0: where they began.")
-    ] = 0.0,
+    exaggerate: Annotated[float, typer.Option(help="Factor of the displacements shown; 0: undeformed.")] = 0.0,
 ) -> None:
     """Show the disks of a run in a window, with a slider in time.
 
@@ -165,7 +163,7 @@ def compare_histories(
         ),
     ] = Quantity.velocity,
     as_recorded: Annotated[
-        bool, typer.Option("--as-recorded", help="Leave motion as late or early as waves enter disks.")
+        bool, typer.Option("--as-recorded", help="Do not correct for waves that enter disks later or earlier.")
     ] = False,
 ) -> None:
     """Print the errors of histories against those of a reference run.
@@ -200,7 +198,7 @@ def compare_histories(
     out.print(table)
     for run, shift in {line.run: line.shift for line in found if line.shift}.items():
         how = "later" if shift > 0.0 else "earlier"
-        out.print(f"{run}: waves enter {abs(shift):.2g} s {how} than in the reference, which is taken off")
+        out.print(f"{run}: waves enter {abs(shift):.2g} s {how} than in the reference; this shift is subtracted")
     for line in found:
         if line.apart > 0.0:
             places = f"{line.place} in {line.run}, {line.reference_place} in the reference"

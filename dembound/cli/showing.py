@@ -61,22 +61,18 @@ def movie(
         SceneField | None,
         typer.Option(
             metavar="FIELD",
-            help="What colours the disks, or is drawn along a bar; velocity, of a bar stress and damage.",
+            help="Field that colours the disks, or is drawn along a bar; velocity, of a bar stress and damage.",
         ),
     ] = None,
-    exaggerate: Annotated[
-        float, typer.Option(help="Show all moved by this many times its displacement; 0: where it began.")
-    ] = 0.0,
+    exaggerate: Annotated[float, typer.Option(help="Factor of the displacements shown; 0: undeformed.")] = 0.0,
     monitor: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="NAME", help="Show this monitor's history below. May be repeated; by default those of all."
-        ),
+        typer.Option(metavar="NAME", help="Show this monitor's history below. May be repeated; by default all."),
     ] = None,
     histories: Annotated[bool, typer.Option(help="Show histories below the scene.")] = True,
     fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1)] = 10.0,
     size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200)] = 960,
-    every: Annotated[int, typer.Option(help="Show every so many-th snapshot.", min=1)] = 1,
+    every: Annotated[int, typer.Option(help="Show only every N-th snapshot.", min=1)] = 1,
 ) -> None:
     """Write a movie of a run and its histories (GIF, or PNG frames).
 

@@ -45,7 +45,7 @@ class SignalOptions:
         bool, typer.Option("--clipped", help="Accept a signal that looks clipped.", rich_help_panel=FILE)
     ] = False
     gauge_factor: Annotated[
-        float | None, typer.Option(help="Gauge factor k; makes strains of voltages.", rich_help_panel=BRIDGE)
+        float | None, typer.Option(help="Gauge factor k, which converts voltages to strains.", rich_help_panel=BRIDGE)
     ] = None
     bridge: Annotated[
         str,
@@ -75,11 +75,13 @@ class SignalOptions:
     high_pass: Annotated[float | None, typer.Option(help="Keep what is above (Hz).", rich_help_panel=CLEANING)] = None
     band: Annotated[
         tuple[float, float] | None,
-        typer.Option(metavar="LOW HIGH", help="Both: keep what is between (Hz).", rich_help_panel=CLEANING),
+        typer.Option(
+            metavar="LOW HIGH", help="Low and high pass in one: the band that remains (Hz).", rich_help_panel=CLEANING
+        ),
     ] = None
     notch: Annotated[
         list[float] | None,
-        typer.Option(help="Take out this frequency (Hz). May be repeated.", rich_help_panel=CLEANING),
+        typer.Option(help="Remove this frequency (Hz). May be repeated.", rich_help_panel=CLEANING),
     ] = None
 
     def reading(self, column: str | None = None) -> Reading:

@@ -85,7 +85,7 @@ def _overview(found: Sequence[Stability], title: str) -> Table:
             overview.add_row(name, f"{limit:.5g}", measured, own, last, f"{run.rise:.1e}", state)
     overview.caption = Text(
         "measured: largest stable step over the limit; own step: the case's over the limit;\n"
-        "energy: at the end over the start, with what boundaries took where contacts may\n"
+        "energy: at the end over the start, with energy taken by boundaries where contacts may\n"
         "open (if unstable: kinetic energy); rise: largest energy over the start, less 1"
     )
     overview.caption_justify = "left"

@@ -55,7 +55,8 @@ def sweep(
         SweepAction | None, typer.Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
     ] = None,
     method: Annotated[
-        CalibrationMethod | None, typer.Option(metavar="METHOD", help="How to calibrate, as of `dembound calibrate`.")
+        CalibrationMethod | None,
+        typer.Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`."),
     ] = None,
     processes: Annotated[
         int | None, typer.Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
@@ -63,7 +64,7 @@ def sweep(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
     ] = None,
-    anew: Annotated[bool, typer.Option("--anew", help="Repeat members that are done, too.")] = False,
+    anew: Annotated[bool, typer.Option("--anew", help="Also repeat members that are done.")] = False,
     quantity: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Column of sweep.csv to draw. May be repeated.")
     ] = None,

@@ -279,7 +279,7 @@ def as_doubtful(found: Findings) -> Iterator[str]:
         "the pull-back strength": found.pull_back is not None,
     }
     if named := [name for name, rests in resting.items() if rests]:
-        yield f"as doubtful, as from the same peaks or with this speed: {', '.join(named)}"
+        yield f"also doubtful, from the same peaks or with this speed: {', '.join(named)}"
 
 
 def uncertain_speed(speed: Estimate) -> Iterator[str]:

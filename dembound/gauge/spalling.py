@@ -154,7 +154,7 @@ def _doubts(gauge: Gauge, found: Findings) -> Iterator[str]:
     elif doubts := list(misfit(found, "attenuation")) or list(uncertain_decay(found.attenuation)):
         yield from doubts
         if found.strength is not None and found.strength.attenuated is not None:
-            yield "as doubtful, as by this attenuation: the attenuated strength"
+            yield "also doubtful, by this attenuation: the attenuated strength"
     if found.strength is not None and gauge.noise is not None:
         yield from raised_by_noise(float(gauge.noise.residuals.std()), float(np.abs(gauge.stress).max()))
 

@@ -77,10 +77,12 @@ class Folder:
         Also for names that end like the partial folder of another run, or are impossible on some system.
         """
         if problem := problem_of(self.name):
-            raise CaseError([f"{self.name!r}: is no name for results, {problem}; give another --name"])
+            raise CaseError([f"{self.name!r}: is not a valid name for results, {problem}; give another --name"])
         for ending in (PARTIAL, REPLACED):
             if self.name.endswith(ending):
-                raise CaseError([f"{self.name}: is no name of a case, must not end in {ending}; give another --name"])
+                raise CaseError(
+                    [f"{self.name}: is not a valid name of a case, must not end in {ending}; give another --name"]
+                )
         for path in (self.final, self.partial):
             if path.is_symlink():
                 raise CaseError([f"{path}: is a link, must be a folder; a link may lead to the folder above it"])

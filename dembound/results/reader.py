@@ -173,7 +173,7 @@ def place_in_words(place: Sequence[float], size: Sequence[float]) -> str:
 def require_run(file: h5py.File) -> None:
     """Raise CaseError for an open record of only histories, which were computed without stepping particles."""
     if "particles" not in file and "histories" in file:
-        raise CaseError([f"{file.filename}: has histories alone, as those of `dembound exact` and `dembound respond`"])
+        raise CaseError([f"{file.filename}: has only histories, like those of `dembound exact` and `dembound respond`"])
 
 
 class Snapshots(Sequence["h5py.Group"]):

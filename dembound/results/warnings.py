@@ -93,7 +93,7 @@ def _why_moving(scene: Scene) -> str:
         return "the motion is not over, take a longer run.duration"
     return (
         f"the motion is not over: waves between {', and between '.join(kept)} are not absorbed there, and fade only as "
-        "far as they reach what does; a longer run.duration may not end them, sides that absorb would"
+        "far as they reach sides that absorb; give these sides an absorbing type, as a longer run.duration may not help"
     )
 
 
@@ -107,11 +107,11 @@ def energy_warnings(scene: Scene, energy: Mapping[str, float]) -> Iterator[str]:
         key = "safety" if scene.case.run.time_step == "auto" else "time_step"
         yield (
             f"run.{key}: contacts that open and close within a step have {'taken' if closing > 0.0 else 'added'} "
-            f"{percent(abs(closing) / supplied if supplied > 0.0 else math.inf)} of the energy put in; "
+            f"{percent(abs(closing) / supplied if supplied > 0.0 else math.inf)} of the supplied energy; "
             "shorter steps change it less"
         )
     if (error := energy["relative_error"]) > UNEXPLAINED:
-        yield f"energy.error: {percent(error)} of the energy put in is unaccounted for; take shorter steps"
+        yield f"energy.error: {percent(error)} of the supplied energy is unaccounted for; take shorter steps"
 
 
 def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:

@@ -153,7 +153,7 @@ def _interval_warnings(planned: Plan) -> Iterator[str]:
     output = planned.scene.case.output
     if output.snapshots == 0 and (asked := [key for key in ("stress", "contacts") if getattr(output, key)]):
         yield (
-            f"output.{' and output.'.join(asked)}: requests what snapshots hold, but output.snapshots is 0, so nothing "
+            f"output.{' and output.'.join(asked)}: is about snapshots, but output.snapshots is 0, so nothing "
             "is written; give output.snapshots = 1 or more"
         )
     if output.snapshots > planned.steps:

@@ -178,9 +178,9 @@ def _require_facts(facts: Mapping[str, Any], path: Path) -> None:
     """Raise RecordError for a checkpoint that lacks one of the facts of a run, or has one of another type."""
     for name, kinds in FACTS.items():
         if name not in facts or not isinstance(facts[name], kinds):
-            raise RecordError([f"{path}: is damaged, or none of a run: {name} is missing, or is no such thing"])
+            raise RecordError([f"{path}: is damaged, or not of a run: {name} is missing or invalid"])
     if not (facts["step"] >= 0 and 0.0 < facts["time_step"] < math.inf):
-        raise RecordError([f"{path}: is damaged: its time is none"])
+        raise RecordError([f"{path}: is damaged: its time is invalid"])
 
 
 def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
@@ -195,7 +195,7 @@ def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
         return found[0]
     records = [place / "run.h5" for place in places if (place / "run.h5").is_file()]
     anew = f"; `dembound rerun {records[0]}` runs its case anew" if records else ""
-    reasons = "as of a run with run.checkpoint = 0, or of one that ended before it could write one"
+    reasons = "as after a run with run.checkpoint = 0, or one that ended before its first checkpoint"
     raise (CaseError if records else RecordError)([f"{folder}: has no checkpoint ({FILE}), {reasons}{anew}"])
 
 

@@ -111,7 +111,7 @@ def test_what_one_pulse_to_and_fro_does_not_explain_is_reported(change, level, t
 
 def test_what_rests_on_a_doubtful_speed_is_named(tmp_path):
     gauge = replace(Record("lost samples", (lost,)).gauge(tmp_path / "weak.txt"), unit="Pa")
-    said = "as doubtful, as from the same peaks or with this speed: "
+    said = "also doubtful, from the same peaks or with this speed: "
     assert evaluate(gauge).warnings[-1] == f"{said}the attenuation"
     strengths = evaluate(gauge, spall=0.95, pulse_end=4e-4).warnings
     assert f"{said}the attenuation, the nominal strength, the attenuated strength" in strengths

@@ -76,7 +76,7 @@ class Bar(Table):
         None, unit="1", means="strain", help="stretch s₀ = σ_t/E at which a bond breaks, instead of strength", gt=0.0
     )
     fracture_energy: float | None = quantity(
-        None, unit="J/m²", help="energy G_f that a crack takes as it opens; absent: bonds break at once", gt=0.0
+        None, unit="J/m²", help="fracture energy G_f of cracks; absent: bonds break at once", gt=0.0
     )
     strength_per_decade: float | None = quantity(
         None,

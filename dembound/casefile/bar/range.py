@@ -36,12 +36,12 @@ class BarRange(Table):
     critical_stretch: float | None = quantity(
         None, unit="1", means="strain", help="stretch s₀ at which a bond breaks, instead of strength", gt=0.0
     )
-    fracture_energy: float | None = quantity(None, unit="J/m²", help="energy G_f that a crack in it takes", gt=0.0)
+    fracture_energy: float | None = quantity(None, unit="J/m²", help="fracture energy G_f of its cracks", gt=0.0)
     strength_per_decade: float | None = quantity(
         None, unit="Pa", means="strength", help="rise of its strength for a tenfold strain rate", gt=0.0
     )
     strength_rates: tuple[float, float] | None = quantity(
-        None, unit="1/s", help="strain rates [slowest, fastest] between which it rises"
+        None, unit="1/s", help="strain rates [slowest, fastest] between which the strength rises"
     )
     attenuation: float | None = quantity(None, unit="1/m", help="α of its attenuation", ge=0.0)
     velocity: float = quantity(
@@ -51,7 +51,7 @@ class BarRange(Table):
         help="velocity of the whole range at the start, positive to the right, as of a striker",
     )
     interface: Literal["bonded", "contact"] = quantity(
-        "bonded", unit="1", help="how it meets the range on its left; a contact bears no tension"
+        "bonded", unit="1", help="interface with the range on its left; a contact bears no tension"
     )
     gap: float = quantity(0.0, unit="m", means="gap", help="opening of the contact on its left at the start", ge=0.0)
 

@@ -45,7 +45,7 @@ class Load(Table):
     )
     hole: str | None = quantity(None, unit="1", help="name of the hole on whose wall a pressure acts")
     on: Literal["outline", "bonds"] = quantity(
-        "outline", unit="1", help="what a pressure acts on: the true outline of the hole, or the bonds that it cuts"
+        "outline", unit="1", help="where a pressure acts: on the true outline of the hole, or on the bonds that it cuts"
     )
     wave: str | None = quantity(
         None, unit="1", help="name of the wave that is the time factor; absent: steady, from the static stage on"

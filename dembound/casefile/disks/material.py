@@ -30,12 +30,12 @@ class Material(Table):
 
     density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
     p_wave_speed: float | None = quantity(
-        None, unit="m/s", means="wave speed", help="P-wave speed the moduli are made to give", gt=0.0
+        None, unit="m/s", means="wave speed", help="P-wave speed from which the moduli follow", gt=0.0
     )
     match: Literal["lattice", "assembly"] = quantity(
         "lattice",
         unit="1",
-        help='what has p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x',
+        help='body with this p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x',
     )
     contact_share: float = quantity(
         0.5,

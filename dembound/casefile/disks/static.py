@@ -21,7 +21,7 @@ class Static(Table):
         None,
         unit="Pa",
         means="stress to reach",
-        help="stress [sxx, syy, sxy] to reach, tension positive; absent: what the loads make",
+        help="stress [sxx, syy, sxy] to reach, tension positive; absent: that of the loads",
     )
     ratio: float = quantity(
         1e-5,
@@ -38,7 +38,7 @@ class Static(Table):
     from_: str | None = quantity(
         None,
         unit="1",
-        help="folder of the results of a case that has settled the same body, from the current folder; absent: settle",
+        help="folder of the results of a case that has settled the same body, from the current folder; absent: none",
         alias="from",
         min_length=1,
     )

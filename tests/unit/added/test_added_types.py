@@ -266,7 +266,7 @@ def test_a_law_that_is_not_linear_is_refused_where_that_is_assumed(asked) -> Non
     )
     assert asked["cork"].keys() == {"library", "estimate", "advise"}
     for law in ("rubber", "cork"):
-        unknown = [f'material.law: is "{law}", which is not linear; errors are known of linear laws alone']
+        unknown = [f'material.law: is "{law}", which is not linear; errors are known only for linear laws']
         assert asked[law]["estimate"] == asked[law]["advise"] == unknown
         (line,) = asked[law]["library"]
         assert line.startswith(f'material.law: is "{law}", which is not linear; a library adds up motion, so "')

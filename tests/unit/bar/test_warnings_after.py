@@ -66,7 +66,7 @@ def test_swings_that_impacts_leave_are_warned_of(tmp_path, courant: float, swing
     said = [each for each in after(case, folder) if "swing" in each]
     assert len(said) == swings
     if swings:
-        assert said[0].startswith("output.snapshots: their velocities swing from step to step, by up to ")
+        assert said[0].startswith("output.snapshots: their velocities oscillate from step to step, by up to ")
         assert "courant" not in said[0]  # which would be advice against the one given before the run
         with h5py.File(folder / "run.h5", "a") as file:
             for group in file["snapshots"].values():

@@ -36,7 +36,7 @@ def test_histories_alone_have_no_movie(pushed_runs, tmp_path):
         run.copy("histories", file)
     sides = (lambda run: plot_boundary([run], "left"), lambda run: plot_side([run], "left", "stress"))
     for draw in (movie_of, plot_energy, *sides):
-        with pytest.raises(CaseError, match=r"run\.h5: has histories alone, as those of `dembound exact` and"):
+        with pytest.raises(CaseError, match=r"run\.h5: has only histories, like those of `dembound exact` and"):
             draw(path)
 
 

@@ -118,12 +118,14 @@ def test_monitors_in_a_continuum_come_to_rest(bar, moved) -> None:
 
 
 def test_energy_that_steps_take_or_that_is_missing_is_warned_of(bar, moved) -> None:
-    taken = "run.safety: contacts that open and close within a step have {} of the energy put in; shorter steps change "
+    taken = (
+        "run.safety: contacts that open and close within a step have {} of the supplied energy; shorter steps change "
+    )
     for energy, said in (
         ({"closing": 0.0099, "relative_error": 0.0099}, []),
         ({"closing": 0.12}, [taken.format("taken 12 %") + "it less"]),
         ({"closing": -0.02, "supplied": 0.5}, [taken.format("added 4 %") + "it less"]),
-        ({"relative_error": 0.03}, ["energy.error: 3 % of the energy put in is unaccounted for; take shorter steps"]),
+        ({"relative_error": 0.03}, ["energy.error: 3 % of the supplied energy is unaccounted for; take shorter steps"]),
     ):
         assert moved(two(bar), energy=KEPT | energy, near=PULSE, far=0.5 * PULSE) == said
 

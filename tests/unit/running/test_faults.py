@@ -178,7 +178,7 @@ with Folder(partial.parent, partial.stem).writing(anew=True):
 
 def test_a_name_cannot_be_that_of_an_unfinished_run(tmp_path) -> None:
     for name in ("bar.partial", "bar.replaced"):
-        with pytest.raises(CaseError, match="is no name of a case, must not end in"):
+        with pytest.raises(CaseError, match="is not a valid name of a case, must not end in"):
             run_case(replace(pulled(), name=name), tmp_path)
 
 
