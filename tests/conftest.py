@@ -47,7 +47,7 @@ FIRST = (
 )
 """Files that run first: two processes begin with the first two, go on with the next two, then take one after the other.
 
-So one compiles the kernels of bars, the other one those of disks, and what both need is compiled when they come to it.
+So one compiles the kernels of bars, the other the kernels of disks.
 """
 
 

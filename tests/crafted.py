@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 HUGE = 2**38
-"""Rows of which no machine has the memory, nor any file the bytes."""
+"""Number of rows for which no machine has the memory, and no file the bytes."""
 
 TEXTS = ("", "x", "\x1b[2J", "nul\ud800", "[run\n", "{", "[]", "null", "[[[[", '{"a": NaN}', "9" * 5000, "é" * 300)
 
@@ -112,7 +112,7 @@ def retyped(path: Path, draw: random.Random) -> str:
 
 
 def swollen(path: Path, draw: random.Random) -> str:
-    """A dataset that is nowhere, elsewhere, or much larger than the file."""
+    """A dataset without data, in another file, or much larger than the file."""
     with h5py.File(path, "a") as file:
         place = some(file, draw, h5py.Dataset)
         width = np.shape(file[place])[1:]
@@ -158,7 +158,7 @@ def spread(path: Path, draw: random.Random) -> str:
 
 
 def removed(path: Path, draw: random.Random) -> str:
-    """Something less."""
+    """A record without one of its parts."""
     with h5py.File(path, "a") as file:
         place = some(file, draw)
         del file[place]

@@ -17,7 +17,7 @@ FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 SIDES = {"free": {}, "free field": FREE_FIELD}
 WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
 BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
-"""Changes by which nothing holds or drives the small bar of disks."""
+"""Changes of the small bar of disks after which nothing holds or drives it."""
 
 DENSE = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 TWO_BRICKS = DENSE | {"size": [8.0, 4.0]}
@@ -71,7 +71,7 @@ def locked_in_forces(body: DiskScene) -> np.ndarray:
 
 
 def settled(body: DiskScene, *, has_history: bool, size: float = 1e-6) -> Start:
-    """A start somewhere, with contacts as built."""
+    """A start at some displacements, with contacts as built."""
     return Start(shaken(body, size), contact_lists(body) if body.has_history else {}, has_history)
 
 

@@ -86,7 +86,7 @@ SCENES: Mapping[str, Mapping[str, Any]] = {
 """Name -> changes of `BAR`."""
 
 FINER = 8
-"""Spacings of the reference in one of the bar."""
+"""Number of spacings of the reference within one of the bar."""
 
 
 def scene(name: str) -> BarCase:
@@ -112,7 +112,7 @@ def exact(case: BarCase, recorded: History) -> dict[str, np.ndarray]:
     """Quantity -> exact values (k,) at a monitor.
 
     By d'Alembert; of bars with attenuation or ranges by finite differences on finer nodes at Courant number 1, with
-    absorbing ends beyond all echoes. The stress of a node at an end is that half a spacing inside.
+    absorbing ends beyond all echoes. The stress of an end node is taken half a spacing inside.
     """
     if case.bar.attenuation > 0.0 or case.bar.range:
         return _finer(case, recorded)
@@ -142,7 +142,7 @@ def dalembert(case: BarCase, place: float, time: np.ndarray, quantity: str) -> n
 
 
 def _reflected(case: BarCase, side: str) -> float:
-    """Velocity of the wave that an end returns over that which arrives."""
+    """Velocity of the reflected wave over that of the arriving wave at an end."""
     end = case.side(side)
     return 0.0 if end.is_artificial else -1.0 if 0 in end.prescribed(0) else 1.0
 

@@ -1,4 +1,4 @@
-"""Motions of ground under plane waves that tests of several modules start from."""
+"""Motions of ground under plane waves, for tests of several modules."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -11,7 +11,7 @@ from dembound.outside.plane_waves import incident_wave, reflected_waves
 
 GENERAL = Medium(2500.0, c11=2.5e9, c22=2.2e9, c12=0.4e9, c66=0.9e9, c16=0.2e9, c26=0.3e9)
 RAMP = SimpleNamespace(velocity=lambda t: np.ones_like(t), displacement=lambda t: np.array(t))
-"""A velocity of 1 m/s for ever: uniform gradients."""
+"""A constant velocity of 1 m/s: uniform gradients."""
 
 
 def sine(frequency: float) -> SimpleNamespace:

@@ -1,4 +1,4 @@
-"""Meshes of a few elements that tests of several files start from."""
+"""Meshes of a few elements for tests of several modules."""
 
 from dembound.outside.mesh import Around, Mesh
 
@@ -35,7 +35,7 @@ def below() -> Mesh:
 
 
 def stepped() -> Mesh:
-    """Round a box of 6 × 9 m at the surface, beside which that is 6 m lower at the left and 4 m at the right."""
+    """Round a box of 6 × 9 m at the surface; the surface is 6 m lower at the left and 4 m lower at the right."""
     return Mesh.around(
         (0.0, 0.0, 6.0, 9.0),
         (3.0, 3.0),

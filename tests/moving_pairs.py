@@ -1,4 +1,4 @@
-"""Pairs in motion, for the tests of what is computed of them."""
+"""Pairs in motion, for tests of their forces and energies."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""The equations of the kernels written down plainly: the step, one component at a time, and pairs with a history."""
+"""Reference implementations of the kernels: the step, one component at a time, and history-dependent pairs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ class Stepped:
 
     inertia (3, n) mass, mass, moment of inertia; load (3, n) or (3, 0); of k supported nodes damping, stiffness,
     prescribed (k, 3) and push (steps, k, 3), the drive, which prescribed components take as their velocity.
-    work (2, 7) is that of tables.Log, as far as the step knows it: by supports and by damping.
+    work (2, 7) has the columns of tables.Log, filled for supports and damping.
     """
 
     inertia: np.ndarray
@@ -122,7 +122,10 @@ def stepped(count: int, steps: int, step: float, *, supported: bool = True, load
 
 @dataclass
 class PlainPairs:
-    """Pairs with a history, copied, one at a time; `lost` is what friction, cracks, opening and closing took so far."""
+    """Copied history-dependent pairs, one at a time.
+
+    `lost` is the energy taken by friction, cracks, opening and closing.
+    """
 
     arrays: tables.Contacts
     limits: tables.Limits
@@ -132,7 +135,10 @@ class PlainPairs:
         self.arrays = copied(self.arrays)
 
     def push(self, u: np.ndarray, v: np.ndarray, step: float, number: int) -> np.ndarray:
-        """Forces and moments (3, n) of all pairs, whose memories go on; arrays.force gets each pair's own."""
+        """Forces and moments (3, n) of all pairs, whose history is updated.
+
+        Arrays.force gets the forces of each pair.
+        """
         total = np.zeros_like(u)
         for c in range(len(self.arrays.first)):
             i, j = int(self.arrays.first[c]), int(self.arrays.second[c])

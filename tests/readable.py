@@ -13,7 +13,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 from dembound.plot.style import is_seen, number_axes
 
 LATER = "bond broken"
-"""Legends of moving pictures have what their last frame shows."""
+"""Legends of moving pictures list the contents of the last frame."""
 
 COUNTED = {"pass", "steps", "member", "row"}
 """Names of counts, which have no unit."""
@@ -62,7 +62,7 @@ def _has_numbers(axis: Axis) -> bool:
 
 
 def _is_chosen(axis: Axis) -> bool:
-    """Whether its marks are those of its members, of which there may be fewer than three, or of whole numbers."""
+    """Whether the ticks of an axis are chosen: names of members, possibly fewer than three, or whole numbers."""
     return isinstance(axis.get_major_locator(), FixedLocator) or bool(
         getattr(axis.get_major_locator(), "_integer", False)
     )

@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 
 COSTS = ("cpu", "wall", "wall_time", "seconds")
-"""Datasets of times that were measured."""
+"""Datasets of measured times."""
 
 
 def contents(record: Path, *, attributes: bool = True) -> dict[str, bytes]:

@@ -15,7 +15,7 @@ WRAP = {"left": {"type": "periodic"}, "right": {"type": "periodic"}}
 
 
 def scene(bar, **changes: object) -> DiskScene:
-    """A scene whose static stage stands on the bottom and goes on to 1e-8 unless `changes` say otherwise.
+    """A scene whose static stage is supported at the bottom and ends at a ratio of 1e-8 unless `changes` differ.
 
     bar : makes the small bar of disks with keys changed.
     """

@@ -1,4 +1,4 @@
-"""Small cases that tests of several folders start from, as tables; `small` makes cases of them."""
+"""Tables of small cases for several folders of tests; `small` makes cases from them."""
 
 import re
 from collections.abc import Mapping
@@ -95,7 +95,7 @@ GROUND: Tables = {
     "wave": {"w": {"type": "cosine", "amplitude": 1.0, "period": 0.1}},
     "run": {"duration": 0.1},
 }
-"""A lattice of 30 × 20 disks in a continuum, wide enough for a slope, and a wave that nothing follows."""
+"""A lattice of 30 × 20 disks in a continuum, wide enough for a slope, and a wave without motion."""
 
 
 def small(tables: Tables, name: str = "small", changes: Mapping[str, Any] | None = None) -> Case:

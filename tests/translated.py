@@ -17,7 +17,7 @@ def moved_value(value, by: Way):
 
 
 def moved(table: Table, by: Way) -> Table:
-    """A table with all of its places moved by (x, y) m; also those that it has by default."""
+    """A table with all of its places, also default ones, moved by (x, y) m."""
     places = [key for key in type(table).model_fields if table.described(key).get("means") == "place"]
     given = {key: getattr(table, key) for key in places}
     return type(table).model_validate(

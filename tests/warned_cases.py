@@ -1,11 +1,11 @@
-"""Warnings of a case of disks, and changes of a bar about which none are to be expected, for tests."""
+"""Warnings of a case of disks, and changes of a bar without warnings, for tests."""
 
 from dembound.casefile import Case
 from dembound.disks.reports.warnings import disk_warnings
 from dembound.running import plan
 
 SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}
-"""A wave far longer than the bar, nothing about which is to be warned of."""
+"""A wave far longer than the bar, without warnings."""
 
 DENSE = {
     "packing": {"pattern": "B", "size": [6.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},

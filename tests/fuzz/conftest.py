@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 @pytest.fixture(scope="session")
 def sweep() -> Callable[[int], settings]:
-    """Makes settings for so many examples of a test."""
+    """Makes settings for a number of examples of a test."""
 
     def examples(count: int) -> settings:
         return settings(
@@ -21,7 +21,10 @@ def sweep() -> Callable[[int], settings]:
 
 @pytest.fixture(scope="session")
 def damaged() -> Callable[[bytes], st.SearchStrategy[bytes]]:
-    """Makes bytes with one changed, some zeroed, overwritten or left out, or cut off; half of it in the first tenth."""
+    """Makes bytes with one changed, some zeroed, overwritten or left out, or cut off.
+
+    Half of the changes in the first tenth.
+    """
 
     def of(content: bytes) -> st.SearchStrategy[bytes]:
         last = len(content) - 1

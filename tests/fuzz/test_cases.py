@@ -31,7 +31,7 @@ from dembound.starting import names, starting_point
 SCHEMA = json_schema(kinds.SCHEMAS)
 
 MOST_DISKS, MOST_IN_BRICK, MOST_CELLS = 20_000, 300, 20_000
-"""Cases with more than these are read, but not planned, which would take too long."""
+"""Largest numbers of disks, nodes and steps with which a case is planned; larger cases are only read."""
 
 NUMBERS = (
     *(0, 0.0, -0.0, 1, 2, 3, -1, -1.0, 0.5, 1e-9, 1e-3, 1e3, 1e6, 1e9, 1e19, 9e18, 1e-30, 1e30, 9.9e-31, 1.1e30),

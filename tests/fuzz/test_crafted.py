@@ -1,4 +1,4 @@
-"""Whatever a file of results is made to be, a command ends soon, in bounded memory, with its work done or one line."""
+"""For any damaged or malicious file of results a command ends soon, in bounded memory, with its output or one line."""
 
 import io
 import json
@@ -22,7 +22,7 @@ from crafted import copied, crafted
 from small_cases import PUSHED, SPALLING
 
 SECONDS, BYTES = 5.0, 500e6
-"""CPU time of a command beyond that on sound results, and memory beyond that of a process that has imported all."""
+"""Largest additional CPU time of a command compared with sound results, and memory compared with all imports."""
 
 DISKS = PUSHED | {
     "packing": PUSHED["packing"] | {"size": [4.0, 1.0]},

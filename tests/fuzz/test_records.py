@@ -61,7 +61,7 @@ def contents(path: Path) -> Iterator[tuple[str, Any]]:
 
 
 def drawn(path: Path, sound: Path) -> None:
-    """Everything that the commands make of a record, and Python does not."""
+    """All outputs of the commands from a record that Python results do not have."""
     kind = kind_of_record(path)
     plot_histories([path])
     plot_energy(path)

@@ -56,7 +56,7 @@ class At(Snapshots):
 
 
 def recorded(path: Path, planned: Plan, steps: int, shots: Sequence[int], entries: Sequence[int] = ()) -> Path:
-    """Record so many steps of a plan, with snapshots at some steps and entries of the ledger, of which two or more."""
+    """Record a number of steps of a plan, with snapshots at some steps and two or more entries of the ledger."""
     simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
     ledger = Ledger(simulation, entries[1] - entries[0]) if len(entries) > 0 else None
     with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:
@@ -79,7 +79,7 @@ def other_run(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def long_run(small_run, tmp_path_factory) -> Path:
-    """The record of that run with the last two of 10,001 snapshots, which HDF5 lists in the other order."""
+    """The record of the small run with the last two of 10,001 snapshots, which HDF5 lists in the other order."""
     path = tmp_path_factory.mktemp("long") / "run.h5"
     path.write_bytes(small_run.read_bytes())
     with h5py.File(path, "r+") as file:
@@ -91,7 +91,7 @@ def long_run(small_run, tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def rich_run(small_run, tmp_path_factory) -> Path:
-    """The record of that run with stresses in its snapshots, and with peaks."""
+    """The record of the small run with stresses in its snapshots, and with peaks."""
     path = tmp_path_factory.mktemp("rich") / "run.h5"
     path.write_bytes(small_run.read_bytes())
     rng = np.random.default_rng(8)
@@ -143,7 +143,7 @@ def surrounded_run(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def spalled_run(tmp_path_factory) -> Path:
-    """The record of that bar, called ``spalled``, with twelve snapshots and twelve entries of the ledger."""
+    """The record of the spalling bar, called ``spalled``, with twelve snapshots and twelve entries of the ledger."""
     planned = plan(small(SPALLING, "spalled"))
     part = planned.steps // 12
     path = tmp_path_factory.mktemp("spalled") / "run.h5"
@@ -152,7 +152,7 @@ def spalled_run(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def spalling() -> Callable[..., Case]:
-    """Makes cases: that bar with keys changed."""
+    """Makes cases: the spalling bar with keys changed."""
 
     def make(changes: Mapping[str, Any] | None = None, name: str = "spalling") -> Case:
         return small(SPALLING, name, changes)
@@ -197,10 +197,10 @@ def unstable() -> Callable[[], AbstractContextManager[None]]:
 
 @pytest.fixture
 def felt() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
-    """Makes what a gauge feels at 0.6 m of a bar of 0.99 m, in which waves run at 2740 m/s, sampled at 1 MHz.
+    """Makes the signal of a gauge at 0.6 m of a bar of 0.99 m with waves of 2740 m/s, sampled at 1 MHz.
 
     A compressive triangle of unit height enters after 20 µs and runs to and fro between free ends; noise is the
-    standard deviation of what is added, in parts of the largest tension.
+    standard deviation of added noise over the largest tension.
     """
 
     def feel(
@@ -249,7 +249,7 @@ def uneven(order: int) -> Mesh:
 def grid() -> Callable[..., GridBody]:
     """Makes continua: elements of 3 × 2 m round a box of 2 × 1 of them that reaches the top, with other keys.
 
-    Or those of `uneven`.
+    Or the elements of `uneven`.
     """
 
     def make(order: int = 4, medium: Medium = ROCK, first_slot: int = 0, even: bool = True, **more: Any) -> GridBody:
@@ -287,7 +287,7 @@ def command() -> Callable[[], None]:
 
 @pytest.fixture
 def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
-    """Runs a command in an empty folder as the shell would, with pictures of a few dots and few draws of noise."""
+    """Runs a command in an empty folder as the shell would, with small pictures and few draws of noise."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
     monkeypatch.setattr(style, "DOTS_PER_INCH", 30)

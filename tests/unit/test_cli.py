@@ -1,4 +1,4 @@
-"""The command line: what it writes, what it says, and the code it ends with."""
+"""The command line: its files, messages and exit codes."""
 
 import csv
 import inspect

@@ -30,7 +30,7 @@ def test_generated_pages_are_those_of_the_code(name) -> None:
 
 
 def test_every_table_key_and_type_stands_in_the_reference() -> None:
-    """Those of the schema for editors, which is made without the list of tables in docs/generate."""
+    """The keys come from the schema for editors, which does not use the list of tables in docs/generate."""
     page = (ROOT / "docs" / "reference" / "case_file.md").read_text(encoding="utf-8")
     tables = {key for schema in SCHEMAS for key in schema.keys if key != "title"}
     assert not [key for key in tables if not re.search(rf"^## `\[+{key}\]+`", page, flags=re.MULTILINE)]
@@ -50,7 +50,7 @@ def test_every_command_stands_in_the_readme_or_a_page() -> None:
 
 
 def asked_for() -> dict[str, object]:
-    """Keys of ``[output]`` with which everything is recorded: what is off is on, rectangles are inside the scene."""
+    """Keys of ``[output]`` with which everything is recorded: all switches on, rectangles inside the scene."""
     keys = {name: field.default for name, field in Output.model_fields.items()}
     rectangle = [0.1, 0.2, 0.3, 0.4]
     switched = {name: True for name, default in keys.items() if default is False}
@@ -79,7 +79,7 @@ BAR = {
 
 @pytest.mark.parametrize("tables", [DISKS, BAR], ids=["disks", "bar"])
 def test_every_dataset_of_a_record_stands_in_the_reference(tables, tmp_path) -> None:
-    """Those that the new record of a case has that asks for all of them, and those of its snapshots."""
+    """The datasets of a new record of a case that requests all of them, and of its snapshots."""
     scene = plan(kinds.loads(tomli_w.dumps(tables))).scene
     found: set[str] = set(scene.in_snapshots)
     with h5py.File(tmp_path / "layout.h5", "w") as file:

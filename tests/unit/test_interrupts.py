@@ -1,4 +1,4 @@
-"""Requests to end are noted, and obeyed where it is looked for them; none is lost."""
+"""Requests to end are noted, and obeyed at calls of `look`; none is lost."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""What the documents show can be typed: cases are accepted, commands exist with their options and arguments.
+"""Examples in the documents are valid: cases are accepted, commands exist with their options and arguments.
 
 A TOML block is a whole case if it has a table ``[run]``, else a fragment. A case that the text says to save "as
 `NAME.toml`" right above it is saved under that name where the commands of a page are run.

@@ -14,7 +14,7 @@ KINDS = {
 }
 SIDEWAYS = {"bottom": "periodic", "top": "periodic"}
 BRICK = (10.0, 5.0)
-"""Ten mean diameters across: sideways it goes on periodically, and waves along the bar do not feel how soon."""
+"""Ten mean diameters across: it is periodic sideways, and the period does not affect waves along the bar."""
 
 
 @pytest.fixture(scope="module", params=[("B", "absorbing"), ("C", "input")], ids="-".join)
@@ -52,8 +52,8 @@ def test_ratio_method_halves_the_error(bar, start):
     """β ← β·r with r = 2/(1 + β/β0) near β0 halves β − β0: it stays on its side, for 9 to 11 passes.
 
     |r − 1| = ½|1 − β/β0| starts at 0.1 to 0.5 and ends below 1e-3: 8 to 9 halvings, and as 1/β (absorbing) or β
-    (input) is halved exactly, one more from the far side. That is so for any pulse: this one, of 100 m, feels the
-    grains by (qa)² = 1e-3 and the end disks' mass by (πD/4cT)² = 2e-5, which move β0, but not the halving.
+    (input) is halved exactly, one more from the far side. That is so for any pulse: for this one, of 100 m, disks
+    change β0 by (qa)² = 1e-3 and the end disks' mass by (πD/4cT)² = 2e-5, without changing the halving.
     """
     found = calibrate(*bar(0.1), method="ratio", start=start)
     steps = np.diff(found.beta)

@@ -14,7 +14,7 @@ BARS = [(1, CENTRAL), *((m, {"type": "peridynamics", "horizon": m}) for m in (1,
 @pytest.mark.parametrize(("horizon", "method"), BARS, ids=["central", "1", "3", "8"])
 @pytest.mark.parametrize(("share", "part"), [(0.3, 0.03), (0.9, 0.7), (0.9, 1.0)])
 def test_standing_wave_keeps_its_frequency(lab, horizon, method, share, part):
-    """At every step u = cos ωt cos kx, at a node that does not hear of the ends; k is a part of the shortest wave's."""
+    """At every step u = cos ωt cos kx, at a node that the ends do not influence; k is a part of the shortest wave's."""
     middle = horizon * STEPS
     scene = lab.bar(2 * middle, method)
     step = share * courant_limit(horizon) * lab.diameter / lab.speed

@@ -1,7 +1,7 @@
 """Between free-field sides an untouched body moves as its column does, whatever the packing and the wave.
 
-Body and column are of the same bricks; what comes across the seam is what the column's particles feel there, static
-part and moment included, so nothing is calibrated and nothing is left over.
+Body and column are of the same bricks; the force across the seam is that on the column's own particles, static part and
+moment included, so nothing is calibrated and no error is left.
 """
 
 import numpy as np

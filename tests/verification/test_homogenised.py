@@ -1,4 +1,4 @@
-"""The brick alone foretells wave speeds and β: one static solve against dynamic runs."""
+"""The brick predicts wave speeds and β: one static solve against dynamic runs."""
 
 from dataclasses import dataclass
 

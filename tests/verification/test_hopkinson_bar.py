@@ -1,4 +1,4 @@
-"""A layered bar beside d'Alembert's sum: what the gauges of the shipped split Hopkinson bar see.
+"""A layered bar compared with d'Alembert's sum: signals at the gauges of the shipped split Hopkinson bar.
 
 With r = (Z₁ − Z₂)/(Z₁ + Z₂) of the bars and of the specimen between them, both pairs of faces in contact, a pulse −σ is
 transmitted in steps −σ(1 − r^(2k)) after k ways to and fro in the specimen. What is reflected is +σ r^(2k − 1), as the

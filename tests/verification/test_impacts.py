@@ -1,4 +1,4 @@
-"""Ranges of a bar that only touch: impacts, what passes a contact, and what does not.
+"""Ranges of a bar that only touch: impacts, and transmission of pressure and tension by contacts.
 
 At ν = 1 finite differences are d'Alembert's solution, so fronts are steps from one node to the next. An impact of two
 nodes of masses m/2 at the relative speed v, half cells of equal bars, takes mv²/8: 1/(4N) of the energy of a striker of

@@ -1,4 +1,4 @@
-"""The error of a case is one number, whoever is asked: `check`, `estimate` of its run, `advise`, and a chart of it.
+"""The error of a case is the same by `check`, `estimate` of its run, `advise`, and a chart of it.
 
 Estimates and advice both take companions, so that causes agree to rounding where there are any. Where an estimate has
 only the record, formulas see the motion of the disks themselves in place of that of larger ones, which differ by their

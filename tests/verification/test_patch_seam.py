@@ -1,6 +1,6 @@
 """Zones of peridynamics fit into finite differences: no ghost force, no lost momentum, hardly an echo.
 
-A bond of length p that takes the place of κp from each of the p springs it spans feels a wave e^{±jθi}, θ = kΔx, as
+A bond of length p that replaces κp of each of the p springs it spans has under a wave e^{±jθi}, θ = kΔx, the force
 
     κ[(Σ_i e^{jθi})² − p Σ_i e^{2jθi}] ~ κ[(sin(pθ/2)/sin(θ/2))² − p sin(pθ)/sin θ],  about κp²(p² − 1)θ²/12.
 

@@ -109,7 +109,10 @@ def test_a_bar_too_long_to_be_stepped_is_represented_by_a_shorter_one(monkeypatc
 
 
 def test_a_dashpot_returns_what_it_does():
-    """Beside the same bar with a layer in which nothing decays; at ν = 1 nothing, as a step is a spacing."""
+    """Compared with the same bar with a layer in which nothing decays.
+
+    At ν = 1 nothing returns, as a step is a spacing.
+    """
     given = tables(1, boundary={"right": {"type": "viscous"}})
     scene, endless = (build_bar(case(**given | more)) for more in ({}, {"boundary": {"right": LAYER}}))
     for courant in (0.5, 0.9):

@@ -1,4 +1,4 @@
-"""In a box of disks in the ground that neither open nor break, the history-dependent law does as the elastic one."""
+"""In a box of disks in the ground that neither open nor break, the history-dependent law moves like the elastic law."""
 
 import numpy as np
 

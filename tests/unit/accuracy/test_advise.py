@@ -36,13 +36,13 @@ def bar() -> DiskCase:
 
 
 def exact(case: DiskCase, gauges: Motions, name: str) -> np.ndarray:
-    """The velocity of a plane wave from the first disk of a case, at the places asked for."""
+    """The velocity of a plane wave from the first disk of a case, at requested places."""
     way = {"near": 3.75, "back": 24.75}[name] - case.packing.radius
     return np.asarray(case.wave["push"].velocity(gauges[name].time - way / 1000.0))
 
 
 def true_error(case: Any) -> float:
-    """Largest RMS of the velocity's error over that of the velocity, but for the time at which the wave enters."""
+    """Largest RMS error of the velocity over the RMS velocity, without the delay of the wave's entry."""
     gauges = measure(case, Progress())[0].motions
     errors = [gauges[name].velocity[:, 0] - exact(case, gauges, name) for name in gauges]
     sizes = [exact(case, gauges, name) for name in gauges]
@@ -96,7 +96,7 @@ def test_choices_that_take_longer_are_tried_where_they_may(monkeypatch: pytest.M
 
 
 def test_what_whole_cells_at_a_side_reflect_is_counted() -> None:
-    """Half a cell too much at matched dashpots reflects kD/4 or so of a wave, 2 % of one of 20 disks."""
+    """An additional half cell at matched dashpots reflects about kD/4 of a wave, 2 % at 20 disks per wavelength."""
     sides = {"left": BAR["boundary"]["left"], "right": {"type": "viscous", "beta_p": 1.0}}
     case = small(BAR, changes={"boundary": sides, "wave.push.period": 0.012})
 

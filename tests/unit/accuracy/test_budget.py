@@ -1,4 +1,4 @@
-"""Causes together: totals of both truths, what they may be larger, bands, corrections, texts."""
+"""Sums of causes: totals relative to disks and rock, upper bounds, bands, corrections, texts."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Ends before the duration, once the monitors are silent."""
+"""Runs that end before their duration, once the monitors are silent."""
 
 from dataclasses import replace
 from typing import Any
@@ -85,7 +85,7 @@ def test_a_choice_keeps_its_bound_with_the_end() -> None:
 
 
 def test_sides_add_nothing_to_what_is_not_recorded() -> None:
-    """Half of the late motion is sent back: without it the run has the error of what is lost of the true motion."""
+    """Half of the late motion is reflected; a run that ends before it has only the error of the lost true motion."""
     case, true = small(BAR), passing(2e-4)
     sent = {
         name: {q: values - passing()[name].values[q] for q, values in own.values.items()} for name, own in true.items()

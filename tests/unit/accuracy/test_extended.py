@@ -1,4 +1,4 @@
-"""Enlarged scenes: how large, with what where, and when not."""
+"""Enlarged scenes: their size, their contents, and cases without them."""
 
 from pathlib import Path
 
@@ -175,7 +175,7 @@ def test_a_free_field_is_widened_only_for_what_is_local(bar) -> None:
 
 
 def test_sides_of_a_continuum_under_waves_from_below_move_as_free_fields_do(bar) -> None:
-    """Their column has the waves of the ground, so only what holes scatter has to stay away."""
+    """Their column has the waves of the ground, so only scattered waves must not return."""
     outside = {"left": {"type": "outside"}, "right": {"type": "outside"}, "bottom": {"type": "outside", **WAVE}}
     free_field = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": BASE}
     around, beside = (

@@ -1,4 +1,4 @@
-"""Runs with cracks once more: what two of them have in common, and that the second one is the same problem."""
+"""Repeated runs with cracks: common cracks of both, and equality of their problems."""
 
 import json
 from dataclasses import replace
@@ -33,7 +33,7 @@ def cracked(x: list[float], size: float = 1.0) -> Cracked:
 
 
 def test_cracks_in_common_are_counted_in_both_runs_and_the_radius_leaves_out_the_farthest() -> None:
-    """Neither the one that repeats all of the other's and has more, nor the one with fewer, has all in common."""
+    """Cracks that only one of the runs has reduce the common share, whichever run has more."""
     first, second = cracked([0.0, 5.0, 5.9, 9.0]), cracked([1.0, 5.5, 20.0])
     for own, other in ((first, second), (second, first)):
         assert Repeat(own, other, {}, 1.0).common == pytest.approx(5.0 / 7.0)  # 0, 5, 5.9 and 1, 5.5
@@ -47,7 +47,7 @@ def test_cracks_in_common_are_counted_in_both_runs_and_the_radius_leaves_out_the
 
 
 def test_a_repeat_with_the_same_step_is_the_same_run(torn) -> None:
-    """Everything but the step is that of the run: also duration, laws and output of histories."""
+    """Duration, laws and output of histories are also those of the run."""
     record = torn / "run.h5"
     same = repeated(recorded_case(record), record, Cracked.of(record), 1.0)
 
@@ -104,7 +104,7 @@ def _in(folder, make):
 
 
 def test_changes_of_motion_are_those_that_compare_finds(torn, tmp_path) -> None:
-    """The second run, made and kept: the same numbers."""
+    """Numbers of the second run when it is made and when it is read again."""
     record = torn / "run.h5"
     found = repeated(recorded_case(record), record, Cracked.of(record))
     again = run_case(small(PUSHED, "again", BREAKING | {"run.time_step": found.other.time_step}), tmp_path)

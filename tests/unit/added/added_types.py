@@ -1,4 +1,4 @@
-"""One type of each sort, as another package would add it: a law, a method, a boundary, a packing, a wave, a hole."""
+"""Types as another package would add them: laws, a method, boundaries, packings, a wave, a hole."""
 
 from dataclasses import replace
 from typing import ClassVar, Literal
@@ -30,7 +30,7 @@ class Linear(Elastic):
 
 
 class Brittle(Linear):
-    """Breaks, and is the law without moments before."""
+    """Bonds break; before that the law without moments holds."""
 
     name: ClassVar[str] = "brittle"
     has_history: ClassVar[bool] = True
@@ -49,14 +49,14 @@ class Graded(Linear):
 
 
 class Forgetful(Linear):
-    """Breaks, and does not say which law it is before."""
+    """Bonds break; no linear law is named for the time before."""
 
     name: ClassVar[str] = "forgetful"
     has_history: ClassVar[bool] = True
 
 
 class Rubber(Linear):
-    """Says that it is not linear, and names no law that is; its kernel plays no part here."""
+    """A law that is not linear and names no linear law; its kernel is not used."""
 
     name: ClassVar[str] = "rubber"
     is_linear: ClassVar[bool] = False
@@ -113,7 +113,7 @@ class Mattress(Dashpots):
 
 
 class Quilt(Mattress):
-    """A mattress that knows how stiff it is on disks of another size."""
+    """A mattress that defines its stiffness on disks of another size."""
 
     type: Literal["quilt"]
 
@@ -149,14 +149,14 @@ class Shock(Boundary):
 
 
 class Pads(Shock):
-    """A side like `Shock` whose dampers are part of the structure: it does not stand in for ground."""
+    """A side like `Shock` whose dampers are part of the structure: it does not represent ground."""
 
     type: Literal["pads"]
     is_artificial: ClassVar[bool] = False
 
 
 class Whisper(Driven):
-    """Lets waves in by forces alone, and stands in for the ground beyond."""
+    """Lets waves in by forces only, and represents the ground beyond."""
 
     type: Literal["whisper"]
     is_artificial: ClassVar[bool] = True
@@ -330,7 +330,7 @@ class _Later:
 
 
 class Namesake(Elastic):
-    """Stiffer than the elastic law, whose name it forgot to change."""
+    """Stiffer than the elastic law, with the same name by mistake."""
 
 
 class Nameless(Shape):

@@ -90,7 +90,7 @@ def run(made: Any) -> tuple[dict[str, History], int]:
 
 
 def estimated(made: Any) -> dict[str, Any]:
-    """Causes of a run's errors of velocities at its monitors, and what is said; or why there are none."""
+    """Causes of a run's errors of velocities at its monitors, and notes; or the reason why there are none."""
     try:
         motions, work = run(made)
         found = causes_of(made, motions, plan(made).time_step, work)
@@ -114,7 +114,7 @@ def of_far_sides(made: Any) -> dict[str, float]:
 
 
 def held(made: Any) -> list[list[float]]:
-    """Springs per metre of the right side, of a case and of one with disks three times as large; or why not."""
+    """Springs per metre of the right side, for a case and for disks three times as large; or an error message."""
     scene = build(made)
     try:
         larger = build(coarser(made, scene, plan(made).time_step, 1.5).case)
@@ -124,9 +124,9 @@ def held(made: Any) -> list[list[float]]:
 
 
 def companion(**changes: object) -> list[Any]:
-    """Dashpots per metre of the right side of a strip with disks three times as large, and its table; or why not.
+    """Dashpots per metre of the right side of a strip with disks three times as large, and its table.
 
-    Also the part of what whole cells add, see `coarser.Coarser`.
+    Or an error message. Also the part of what whole cells add, see `coarser.Coarser`.
     """
     made = case(**STRIP, **changes)
     try:
@@ -137,7 +137,7 @@ def companion(**changes: object) -> list[Any]:
 
 
 def other_draw(made: Any) -> dict[str, Any]:
-    """How the scatter between packings was found, and its share; or why not."""
+    """Source and share of the scatter between packings; or an error message."""
     motions, _ = run(made)
     try:
         (cause,) = judge_of(made).of_other_seeds(made, motions, 2).found

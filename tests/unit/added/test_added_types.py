@@ -1,4 +1,4 @@
-"""Types of another package work everywhere, by being registered and by nothing else."""
+"""Registered types of another package work everywhere."""
 
 import json
 import os
@@ -162,7 +162,7 @@ def test_a_side_with_springs_of_its_own_is_estimated_as_one_of_this_package(aske
 
 
 def test_coefficients_per_disk_are_those_per_metre_on_other_disks(asked) -> None:
-    """Springs with none of the methods that know of larger disks: estimated as those of the type that has them."""
+    """Springs of a type without methods for larger disks are estimated like those of a type that has them."""
     np.testing.assert_allclose(asked["held"]["mattress"][1], asked["held"]["mattress"][0], rtol=1e-12)
     assert asked["calibrated"]["mattress"] == asked["calibrated"]["viscoelastic"]
     assert asked["sides"]["mattress"]["unknown"] == []
@@ -259,7 +259,7 @@ def test_a_law_that_breaks_is_its_own_linear_law_where_nothing_breaks(asked) -> 
 
 
 def test_a_law_that_is_not_linear_is_refused_where_that_is_assumed(asked) -> None:
-    """In one line each; where its stiffness at rest is sufficient, the linear law it names takes its place."""
+    """Each with one line; where the stiffness at rest is sufficient, the linear law that it names is used instead."""
     no_name = ['material.law: is "rubber", which is not linear, and names no linear law of its stiffness']
     assert {name: asked["rubber"][name] for name in ("calibrate", "boundary", "stability")} == dict.fromkeys(
         ("calibrate", "boundary", "stability"), no_name

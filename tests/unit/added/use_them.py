@@ -69,7 +69,7 @@ def case(text: str, **changes: object):
 
 
 def stepped(made) -> dict:
-    """Steps of a case, and how well its books close."""
+    """Steps of a case, and the error of its energy balance."""
     planned = plan(made)
     run = Simulation(planned.scene, planned.time_step)
     ledger = Ledger(run, 1)
@@ -89,7 +89,7 @@ def stepped(made) -> dict:
 
 
 def failure(made) -> str:
-    """Why the left side of a case cannot be calibrated."""
+    """Error message of a calibration of the left side of a case."""
     try:
         calibrate(made, "left")
     except RunError as error:

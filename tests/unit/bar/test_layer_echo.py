@@ -21,7 +21,7 @@ def layer_of(profile: Layer, drag_rate: float = 0.0, horizon: int = 1) -> EndLay
 
 @pytest.mark.parametrize(("reflection", "drag_rate"), [(0.1, 0.0), (1e-2, 50.0), (1e-3, 0.0)])
 def test_a_long_layer_returns_r0(reflection, drag_rate):
-    """The echo of its outer end, less what dashpots take on the way.
+    """It is the echo of its outer end, reduced by dashpots on the way.
 
     A free end of a whole node is half a spacing farther away, where the rate is the largest. The rest is of the order
     (kΔx)² = 0.004 and (dΔx/c)² = 0.002, and of the numerical dispersion on the way.
@@ -34,7 +34,7 @@ def test_a_long_layer_returns_r0(reflection, drag_rate):
 
 
 def test_what_no_bar_carries_is_nan():
-    """Above ω = 2c/Δx nothing runs; with the force of peridynamics where waves of its lattice stop."""
+    """No wave runs above ω = 2c/Δx, in peridynamics above the highest frequency of its lattice."""
     waves = np.linspace(1.0, np.pi / SPACING, 500)
     of_lattice = float(np.nanmax(Lattice(3, SPACING, 0.0, SPEED).frequency(waves))) / (2.0 * np.pi)
     step = 1e-4 * SPACING / SPEED

@@ -21,10 +21,10 @@ def ends(**keys) -> dict:
 
 @pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 def test_motion_without_decay_is_that_of_a_longer_bar(spalling, method: dict) -> None:
-    """Noise in the bar, until its waves have been at the ends of the longer one and back: five steps of three nodes.
+    """Noise in the bar, until its waves have returned from the ends of the longer bar: five steps of three nodes.
 
-    To the rounding of sums of some ten forces in a step. Stresses within a horizon of a layer have the layer's bonds,
-    at the step of all others.
+    To the rounding of sums of some ten forces in a step. Stresses within a horizon of a layer include the layer's
+    bonds, at the same step.
     """
     common = {"method": method, "bar.strength": 1e12, "load": []}
     short = build_bar(spalling(common | ends(reflection=1.0 - 1e-15)))  # with which nothing decays

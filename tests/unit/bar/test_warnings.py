@@ -13,9 +13,9 @@ from dembound.exact.bar import triangle_spall
 
 UNBROKEN = {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}
 EXACT = {"method": {"type": "finite_difference"}}
-"""Changes with which, at ν = 1, waves of any length run at their speed."""
+"""Changes after which, at ν = 1, waves of any length run at the speed c."""
 LONG = {"wave.hit.rise": 1e-2, "wave.hit.fall": 1e-2, "run.duration": 2e-2}
-"""The blow drawn out to waves far longer than the bar."""
+"""The blow with waves far longer than the bar."""
 SHORT = {"type": "triangle", "amplitude": 1.0, "rise": 1e-6, "fall": 1e-6}
 _, SPALLED = triangle_spall(1.0, 1000.0, 2e-4, 2e-4, 12e6, 8e6)
 """Even legs of 0.2 ms: the strength is met 0.5 c t_f σ_t/p before the end, 1/15 m."""

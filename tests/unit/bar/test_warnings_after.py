@@ -56,7 +56,7 @@ def blow(pressure: float, nodes: int, side: str = "left") -> dict:
 
 @pytest.mark.parametrize(("courant", "swings"), [(1.0, True), (0.95, False)])
 def test_swings_that_impacts_leave_are_warned_of(tmp_path, courant: float, swings: bool) -> None:
-    """Two bars of 50 cells meet and part again and again: at ν = 1 the swing of their half cells adds up."""
+    """Two bars of 50 cells collide repeatedly: at ν = 1 the oscillation of their half cells grows."""
     ranges = [{"name": "a", "length": 0.05, "velocity": 10.0}, {"name": "b", "length": 0.05, "velocity": -10.0}]
     ranges[1]["interface"] = "contact"
     bar = {"spacing": 1e-3, "density": 2620.0, "wave_speed": 2740.0, "range": ranges}
@@ -147,7 +147,7 @@ def spall(time: float, start: list[float]) -> dict:
     ],
 )
 def test_the_first_spall_tells_who_tore_the_bar(spalling, spalled_run, side, place, time, warned) -> None:
-    """Cracked from the middle up to a place counted from the end that is loaded, on nodes as far as the horizon."""
+    """Cracks from the middle up to a place counted from the loaded end, with loads on as many nodes as the horizon."""
     first = spall(time, [place, 0.5] if side == "left" else [0.5, 1.0 - place])
     scene = build_bar(spalling(blow(12e6, 3, side)))
     found = warnings_after_bar(scene, summary_of(first, spall(1e-6, [0.0, 0.0])), spalled_run)
@@ -202,7 +202,7 @@ def test_cracks_at_strain_rates_without_a_strength_are_warned_of(run, rates: lis
 
 
 def test_a_forerunner_beside_the_motion_of_the_body_is_no_motion(tmp_path) -> None:
-    """The one monitor has 1e-13 m/s, still growing, while the body moves: nothing that a longer run would end."""
+    """The only monitor has a growing velocity of 1e-13 m/s while the body moves, which a longer run would not end."""
     end = {"right": {"type": "viscous"}}
     scene = build_bar(small(SPALLING | {"boundary": end, "monitor": [{"name": "far", "position": 1.0}]}))
     with h5py.File(tmp_path / "run.h5", "w") as file:

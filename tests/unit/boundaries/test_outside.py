@@ -1,4 +1,4 @@
-"""Sides with a continuum beyond them: what cannot be beside them."""
+"""Neighbours that are impossible beside sides with a continuum."""
 
 import pytest
 from small_cases import BODY
@@ -43,7 +43,7 @@ def test_what_it_cannot_be_beside_gets_one_line(more: str, line: str) -> None:
     ("kind", "said"), [("free_field", "cannot be in a case with boundary.right"), ("viscous", "beside boundary.bottom")]
 )
 def test_a_wrong_side_beside_several_continua_has_one_line(kind: str, said: str) -> None:
-    """Nor is the bottom blamed for waves that the wrong side keeps from entering."""
+    """There is no further line about the bottom, through which waves cannot enter because of the wrong side."""
     text = f'{BELOW}[boundary.right]\ntype = "outside"\n[boundary.left]\ntype = "{kind}"\n'
     with pytest.raises(CaseError) as error:
         loads(text)

@@ -1,4 +1,4 @@
-"""Names of other codes are answered by what to write here, and only near spellings by a guess."""
+"""Names of other codes get advice on the key to use, and only similar spellings a guess."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Every error text is ours, whatever is put where."""
+"""No error text of a library is shown, whatever value a key has."""
 
 import re
 from functools import reduce

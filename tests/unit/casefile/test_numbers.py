@@ -1,4 +1,4 @@
-"""Numbers that nothing can be computed with are one line, before anything is built."""
+"""Numbers beyond the range of computation cause one line before anything is built."""
 
 import math
 

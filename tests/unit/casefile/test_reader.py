@@ -1,4 +1,4 @@
-"""Reading cases: what a good one becomes, and the line every mistake gets."""
+"""Reading cases: valid ones, and the message for every mistake."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""TOML is read to plain tables; what no case has is answered in one line."""
+"""TOML is read to plain tables; contents that no case has cause one line."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What is printed is what is there: no markup, no emoji codes, no commands to the terminal."""
+"""Texts are printed unchanged: without markup, emoji codes and commands to the terminal."""
 
 import io
 import os

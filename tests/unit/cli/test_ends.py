@@ -1,4 +1,4 @@
-"""However a command ends, it is one line with what is left and what can be done, and its exit code."""
+"""However a command ends, it prints one line on its partial results and remedies, and has its exit code."""
 
 import errno
 import signal

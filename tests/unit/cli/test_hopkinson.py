@@ -1,4 +1,4 @@
-"""The commands for measured signals: options become what is read, removed and computed."""
+"""The commands for measured signals: options for reading, treatment and evaluation."""
 
 import h5py
 import numpy as np

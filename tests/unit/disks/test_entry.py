@@ -38,7 +38,7 @@ def late(tables: dict[str, Any], side: str = "bottom", motion: str = "p") -> flo
 
 @pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
 def test_p_waves_enter_a_lattice_at_centres_and_dashpots_move_the_row_outside_of_these(side: str) -> None:
-    """Half of the row of whole disks is outside of the centres: half of D/2 remains. For half cells nothing remains."""
+    """Half of a row of whole disks lies outside its centres, so half of D/2 remains; for half cells nothing remains."""
     assert late(driven(side, type="velocity"), side) == pytest.approx(-D / 2, abs=1e-5)
     assert late(driven(side, type="viscous_input"), side) == pytest.approx(-D / 4, abs=1e-5)
     assert late(driven(side, type="viscous_input", half_mass=True), side) == pytest.approx(-D / 2, abs=1e-5)

@@ -85,7 +85,7 @@ def test_places_in_the_layer_are_refused_with_the_nearest_one_outside() -> None:
 
 @pytest.mark.parametrize("sides", ["outside", "periodic"])
 def test_below_the_ground_that_waves_enter_there_is_no_monitor(sides: str) -> None:
-    """There the continuum has what is scattered, and no column the rest."""
+    """The continuum there has only the scattered motion, and no column has the rest."""
     waves = {"boundary": {side: {"type": sides} for side in ("left", "right")}}
     waves["boundary"]["bottom"] = {"type": "outside", "wave_s": "pulse"}
 

@@ -116,7 +116,7 @@ HERE = [
 
 @pytest.mark.parametrize(("pattern", "half"), [("A", True), ("C", False)])
 def test_a_column_alone_has_what_it_has_beside_the_body(ground, pattern: str, half: bool) -> None:
-    """Supports and the loads of all, between bottom and top; no hole."""
+    """It has supports and loads on all disks, between bottom and top, and no hole."""
     sides = {"left": FREE_FIELD, "right": FREE_FIELD, "bottom": {**BASE, "half_mass": half}, "top": {"type": "viscous"}}
     niche = {"name": "niche", "type": "circle", "centre": [2.0, 1.5], "radius": 0.4}
     stage = {"boundary": {"left": {"type": "roller"}, "bottom": {"type": "fixed"}}}

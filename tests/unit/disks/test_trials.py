@@ -95,7 +95,7 @@ def test_springs_of_a_copy_are_the_stiffest_of_the_whole_side(bar) -> None:
 
 
 def test_a_continuum_has_noise_of_its_own_but_under_a_law_with_a_history() -> None:
-    """Whose ledger has the energies of all parts: there it is in the body."""
+    """As the ledger of this law has the energies of all parts, noise is then put into the body."""
     linear = small(SURROUNDED, "surrounded")
     (trial,), words = trials(linear)
     assert words[0] == "12 m × 6 m, 72 disks and 430 nodes of a continuum"

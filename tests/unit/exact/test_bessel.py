@@ -6,7 +6,7 @@ from dembound.exact.bessel import decaying_ratios, growing_ratios
 
 
 def test_orders_of_thousands_obey_the_wronskian() -> None:
-    """Lower orders are those of cavities, whose motion obeys its equations: `test_scattering`."""
+    """Orders above those of cavities, whose motion other tests check."""
     # I_n K_(n+1) + I_(n+1) K_n = 1/z, so (K_(n+1)/K_n + I_(n+1)/I_n) falls with I_n K_n → 1/2n
     z, orders = np.array([0.2 + 3.0j, 0.2 + 1500.0j]), 4000
     product = 1.0 / (z * (decaying_ratios(z, orders) + growing_ratios(z, orders)))

@@ -19,7 +19,7 @@ METADATA = BarMetadata(2740.0, 0.4, ("free", "free"), np.inf)
 
 @pytest.fixture
 def gauge(felt):
-    """A gauge that has felt a pulse of 1 MPa that takes 40 and 80 µs."""
+    """A gauge that has measured a pulse of 1 MPa with a rise of 40 µs and a fall of 80 µs."""
     time, stress = felt()
     return Gauge(time, 1e6 * stress, 0.6, 0.99, 2620.0)
 
@@ -119,7 +119,7 @@ def test_what_is_not_enough_is_refused(gauge, given, said):
 
 @pytest.fixture
 def loaded(spalling, tmp_path):
-    """Records the spalling bar loaded at one side, with two gauges and one at the free end, and reads what they say."""
+    """Records and reads the spalling bar loaded at one side, with two gauges and one at the free end."""
 
     def make(side, places):
         load = {"name": "hit", "pressure": 12e6, "nodes": 3, "wave": "hit", "side": side}

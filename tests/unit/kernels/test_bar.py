@@ -1,4 +1,4 @@
-"""The compiled step of a bar against the same equations written down plainly, with a dense stiffness matrix."""
+"""The compiled step of a bar against a plain implementation with a dense stiffness matrix."""
 
 from dataclasses import replace
 
@@ -69,9 +69,9 @@ def shaken(seed: int = 3) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Run:
-    """A bar in the kernel's hands, free or with dashpots, springs and drives at SUPPORTED nodes, the last prescribed.
+    """A bar stepped by the kernel, free or with dashpots, springs and drives at SUPPORTED nodes, the last prescribed.
 
-    a : ½ of what attenuation takes of a velocity in a step.
+    a : half the share of a velocity that attenuation takes in a step.
     """
 
     def __init__(self, bonds: Bonds, u: np.ndarray, v: np.ndarray, held: bool = False, a: float = 0.0) -> None:
@@ -153,7 +153,7 @@ def all_mixed(arrays: tables.BarBonds) -> tables.BarBonds:
 
 
 def flying(bonds: Bonds, plane: int) -> Run:
-    """Two halves that fly apart from a plane at 1 m/s; what crosses it is far too soft to hold them."""
+    """Two halves that fly apart from a plane at 1 m/s; springs and bonds across it are far too soft to hold them."""
     bonds.spring *= 1e-9
     bonds.bond *= 1e-9
     v = np.zeros((3, COUNT))

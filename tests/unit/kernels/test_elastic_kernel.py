@@ -1,4 +1,4 @@
-"""The compiled step against the same equations written down plainly."""
+"""The compiled step against a plain implementation."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Laws that say that they are linear are: their kernels, as a run uses them."""
+"""Kernels of laws that are declared as linear are linear in a run."""
 
 import numpy as np
 import pytest
@@ -55,7 +55,7 @@ class Brittle(Elastic):
 
 
 def test_the_linear_law_of_a_law_is_linear() -> None:
-    """A law that is not may stand for itself; another one cannot take it for linear."""
+    """A law that is not linear may name itself; another law cannot name it as linear."""
     with pytest.warns(UserWarning, match='"brittle" names "rubber" as its linear law, which must be a linear law'):
         found = _usable({law.name: law for law in (Elastic(), Rubber(), Brittle())})
     assert list(found) == ["elastic", "rubber"]

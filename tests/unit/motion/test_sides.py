@@ -1,4 +1,4 @@
-"""The sides of a run: whose is a force at a corner, and what is measured of bars and of unwatched runs."""
+"""The sides of a run: the division of forces at corners, and records of bars and of runs without measured sides."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The loop: what it applies, watches and hands out."""
+"""The loop: forces, checks and records."""
 
 from dataclasses import replace
 
@@ -61,7 +61,7 @@ def simulated(bar, probes: np.ndarray = NOBODY) -> Simulation:
 
 
 class Heard(Tracker):
-    """Writes down whenever the loop comes back, after which step, with how many in the record."""
+    """Notes every return of the loop: its step, and the number of rows in the record."""
 
     name = "heard"
 

@@ -1,4 +1,4 @@
-"""The free-field column: what it stands for, and what joins it to the body."""
+"""The free-field column: the ground that it represents, and its contacts with the body."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A bar is drawn over place and time, or along itself, in the units its labels tell."""
+"""A bar is drawn over place and time, or along itself, in the units of its labels."""
 
 import h5py
 import numpy as np

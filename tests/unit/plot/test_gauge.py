@@ -10,7 +10,7 @@ from dembound.plot.gauge import plot_gauge
 
 @pytest.fixture
 def gauge(felt):
-    """A gauge that has felt a pulse of 1 MPa."""
+    """A gauge that has measured a pulse of 1 MPa."""
     time, stress = felt()
     return Gauge(time, 1e6 * stress, 0.6, 0.99, None)
 

@@ -1,4 +1,4 @@
-"""Moving pictures show every snapshot in the same axes, with disks where they are, or moved as far as asked for."""
+"""Moving pictures show every snapshot in the same axes, with disks at their true or exaggerated places."""
 
 import h5py
 import numpy as np

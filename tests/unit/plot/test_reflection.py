@@ -1,4 +1,4 @@
-"""The picture of what a side sends back."""
+"""The picture of the reflection by a side."""
 
 import numpy as np
 

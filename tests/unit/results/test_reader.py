@@ -1,4 +1,4 @@
-"""Records open by name and tell what happened; files are replaced whole."""
+"""Records open by name, with their cracks and laws; files are replaced whole."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The record of a run: what was kept comes back, and says whether it is whole."""
+"""The record of a run: recorded data are read back, with a mark whether they are complete."""
 
 from dataclasses import fields
 from pathlib import Path

@@ -204,7 +204,7 @@ def test_a_link_or_a_file_is_found_before_the_run(case, tmp_path) -> None:
 )
 def test_a_signal_ends_a_run_with_a_checkpoint(case, whole, tmp_path, monkeypatch, number) -> None:
     class Signalled(job.Checkpoints):
-        """Is signalled in one of the blocks."""
+        """A run that receives a signal in one of its blocks."""
 
         def observe(self, run, record) -> None:
             if run.state.step > 1000:

@@ -1,4 +1,4 @@
-"""The choices of a chart: those of the table [chart], and those of a case and a command that give none."""
+"""The choices of a chart: from the table [chart], and the choices when case and command give none."""
 
 import pytest
 

@@ -43,7 +43,7 @@ def test_all_that_is_dominated_is_off_the_front_and_nothing_else(seed: int) -> N
 
 
 def test_noise_of_the_machine_does_not_change_the_front() -> None:
-    """Times of one scene, of a twice and of a ten times larger one, each with other sides, 8 % more or less."""
+    """Times of a scene and of scenes twice and ten times as large, each with several sides, vary by 8 %."""
     rng = np.random.default_rng(1)
     scenes = np.repeat([1.0, 2.0, 20.0], 4)
     errors = rng.permutation(np.linspace(0.01, 0.3, 12))

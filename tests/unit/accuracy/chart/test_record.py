@@ -1,4 +1,4 @@
-"""The runs of a chart in its record: what was written comes back, and nothing else is taken for a run."""
+"""The runs of a chart in its record: written runs are read back, and other groups are not taken for runs."""
 
 import h5py
 import numpy as np

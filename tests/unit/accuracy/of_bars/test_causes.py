@@ -141,7 +141,7 @@ EVEN = {"range": [{"name": "a", "length": 0.6}, {"name": "b", "length": 0.4, "wa
     ],
 )
 def test_finite_differences_at_courant_number_1_are_exact(name: str, changes: dict[str, Any]) -> None:
-    """Grid and ends are zero, and said to be; what remains is the sum of steps in displacements."""
+    """Errors of grid and ends are reported as zero; only the error of summing displacements over steps remains."""
     case = with_changes(scene(name), AT_ONE | changes)
     recorded, causes = estimated(case)
     found = {each.name: each for each in causes.found}

@@ -91,7 +91,7 @@ def test_the_search_finds_what_the_errors_of_all_choices_give(
 
 
 def test_the_cheapest_of_all_choices_is_taken() -> None:
-    """At Courant number 1 coarse nodes are exact, and the corners of the wave must be seen between the steps."""
+    """At Courant number 1 coarse nodes are exact, but steps must resolve the corners of the wave."""
     case = scene("finite differences, ν = 0.9")
 
     choice = advised(case, 0.01)
@@ -115,7 +115,7 @@ SHORT = {"wave.pulse": {"type": "cosine", "amplitude": 1.0, "period": 6e-5}, "mo
     ],
 )
 def test_a_bar_of_peridynamics_that_cannot_break_is_taken_by_finite_differences(changes: Mapping[str, Any]) -> None:
-    """Their loads act on the last node, where the surface is, and monitors remain at their places."""
+    """Loads of finite differences act on the last node, where the surface is, and monitors remain at their places."""
     case = with_changes(scene("finite differences, ν = 0.9"), {"run": {"duration": 1.1e-3}, **changes})
 
     choice = advised(case, 0.01)
@@ -133,7 +133,7 @@ def test_a_bar_of_peridynamics_that_cannot_break_is_taken_by_finite_differences(
 
 
 def test_two_rocks_get_nodes_of_equal_travel_times() -> None:
-    """Then finite differences at Courant number 1 are exact in both, but for the whole numbers of nodes."""
+    """Finite differences at Courant number 1 are then exact in both rocks, except for whole numbers of nodes."""
     bar = {"length": 1.0, "range": [{"name": "a", "length": 0.6}, {"name": "b", "length": 0.4, "wave_speed": 1400.0}]}
     changes = {f"bar.{key}": value for key, value in bar.items()} | RICKER
     case = with_changes(scene("finite differences, ν = 0.9"), changes)
@@ -149,7 +149,7 @@ def test_two_rocks_get_nodes_of_equal_travel_times() -> None:
 
 
 def test_a_pulse_must_be_seen_between_the_steps() -> None:
-    """At Courant number 1 every step is exact, however few a pulse has."""
+    """At Courant number 1 every step is exact, but a pulse needs enough steps."""
     case = with_changes(scene("finite differences, ν = 0.9"), SHORT | {"boundary.right": {"type": "viscous"}})
 
     choice = advised(case, 0.05)

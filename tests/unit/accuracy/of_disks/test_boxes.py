@@ -36,7 +36,7 @@ def tunnel(**changes: Any) -> DiskCase:
 
 
 def boxed(case: DiskCase) -> tuple[BoxOfDisks, DiskScene]:
-    """The cheapest box of a case, and the scene of its tables, in which nothing else has changed."""
+    """The cheapest box of a case, and the scene of its tables, which differ only by the box."""
     found = cheapest_box(build(case))
     assert found is not None
     tables = box_tables(case, found.box)
@@ -82,7 +82,7 @@ BLOW = {"name": "blow", "force": [0.0, 1.0], "position": [50.5, 99.5], "wave": "
 
 
 def test_a_box_round_a_slope_ends_on_its_floor() -> None:
-    """Beyond it the ground is as high as the floor, and has no nodes above."""
+    """Beyond the floor the ground has its height, and no nodes above."""
     changes = {"boundary": {side: VISCOUS for side in ("left", "right", "bottom")}, "hole": [SLOPE], "load": [BLOW]}
     found, scene = boxed(tunnel(**changes))
     assert {side: table.type for side, table in scene.case.boundary.items()} == dict.fromkeys(SIDES[:3], "outside")

@@ -39,7 +39,7 @@ def given() -> Companions:
 
 
 def exact(scene: DiskScene, place: float, time: np.ndarray) -> np.ndarray:
-    """Velocity at a place (m): of the wave from the first disk, and of what the free end sends back."""
+    """Velocity at a place (m): of the wave from the first disk, and of its reflection at the free end."""
     first = float(scene.positions[:, 0].min())
     wave = scene.case.wave["push"]
     return np.sum([wave.velocity(time - way / SPEED) for way in (place - first, 2 * LENGTH - place - first)], axis=0)
@@ -106,7 +106,7 @@ def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_mor
 
 @pytest.mark.parametrize("side", ["fixed", "roller"])
 def test_waves_of_a_load_come_back_early_from_disks_that_are_held(side: str) -> None:
-    """Beside disks three times smaller, which have a third of that error.
+    """Compared with disks three times smaller, which have a third of this error.
 
     The depth of fixed sides is D/2 for P and 0.77 D for S waves; with the mean the error of P waves is 0.27 too large.
     Companions change the way of waves by up to 6 D, a third of the shorter waves of this pulse, by which they find

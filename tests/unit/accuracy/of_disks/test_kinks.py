@@ -37,7 +37,7 @@ def record(velocity):
 
 @pytest.mark.parametrize("name", [GRID, STEP])
 def test_what_companions_lack_and_have_make_up_the_error_of_all_frequencies(name: str) -> None:
-    """By squares, as frequencies are apart: of the triangle, as it comes, and of its part below the frequency."""
+    """Squares of errors add up, as frequencies are separate: for the triangle, and for its part below the frequency."""
     scene = build(small(COLUMN))
     formulas = Formulas(scene, 2e-4)
     own = record(scene.case.wave["pulse"].velocity(TIME - 12.25 / SPEED))
@@ -60,7 +60,7 @@ def test_smooth_waves_have_nothing_that_companions_lack() -> None:
 
 
 def test_waves_of_a_force_in_a_place_have_more_high_frequencies_than_plane_ones() -> None:
-    """By √ω, so that of kinks more than twice as much is above frequencies far above those of the wave."""
+    """By a factor √ω, so that kinks have more than twice the share above frequencies far above those of the wave."""
     sides = {"boundary": {"top": {"type": "viscous"}}}
     load = {"name": "f", "force": [0.0, 1.0], "wave": "pulse"}
     sizes = []

@@ -1,4 +1,4 @@
-"""The elastic law in place of one with a history, where the body remains elastic."""
+"""The elastic law in place of a history-dependent one, where the body remains elastic."""
 
 import math
 from functools import cache
@@ -116,7 +116,7 @@ def test_without_the_stress_at_rest_an_elastic_body_moves_alike() -> None:
 
 
 def test_the_law_remains_where_no_companion_can_run() -> None:
-    """Between a hole of 1.2 m and others no disk of 1 m is left that a pressure could push."""
+    """Beside a hole of 1.2 m no disk of 1 m remains on which a pressure could act."""
     blast = {"name": "blast", "pressure": 1e5, "hole": "h", "wave": "push"}
     hole = {"name": "h", "type": "circle", "centre": [10.0, 6.0], "radius": 0.6}
     tables = {key: value for key, value in CONFINED.items() if key != "static"} | {"load": [blast], "hole": [hole]}
@@ -154,7 +154,7 @@ def _recorded(gauges: Motions) -> dict[str, History]:
 
 
 def test_the_stress_at_rest_that_turns_with_the_disks_is_counted() -> None:
-    """Without the elastic start a law with updated geometry differs by that stress, and is not below a third."""
+    """Without the elastic start a law with updated geometry differs by this stress, by a third or more."""
     twin = own_twin()
     fixed = {"run.time_step": 0.9 * plan(confined()).time_step}
     full = confined({**fixed, "material.elastic_start": False})

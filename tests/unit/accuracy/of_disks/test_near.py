@@ -94,7 +94,7 @@ def test_the_nearest_copy_of_a_force_counts() -> None:
 
 
 def test_errors_of_walls_are_of_first_order() -> None:
-    """4 % of a circle with 10 disks along the radius, 6.7 % of a rectangle with 3 along the smaller half."""
+    """4 % for a circle with 10 disks along the radius, 6.7 % for a rectangle with 3 disks along the smaller half."""
     circle = Circle.model_validate({"type": "circle", "name": "a", "centre": (0.0, 0.0), "radius": 10.0})
     long = Rectangle.model_validate({"type": "rectangle", "name": "b", "corners": (0.0, 0.0, 6.0, 20.0)})
 
@@ -108,7 +108,7 @@ def test_errors_of_walls_are_of_first_order() -> None:
 
 
 def test_walls_that_are_not_between_disks_change_the_size_of_a_hole() -> None:
-    """Disks of 1 m from the origin on: walls at 2, 8 and 20 m fit, one at 8.4 m is 0.4 m off, of a width of 6.4 m."""
+    """With disks of 1 m from the origin on, walls at 2, 8 and 20 m fit; a wall at 8.4 m is off by 0.4 m of 6.4 m."""
 
     def misfit(right: float, diameter: float = 1.0, top: float = 20.0, origin: float = 0.0) -> float:
         corners = (2.0, 2.0, right, top)
@@ -128,7 +128,7 @@ CAVE = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.5, 6.1, 2.0]}
 
 
 def scattered(case: DiskCase, lowest: float = np.inf) -> float:
-    """The part of the error of a pressure that waves have round a hole with a smaller half of 0.75 m."""
+    """The error of waves round a hole with a smaller half of 0.75 m, over the error of a pressure in it."""
     frequency = mean_frequency(signals_of(case)[0], lowest)
     return OF_WAVES * 2.0 * np.pi * frequency / slowest_speed(build(case).ground) * 0.75
 

@@ -1,4 +1,4 @@
-"""Sides that hold in a way of their own, as sides of this package that hold as strongly per metre."""
+"""Sides of other types are estimated as sides of this package with equal supports per metre."""
 
 from dataclasses import replace
 from typing import ClassVar, Literal
@@ -42,7 +42,7 @@ class Own(Boundary):
 
 
 class Kept(Own):
-    """A side like `Own` that stands for no ground beyond."""
+    """A side like `Own` that does not represent ground beyond."""
 
     is_artificial: ClassVar[bool] = False
 

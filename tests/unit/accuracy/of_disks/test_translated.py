@@ -69,7 +69,7 @@ def test_the_same_scene_is_extended_by_as_much(both) -> None:
 
 
 def test_larger_disks_are_at_the_same_places(both) -> None:
-    """In ground that they do not fill in whole cells, so that places move with its sides."""
+    """In ground that is not a whole number of cells, so that places move with its sides."""
     wide = {"name": "wide", "force": [1e5, 0.0], "region": [3.0, 3.0, 9.0, 7.0], "wave": "pulse"}
     case = with_changes(both[0], {"packing.size": [41.0, 31.0], "load": [wide]})
     own, other = (coarser(each, build(each), 1e-4, 1.3).case for each in (case, translated(case, tuple(BY))))
@@ -114,7 +114,7 @@ def test_what_reaches_sides_and_how_stiff_they_are(both) -> None:
 
 @pytest.mark.parametrize("height", [20.0, 50.0])
 def test_boxes_and_their_tables_are_in_the_ground_at_its_place(height) -> None:
-    """Deep in the ground, and so near its surface that the disks reach up to this."""
+    """Boxes deep in the ground, and boxes so near its surface that the disks reach up to it."""
     shaft = BLAST["hole"][0] | {"centre": [16.0, height]}
     case = small(BLAST | {"packing": BLAST["packing"] | {"size": [80.0, 60.0]}, "hole": [shaft], "monitor": []})
     watched = with_changes(case, {"monitor": [{"name": "corner", "position": [79.7, 59.7]}]})

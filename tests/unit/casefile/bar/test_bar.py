@@ -1,4 +1,4 @@
-"""The case of a bar: what a good one becomes, and the line every mistake gets."""
+"""The case of a bar: a valid one, and the message for every mistake."""
 
 import math
 

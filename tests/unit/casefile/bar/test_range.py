@@ -1,4 +1,4 @@
-"""Bars of ranges: what ``[[bar.range]]`` tables become, and the line every mistake in them gets."""
+"""Bars of ranges: valid ``[[bar.range]]`` tables, and the message for every mistake."""
 
 import pytest
 from small_cases import problems_of, rows

@@ -1,4 +1,4 @@
-"""Ground that is lower beyond a side: where it is found, and what cannot be there."""
+"""Ground that is lower beyond a side: its detection, and tables that are impossible with it."""
 
 import pytest
 from small_cases import GROUND, Tables, small

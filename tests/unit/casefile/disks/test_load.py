@@ -1,4 +1,4 @@
-"""Loads: what acts and where, alone and beside the other tables."""
+"""Loads: their kind and place, alone and together with other tables."""
 
 import pytest
 from small_cases import BODY, problems_of, rows

@@ -15,7 +15,7 @@ def test_rows_of_a_lattice_are_joined_by_straight_lines() -> None:
 
 
 def test_disks_of_a_band_count_by_their_mass_at_its_centre_of_mass() -> None:
-    """So that a uniform strain is exact between the first and the last band, whatever the disks."""
+    """Then a uniform strain is exact between the first and the last band, for any disks."""
     rng = np.random.default_rng(4)
     up, mass = rng.uniform(0.0, 8.0, 60), rng.uniform(1.0, 2.0, 60)
     heights = np.linspace(1.0, 7.0, 23)

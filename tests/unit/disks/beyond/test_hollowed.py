@@ -32,7 +32,7 @@ def slope(height: float, end: float = 31.0, last: float | None = None) -> list[t
 
 @pytest.mark.parametrize("height", [11.2, 11.499999999, 11.500000001, 11.7])
 def test_disks_below_a_floor_remain_and_are_tied(height: float) -> None:
-    """Up to a row whose centres are on it, within rounding: it is below or above for body and continuum alike."""
+    """A row with centres on the floor, within rounding, is below or above it for body and continuum alike."""
     made = scene(*slope(height))
     bonds, x = made.outside.wall.bonds, made.assembly.positions
     at_right = x[x[:, 0] == 29.5, 1]

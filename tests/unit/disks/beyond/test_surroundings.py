@@ -1,4 +1,4 @@
-"""The continuum round a body: where its free edges lie, and what is on them."""
+"""The continuum round a body: its free edges, their nodes and forces."""
 
 import numpy as np
 import pytest

@@ -119,7 +119,7 @@ def test_ties_half_way_to_other_sides_turn_nothing_and_move_by_half_of_it(ground
 
 
 def test_a_twin_leaves_what_the_particle_has_beyond_it_and_velocities_count_times_the_lag(ground) -> None:
-    """In forces that are added to what is there, at the lines of the support table; none act on the twins."""
+    """Forces are added to existing ones, at the lines of the support table; none act on the twins."""
     tied, rng = Tied(ground), np.random.default_rng(5)
     u, v, before = rng.normal(size=(3, 3, tied.count))
     twin, line = np.roll(np.arange(tied.particles), 7), rng.permutation(tied.count)
@@ -140,7 +140,7 @@ def test_the_dashpot_of_a_lattice_is_a_share_of_its_impedance() -> None:
 
 
 def test_elongations_times_stiffness_are_the_forces_of_the_kernels(ground) -> None:
-    """Of any motion; on disks and nodes by the transpose."""
+    """For any motion; forces on disks and nodes by the transpose."""
     tied = Tied(ground)
     wall, u = tied.wall, np.random.default_rng(4).standard_normal((3, tied.count))
     of_disks, of_nodes = wall.elongations

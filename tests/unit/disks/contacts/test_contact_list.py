@@ -1,4 +1,4 @@
-"""The list of pairs: complete, each pair once, and with a history that outlives every search."""
+"""The list of pairs: complete, each pair once, with a history that every search keeps."""
 
 from collections import Counter
 

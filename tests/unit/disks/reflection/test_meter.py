@@ -69,7 +69,7 @@ def test_oblique_incidence_is_that_of_a_continuum_for_long_waves(kind) -> None:
 
 @pytest.mark.parametrize("kind", ["p", "s"])
 def test_a_quick_answer_is_that_of_the_continuum(kind) -> None:
-    """To rounding, the root of it where a wave along the side is about to run: S at 45°."""
+    """To rounding, or to its root where a wave is about to run along the side: S at 45°."""
     angles = [0.0, 10.0, 30.0, 45.0, 60.0, 75.0]
     found = by_smeared_supports(end_scene(small(LATTICE), "right"), "right", [1.0, 50.0], angles)
     same, converted = by_continuum(angles, kind)
@@ -80,7 +80,7 @@ def test_a_quick_answer_is_that_of_the_continuum(kind) -> None:
 
 @pytest.mark.parametrize(("side", "kind"), [("left", "free"), ("right", "fixed"), ("bottom", "fixed"), ("top", "free")])
 def test_sides_that_take_nothing_send_everything_back(side, kind) -> None:
-    """P and S of a random packing, at all sides; below the frequencies at which copies scatter."""
+    """For P and S waves of a random packing, at all sides, below the frequencies at which copies scatter."""
     found = measured(GRAINS, side, 1e-4, [20.0, 60.0], [0.0, 25.0], changes={"boundary": {side: {"type": kind}}})
     for wave in found.kinds:
         np.testing.assert_allclose(found.total(wave), 1.0, rtol=1e-8)

@@ -9,7 +9,7 @@ from dembound.disks.reports.facts import disk_facts
 from dembound.running import plan, warnings_before
 
 SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}
-"""A wave far longer than the bar, nothing about which is to be warned of."""
+"""A wave far longer than the bar, without warnings."""
 
 
 def facts_of(case: Case) -> dict[str, str]:

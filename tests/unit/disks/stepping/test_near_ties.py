@@ -49,7 +49,7 @@ class Watched:
 
 
 def test_near_are_disks_within_two_diameters_of_a_tied_one(scene) -> None:
-    """They belong to the side of the nearest tied disk; in a corner a disk tied by both sides is of the first."""
+    """They belong to the side of the nearest tied disk; a disk tied by both sides of a corner belongs to the first."""
     x, y = scene.assembly.positions.T
     near = sides_near(scene)
     expected = np.select([x < 3.0, x > 9.0, y < 3.0], [0, 1, 2], -1)
@@ -79,7 +79,7 @@ def test_slip_near_a_side_is_found_with_its_time_and_place(scene) -> None:
 
 
 def test_beside_a_column_places_are_those_of_the_body() -> None:
-    """Whose disks come after those of the column, beyond the continuum."""
+    """The body's disks come after those of the column, beyond the continuum."""
     wave = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
     changes = {"boundary.bottom": {"type": "outside", "wave_s": "up"}, "wave.up": wave}
     scene = build(small(SURROUNDED, "column", FULL | changes))

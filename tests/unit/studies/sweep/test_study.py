@@ -19,7 +19,7 @@ class LostError(Exception):
 
 
 class Noting(Workers):
-    """Two workers: they do what `answers` says of a member by the name, by default have it done at once.
+    """Two workers that answer by `answers` for a member's name; by default it is done at once.
 
     An answer is an outcome's values, an error, or a function of task and future, which stay under way.
     """

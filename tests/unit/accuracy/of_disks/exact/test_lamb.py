@@ -139,7 +139,7 @@ def test_a_load_whose_quadrature_does_not_settle_is_refused(tmp_path, monkeypatc
 
 
 def test_monitors_in_the_continuum_are_on_the_same_surface(tmp_path):
-    """The load is nearer to the sides of a small body than to the monitors, which does not matter as it goes on."""
+    """The load is nearer to the sides of a small body than to the monitors, without effect, as the ground goes on."""
     changes = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "bottom")}
     changes |= {
         "outside.element": 5.0,

@@ -83,7 +83,7 @@ def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, ang
 
 
 def test_what_the_surface_sends_back_is_part_of_it_until_the_holes_echo(monkeypatch) -> None:
-    """A P wave straight up, of 0.1 s: at the surface, far beside the hole, it is there twice."""
+    """A vertical P wave of 0.1 s is doubled at the surface, far beside the hole."""
     monkeypatch.setattr(module, "SAMPLES", 300)  # times
     far = {"name": "far", "position": [250.5, 119.5]}
     changes = {"incident.type": "p", "incident.angle": 0.0, "outside.margin": 20, "monitor": [far]}
