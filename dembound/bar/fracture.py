@@ -104,7 +104,7 @@ def _open_cracks(bonds: Bonds, positions: np.ndarray, time_step: float) -> Itera
 def opened_planes(bonds: Bonds) -> tuple[np.ndarray, np.ndarray]:
     """Steps (n − 1,) in which the first bond across each plane began to open, and in which the last one broke.
 
-    Else −1.
+    Planes without such bonds have −1.
     """
     opening = bonds.opening
     length = np.maximum(opening["row"] + 1, 1)
@@ -125,7 +125,7 @@ def opened_planes(bonds: Bonds) -> tuple[np.ndarray, np.ndarray]:
 def crack_strain_rates(bonds: Bonds) -> dict[str, float] | None:
     """Strain rates (1/s), the slowest and the fastest, of bonds that have broken.
 
-    None without a rate-dependent strength.
+    The result is None without a rate-dependent strength.
     """
     broken = bonds.opening.of(bonds.spring_broken, bonds.bond_broken) >= 0
     if not bonds.opening.has_rates or not broken.any():

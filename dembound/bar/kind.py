@@ -107,7 +107,7 @@ class Bars(Kind[BarCase, BarScene]):
     def findings(self, scene: BarScene, run: Run, inside: Box | None = None) -> dict[str, Finding]:
         """Middle (m) and time (s) of the first spall, if there is one.
 
-        With a fracture energy the time when it began.
+        With a fracture energy the time is that of its beginning.
         """
         for spall in sorted(spalls_of(scene, run)[0], key=lambda spall: spall.reached):
             place = 0.5 * sum(spall.start)

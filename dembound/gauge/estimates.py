@@ -30,7 +30,7 @@ FEWEST = 3
 class Estimate(NamedTuple):
     """A value from a line through `points` points, with a standard error for three or more.
 
-    Given, if without points.
+    A value without points was given.
     """
 
     value: float

@@ -48,7 +48,7 @@ def record_bytes(monitors: int, block: int, width: int, lines: float) -> float:
 def largest(stages: dict[str, float], case: Case) -> float:
     """Bytes of the program in the largest stage of a run.
 
-    Stages : bytes of the arrays of each stage before pictures.
+    stages : bytes of the arrays of each stage before pictures.
     """
     need = PROGRAM + max(stages.values())
     return max(need, PICTURES) if case.output.pictures else need

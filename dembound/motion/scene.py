@@ -217,7 +217,7 @@ class Scene(ABC):
     def twin(self) -> np.ndarray | None:
         """(n,) node to whose velocity the dashpots of each node are relative, the node itself for none.
 
-        None: no such node.
+        The result is None if no node has one.
         """
         return None
 

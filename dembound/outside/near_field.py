@@ -25,8 +25,8 @@ power of the side.
 HOLES = {3: 6e-2, 4: 2e-2, 5: 1e-2, 6: 4e-3}
 """By order: error beside elements as wide as a box round a hole under a pressure.
 
-Round circles 0.75 times, round squares up to 1.8 times as large. The error with two elements a side is smaller by 2 to
-the power of the order plus one.
+The error round circles is 0.75 times, round squares up to 1.8 times as large. The error with two elements a side is
+smaller by 2 to the power of the order plus one.
 """
 
 WIDER = 2.5

@@ -183,7 +183,7 @@ def draw_panel(
 ) -> ScalarMappable:
     """A window of the scene at one of its times, at `scale` pixels per metre.
 
-    Counted : labels have numbers of cracks.
+    counted : labels have numbers of cracks.
     """
     positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
     colours = draw_field(panel, window, positions, disks.radii, shown.values[index], shown.limits, scale, disks.holes)

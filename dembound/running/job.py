@@ -157,7 +157,7 @@ class _Job:
     def _plan(self) -> Plan:
         """The plan.
 
-        For a resumed run with its checkpoint's time step, after checking that its record can be continued.
+        A resumed run has its checkpoint's time step, after checking that its record can be continued.
         """
         planned = plan(self.case, self.clock)
         if self.found is None:

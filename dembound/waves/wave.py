@@ -97,7 +97,7 @@ class Wave(Table, ABC):
     def _require_resolved(self, latest: float, scale: float, key: str) -> None:
         """Raise ValueError for a time (s) at which rounding loses changes on a scale (s).
 
-        Key : named in the message.
+        key : named in the message.
         """
         if latest > LATEST * scale > 0.0:
             most = f"must be at most {LATEST:g} times the {scale:g} s within which the wave varies"

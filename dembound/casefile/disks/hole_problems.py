@@ -14,7 +14,7 @@ from dembound.table import Box
 def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
     """Check the holes; a table or an entry that is invalid on its own is None.
 
-    Has_static: whether there is a static stage.
+    has_static : whether there is a static stage.
     """
     for place, hole in numbered("hole", tables["hole"]):
         if tables["packing"]:

@@ -99,7 +99,7 @@ def _no_load_factor(
 ) -> Iterator[str]:
     """A load factor that cannot be computed, and strengths without effect.
 
-    Has_static : whether there is a static stage.
+    has_static : whether there is a static stage.
     """
     elastic = not LAWS[material.law].has_history
     if elastic and not output.load_factor:
