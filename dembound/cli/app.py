@@ -35,6 +35,9 @@ EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
 )
 CANNOT_WRITE = 5
 
+OPTIONS = "Options: --version; -h, --help; --install-completion, --show-completion: for the current shell."
+"""In the help below the commands."""
+
 COLLECT_EVERY = 100_000
 """Number of new objects after which Python searches for unused cycles: most objects belong to packages and remain."""
 
@@ -68,6 +71,12 @@ class _Commands(TyperGroup):
         """Names of the commands, as the help lists them."""
         return sorted(super().list_commands(ctx), key=ORDER.index)
 
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Print the commands first: the options, whose panel would be above them, are in a line below."""
+        for option in self.get_params(ctx):
+            option.hidden = True  # type: ignore[attr-defined]
+        super().format_help(ctx, formatter)
+
     def make_context(self, *arguments: Any, **more: Any) -> Any:
         """Read the options."""
         with _one_line_at_signals():
@@ -83,7 +92,7 @@ app = typer.Typer(
     name="dembound",
     cls=_Commands,
     help="Waves in bonded particles, with artificial boundaries that absorb, and in bars of rock that break.",
-    epilog=EXIT_CODES,
+    epilog=f"{OPTIONS}\n\n{EXIT_CODES}",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},

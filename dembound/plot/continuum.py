@@ -137,7 +137,9 @@ def _draw_layers(axes: Axes, corners: np.ndarray) -> None:
     closed = np.concatenate([corners, corners[:, :1]], axis=1).reshape(-1, 2)
     path = Path(closed, np.tile(AROUND, len(corners)))
     looks: dict[str, Any] = {"facecolor": "none", "edgecolor": HATCH, "linewidth": 0.0, "hatch": "////"}
-    axes.add_patch(PathPatch(path, zorder=ABOVE_CELLS, label="layers that absorb", **looks))
+    axes.add_patch(
+        PathPatch(path, zorder=ABOVE_CELLS, label="layers that absorb, in place of the ground beyond", **looks)
+    )
 
 
 def _corners(elements: np.ndarray) -> np.ndarray:

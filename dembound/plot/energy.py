@@ -13,35 +13,35 @@ from dembound.plot.style import COLOURS, REFERENCE, Powers, line_style, new_figu
 from dembound.results.reader import energy_of, is_line, open_record, side_energies_of, text_of
 
 COLUMNS = {
-    "outside": "in, net: boundaries (less what they absorb) and driven loads",
-    "loads": "in: driven loads",
-    "load": "in: steady loads",
-    "balance": "in: forces that balance the settled stress",
-    "kinetic": "kinetic",
-    "contact": "stored in contacts",
-    "bond": "stored in bonds",
-    "damping": "taken by damping and layers that absorb",
-    "friction": "taken by friction",
-    "crack": "taken by cracks",
-    "closing": "taken by contacts that open and close",
-    "law_switch": "in: added by a change of law",
-    "stepping": "less, by velocities that change within steps",
+    "outside": "supplied, net: boundaries and driven loads",
+    "loads": "supplied: driven loads",
+    "load": "supplied: steady loads",
+    "balance": "supplied: forces that hold the settled state",
+    "kinetic": "stored: kinetic",
+    "contact": "stored: elastic, contacts",
+    "bond": "stored: elastic, bonds",
+    "damping": "dissipated: damping, absorbing layers",
+    "friction": "dissipated: friction",
+    "crack": "dissipated: cracks",
+    "closing": "dissipated: contacts opening and closing",
+    "law_switch": "supplied: change of law",
+    "stepping": "stored: −⅛m(Δv)², Δv of one step",
 }
 """Columns of the ledger and their names in the legend."""
 
 BAR_COLUMNS = COLUMNS | {
-    "outside": "in, net: ends (less what they absorb) and loads",
-    "contact": "stored in local springs",
-    "bond": "stored in peridynamic bonds",
-    "damping": "taken by attenuation",
-    "law_switch": "in: added by a change of method",
+    "outside": "supplied, net: ends and loads",
+    "contact": "stored: elastic, local springs",
+    "bond": "stored: elastic, peridynamic bonds",
+    "damping": "dissipated: attenuation",
+    "law_switch": "supplied: change of method",
 }
 """Lines of the ledger of a bar."""
 
 OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
-    "came_in": ("in: through the {}", {"marker": "^"}),
-    "absorbed": ("absorbed by the {}", {"marker": "v", "linestyle": "--"}),
-    "stored": ("stored in springs of the {}", {"marker": "s", "linestyle": ":"}),
+    "came_in": ("supplied: through the {}", {"marker": "^"}),
+    "absorbed": ("absorbed: by the {}", {"marker": "v", "linestyle": "--"}),
+    "stored": ("stored: springs of the {}", {"marker": "s", "linestyle": ":"}),
 }
 """Columns of every side, their names in the legend ({} is the side), and their lines; a side has one colour."""
 
@@ -115,8 +115,8 @@ def plot_energy(run: Path) -> Figure:
     upper.yaxis.set_major_formatter(Powers())
     lower.set_ylabel("error (–)")
     lower.set_xlabel(unit.label)
-    lower.set_title("error of the balance, in parts of the most that came in", loc="left", fontsize=9, pad=3)
-    figure.suptitle(f"{name}: where its energy is, and where it went", fontsize=11)
+    lower.set_title("error of the balance over the largest energy supplied", loc="left", fontsize=9, pad=3)
+    figure.suptitle(f"{name}: energy supplied, stored, absorbed and dissipated", fontsize=11)
     outside_legend(figure, [upper], columns=3)
     return figure
 

@@ -79,7 +79,7 @@ class Disks:
     @property
     def in_words(self) -> str:
         """The number of disks as text for a title."""
-        return f"{len(self.radii)} disks{'' if self.continuum is None else ' and a continuum'}"
+        return f"{len(self.radii):,} disks{'' if self.continuum is None else ' and a continuum'}"
 
     @property
     def seam(self) -> float | None:

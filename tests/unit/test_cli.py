@@ -116,7 +116,7 @@ def test_helps_wrap_at_80_columns_and_have_no_markup(dembound, command, monkeypa
         # such as "[reduce]", which would not be shown
         for words in [each.help, *(getattr(parameter, "help", None) for parameter in each.params)]:
             assert Text.from_markup(words or "").plain == (words or ""), name
-    assert "\n" not in command.epilog
+    assert not [text for text in command.epilog.split("\n\n") if "\n" in text]
 
 
 def test_unknown_commands_and_options_are_bad_input(dembound) -> None:

@@ -68,7 +68,7 @@ def test_elements_layers_surface_and_ties_are_in_the_legend(surrounded_run) -> N
     assert twice.min() > 0.0
     assert 0.5 * twice.sum() == pytest.approx(30.0 * 15.0 - 12.0 * 6.0)
     shown = labelled(panel)
-    layers, surface = shown["layers that absorb"], shown["free surface of the continuum"]
+    layers, surface = shown["layers that absorb, in place of the ground beyond"], shown["free surface of the continuum"]
     ties = shown["ties of cut bonds (24)"]
     in_legend = {text.get_text() for text in figure.legends[0].get_texts()}
     assert in_legend == {

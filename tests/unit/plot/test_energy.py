@@ -43,7 +43,7 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
     assert lower.get_xlabel() == "time (ms)"
     assert figure.get_suptitle().startswith("cracked: ")
     drawn = {line.get_label(): line for line in upper.lines}
-    contact, bond = drawn["stored in contacts"], drawn["stored in bonds"]  # both are visible where they are equal
+    contact, bond = (drawn[f"stored: elastic, {each}s"] for each in ("contact", "bond"))  # both visible where equal
     assert contact.get_linewidth() > 2.0 * bond.get_linewidth()
     assert contact.get_zorder() < bond.get_zorder()
     ledger = ledger_of(cracked_run)
@@ -72,17 +72,17 @@ def test_what_came_in_and_what_was_absorbed_is_drawn_for_every_side(divided):
     assert drawn[COLUMNS["loads"]].get_ydata()[-1] == 1.0
     of_sides = {label: line.get_ydata()[-1] for label, line in drawn.items() if label not in COLUMNS.values()}
     assert of_sides == {
-        "in: through the bottom side": 5.0,
-        "in: through the bottom side of the column": -0.5,
-        "absorbed by the bottom side": 2.0,
-        "absorbed by the left side": 3.0,
-        "absorbed by the bottom side of the column": 1.5,
-        "stored in springs of the left side": 0.25,
+        "supplied: through the bottom side": 5.0,
+        "supplied: through the bottom side of the column": -0.5,
+        "absorbed: by the bottom side": 2.0,
+        "absorbed: by the left side": 3.0,
+        "absorbed: by the bottom side of the column": 1.5,
+        "stored: springs of the left side": 0.25,
     }
     looks = {(line.get_color(), line.get_linestyle(), line.get_marker()) for line in drawn.values()}
     assert len(looks) == len(drawn)
     heads = [head for head, _ in columns_of(figure)]
-    assert "absorbed by the left side: energy per metre of thickness (J/m)" in heads
+    assert "absorbed: by the left side: energy per metre of thickness (J/m)" in heads
     assert len(set(heads)) == len(heads)
 
 
@@ -110,8 +110,8 @@ def test_a_bar_keeps_its_books_in_its_own_words_and_without_entries_there_is_no_
     upper = plot_energy(run).axes[0]
     assert upper.get_ylabel() == "energy (J)"
     labels = {line.get_label() for line in upper.lines}
-    own = ("stored in local springs", "stored in peridynamic bonds", "taken by attenuation")
-    assert {*own, "in: added by a change of method"} <= labels
+    own = ("stored: elastic, local springs", "stored: elastic, peridynamic bonds", "dissipated: attenuation")
+    assert {*own, "supplied: change of method"} <= labels
     assert len({line.get_color() for line in upper.lines}) == len(upper.lines) == len(COLUMNS) - 2
     with pytest.raises(CaseError, match="no entries in its energy ledger"):
         plot_energy(small_run)

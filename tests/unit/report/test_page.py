@@ -138,7 +138,7 @@ def test_a_bar_has_its_stresses_and_its_picture_over_place_and_time(spalled_resu
         "Velocity along x at the monitors",
         "Stress along x at the monitors",
         "Spectra of the velocity along x at the monitors",
-        "bar: where its energy is, and where it went",
+        "bar: energy supplied, stored, absorbed and dissipated",
     ]
     assert len(page.live()["frames-0"]["uris"]) == 3
     assert page.row("body") == ["bar of 1 m, 41 nodes"]
