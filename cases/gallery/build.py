@@ -33,7 +33,7 @@ from PIL import Image
 import dembound
 from dembound import shipped
 from dembound.cli import app
-from dembound.plot import scene, style
+from dembound.plot import chart, scene, style
 from dembound.words import percent
 
 HERE = Path(__file__).parent
@@ -63,6 +63,9 @@ WIDTH, DOTS = 6.2, 125
 
 SCENE = (4.4, 4.2)
 """Largest width and height of a scene in a picture, inches."""
+
+CHART = (WIDTH, 6.4)
+"""Width and height of an error chart, inches."""
 
 HEIGHTS = (3.3, 5.8)
 """Least and largest height of a figure of a picture, inches."""
@@ -260,5 +263,5 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    scene.DRAWING = SCENE
+    scene.DRAWING, chart.PAGE = SCENE, CHART
     main(sys.argv[1:])

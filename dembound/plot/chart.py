@@ -44,10 +44,19 @@ MARK = "†"
 REFERENCE_HEAD, OTHERS = "reference", "others"
 
 LINE = 0.033
-"""Height of a line of the list over that of the panel."""
+"""Height of a line of the list over that of the panels."""
 
-WIDTH = 60
-"""Characters in a line of the list."""
+PAGE, NARROW = (12.0, 6.4), 8.0
+"""Width and height of the picture in inches; where it is not wider than this, the list is below the chart."""
+
+BESIDE, BELOW = (1.8, 1.0), (2.4, 1.0)
+"""Shares of the chart and the list of the width of a wide page, and of the height of a narrow one."""
+
+LETTERS, SMALL_LETTERS = 12.5, 14.0
+"""Characters to the inch in the title, and elsewhere."""
+
+INDENT = "     "
+"""Before all but the first line of an entry of the list."""
 
 
 @dataclass(frozen=True)
@@ -105,8 +114,7 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
         own = {k + 1 for k in file["reference"].attrs["choices"]}
         quantity, title = text_of(file.attrs["quantity"]), title or text_of(file.attrs["title"] or file.attrs["name"])
         sentence, threads = text_of(file.attrs["sentence"]), _threads(runs)
-    figure = new_figure(12.0, 6.4)
-    panel, side = figure.subplots(1, 2, width_ratios=(1.8, 1.0))
+    figure, panel, side = _page()
     good = [dot for dot in dots if not dot.failure and dot.number not in own]
     _draw(panel, good)
     for number in sorted(own):
@@ -116,16 +124,33 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     panel.set_xlabel(f"cost: CPU time of stepping (s), {threads} thread{'s' if threads > 1 else ''}")
     panel.set_ylabel(f"RMS error of the {quantity}, worst monitor (%)")
     heading = [f"errors {truth}, beside {reference}; {monitors}", covered]
-    panel.set_title("\n".join(_wrapped(line, 110) for line in heading), loc="left", fontsize=8.5)
+    panel.set_title("\n".join(_wrapped(line, _letters(0)) for line in heading), loc="left", fontsize=8.5)
     if any(dot.on_front for dot in dots):
         panel.legend(loc="best", fontsize=8.5)
     _list(side, dots, own, [dot.number for dot in dots])
-    figure.suptitle(f"{title}\n{_wrapped(sentence, 150)}", fontsize=10, parse_math=False)
+    figure.suptitle(f"{title}\n{_wrapped(sentence, int(LETTERS * PAGE[0]))}", fontsize=10, parse_math=False)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # labels fit into this panel
     numbered = _label(figure, panel, good)
     _list(side, dots, own, numbered)
     return figure
+
+
+def _page() -> tuple[Figure, Axes, Axes]:
+    """The figure, and its panels for the chart and for the list."""
+    figure = new_figure(*PAGE)
+    panels = figure.subplots(1, 2, width_ratios=BESIDE) if _is_wide() else figure.subplots(2, 1, height_ratios=BELOW)
+    return figure, *panels
+
+
+def _is_wide() -> bool:
+    """Whether the list is beside the chart."""
+    return PAGE[0] > NARROW
+
+
+def _letters(panel: int) -> int:
+    """Number of characters in a line as wide as a panel: 0, the chart, or 1, the list."""
+    return int(SMALL_LETTERS * PAGE[0] * (BESIDE[panel] / sum(BESIDE) if _is_wide() else 1.0))
 
 
 def _read(number, group) -> Dot:  # type: ignore[no-untyped-def]
@@ -207,7 +232,8 @@ def _list(panel: Axes, dots: Sequence[Dot], own: Collection[int], numbered: Coll
         *_footnote(dots),
     ]
     lines = sum(text.count("\n") + 1 for text, _, _ in entries)
-    height = LINE / max(1.0, LINE * lines)
+    line = LINE if _is_wide() else LINE * sum(BELOW)
+    height = line / max(1.0, line * lines)
     y = 1.0
     for text, colour, bold in entries:
         panel.text(
@@ -216,7 +242,7 @@ def _list(panel: Axes, dots: Sequence[Dot], own: Collection[int], numbered: Coll
             text,
             transform=panel.transAxes,
             va="top",
-            fontsize=8.5 * height / LINE,
+            fontsize=8.5 * height / line,
             color=colour,
             fontweight="bold" if bold else "normal",
             linespacing=1.0,
@@ -239,7 +265,7 @@ def _entries(
         numbers = dot.failure or f"{'' if head == REFERENCE_HEAD else error}{dot.cost:.2g} s"
         numbers += f", {dot.found}" if dot.found and head != OTHERS else ""
         number = f"{dot.number}  " if numbered is None or dot.number in numbered else ""
-        found.append((_wrapped(f"{number}{dot.marked}: {numbers}", WIDTH), colour, False))
+        found.append((_wrapped(f"{number}{dot.marked}: {numbers}", _letters(1), INDENT), colour, False))
     return found
 
 
@@ -247,13 +273,13 @@ def _footnote(dots: Sequence[Dot]) -> list[tuple[str, str, bool]]:
     """The meaning of the mark, if any choice has it."""
     farthest = max(dot.apart for dot in dots)
     text = f"{MARK} monitors record elsewhere than in the reference, up to {farthest:.3g} m away"
-    return [("", DARK, False), (_wrapped(text, WIDTH), DARK, False)] if farthest > 0.0 else []
+    return [("", DARK, False), (_wrapped(text, _letters(1), INDENT), DARK, False)] if farthest > 0.0 else []
 
 
-def _wrapped(text: str, width: int) -> str:
+def _wrapped(text: str, width: int, indent: str = "") -> str:
     """A text in lines of at most `width` characters, in which every number is on one line with the word after it."""
     import textwrap
 
     together = re.sub(r"(?<=\d) (?=\S)", NO_BREAK, text)
-    lines = textwrap.wrap(together, width, subsequent_indent="     " if width == WIDTH else "")
+    lines = textwrap.wrap(together, width, subsequent_indent=indent)
     return "\n".join(lines).replace(NO_BREAK, " ")
