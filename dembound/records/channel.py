@@ -20,7 +20,8 @@ class Channel:
     values : (n,) in m/s², m/s or m.
     time_step : from one sample to the next, s.
     begin : time of the first sample, s.
-    stated_peak : largest |value| as the file's header states it, in the unit of the values; None without one.
+    stated_peak : largest |value| as the file's header states it, in the unit of the values; None without one. That of
+    K-NET and KiK-net is of the values without their mean, that of digitised film is of the points, before resampling.
     """
 
     component: str

@@ -23,7 +23,7 @@ from dembound.waves.unit_names import unit_named
 
 TYPES: tuple[type[Format], ...] = (Peer, Csmip, Cosmos, Knet, Smc)
 REGISTERED: tuple[type[Format], ...] = with_registered("dembound.records", Format, TYPES)
-FORMATS: list[Format] = [form() for form in (*REGISTERED, TextColumns)]
+FORMATS: list[Format] = [*(form() for form in REGISTERED), TextColumns()]
 """All formats; the last one is tried on files that no other one recognises."""
 
 
@@ -40,7 +40,7 @@ def read_record(path: Path, unit: str | None = None) -> Record:
     given = None if unit is None else unit_named(unit)
     if unit is not None and (given is None or given.quantity not in MOTIONS):
         raise CaseError([f"--unit: is {unit}, must be one of {USUAL}"])
-    source = Source(path, re.split(r"\r\n|\n|\r", decoded(content_of(path))), unit)
+    source = Source(path, re.split(r"\r\n|\n|\r", decoded(content_of(path)).rstrip("\x1a\r\n\t ")), unit)
     form = next(form for form in FORMATS if form.recognises(source.lines))
     try:
         record = form.read(source)

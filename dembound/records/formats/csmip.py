@@ -8,6 +8,8 @@ velocities and displacements. A line "/&" ends the channel.
 import re
 from collections.abc import Sequence
 
+import numpy as np
+
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
 from dembound.records.formats.source import COUNT, DECIMAL, END, Flaw, Source, rows_of
@@ -28,7 +30,7 @@ LAYOUT = {"V1": "(8f9.6)", "V2": "(8f10.3)"}
 class Csmip(Format):
     """All channels and quantities of a file."""
 
-    name = "CSMIP V1 or V2"
+    name = "CSMIP V1/V2"
 
     def recognises(self, lines: Sequence[str]) -> bool:
         """Whether the first lines are those of a V1, V2 or V3 file."""
@@ -66,28 +68,17 @@ def _volume(lines: Sequence[str], begin: int) -> str:
 def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], int]:
     """The quantities of the channel that begins at a line, by its index, and the index of the line that ends it."""
     at = begin + HEADER[volume]
-    before = source.line(at)
     component = source.found(r"^chan\s+\d+:\s*(.*?)\s*(?:deg)?\s*$", begin, at, "the component")[1]
     found = []
-    if volume == "V1" and not BLOCK.match(before):
-        count = int(source.found(rf"no\. of points\s*=\s*{COUNT}\b", begin, at, "the number of points")[1])
-        unit = source.found(r"units of uncor\w*\s.*?and (g)(/10)?", begin, at, "the unit")
-        pairs = source.fixed(at, 2 * count, PAIRS)
-        time, values = source.evenly(pairs[::2], pairs[1::2] * (0.1 if unit[2] else 1.0))
-        step = (time[-1] - time[0]) / (len(time) - 1)
-        peak = source.lines[at - 7][60:70]
-        found.append(source.channel(component, source.measured(unit[1]), values, step, time[0], peak))
-        at += -(-count // 5)
+    if volume == "V1" and re.fullmatch(r"[-.\d\s]+", source.line(at)):
+        channel, at = _from_film(source, component, begin, at)
+        found.append(channel)
     while at < len(source.lines) and (block := BLOCK.match(source.lines[at])):
         count, layout = int(block[1]), block[6] if "(" in block[6] else LAYOUT[volume]
         values = source.fixed(at + 1, count, layout)
         rate = float(block[3])
         step = rate if not block[4] else 1.0 / rate if rate else 0.0
-        if volume == "V1":
-            peak = source.lines[at - 7][60:70]
-        else:
-            pattern = rf"^peak\s+{block[2]}\w*\s*=\s*({DECIMAL})"
-            peak = source.found(pattern, begin, begin + 25, f"the peak of {block[2]}")[1]
+        peak = _peak(source, at) if volume == "V1" else _peak_of(block[2], source, begin)
         found.append(source.channel(component, source.measured(block[5]), values, step, peak=peak))
         at += 1 + rows_of(count, layout)
     if not found:
@@ -95,3 +86,28 @@ def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], in
     if at < len(source.lines) and not END.match(source.lines[at]):
         raise Flaw(f"line {at + 1} does not end the channel, after {len(found[-1].values)} samples")
     return found, at
+
+
+def _from_film(source: Source, component: str, begin: int, at: int) -> tuple[Channel, int]:
+    """The channel whose pairs of time and acceleration begin at a line, and the index of the line behind them."""
+    count = int(source.found(rf"no\. of points\s*=\s*{COUNT}\b", begin, at, "the number of points")[1])
+    unit = source.found(r"units of uncor\w*\s.*?and (g)(/10)?", begin, at, "the unit")
+    pairs = source.fixed(at, 2 * count, PAIRS)
+    numbers = pairs[1::2] * (0.1 if unit[2] else 1.0)
+    step, values = source.from_film(pairs[::2], numbers)
+    found = float(np.abs(numbers).max())
+    channel = source.channel(
+        component, source.measured(unit[1]), values, step, float(pairs[0]), _peak(source, at), found
+    )
+    return channel, at + rows_of(2 * count, PAIRS)
+
+
+def _peak(source: Source, at: int) -> str:
+    """The peak (g) in the header of V1 whose samples or the line before them is at this index."""
+    peak = source.lines[at - 7][60:70]
+    return "" if peak.strip().startswith("-999.") else peak
+
+
+def _peak_of(quantity: str, source: Source, begin: int) -> str:
+    """The peak of a quantity, by its first letters, in the header of V2 that begins at this index."""
+    return source.found(rf"^peak\s+{quantity}\w*\s*=\s*({DECIMAL})", begin, begin + 25, f"the peak of {quantity}")[1]

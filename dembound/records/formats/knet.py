@@ -5,6 +5,8 @@ The integers have an offset, which stays in the values; "Max. Acc." in the heade
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from dembound.records.channel import Record
 from dembound.records.formats.format import Format
 from dembound.records.formats.source import DECIMAL, Flaw, Source
@@ -20,7 +22,7 @@ DIRECTIONS = {
 class Knet(Format):
     """Values are integers times the "Scale Factor", as 3920(gal)/6182761."""
 
-    name = "K-NET or KiK-net"
+    name = "K-NET/KiK-net"
 
     def recognises(self, lines: Sequence[str]) -> bool:
         """Whether the header begins with the origin time and has a sampling frequency."""
@@ -41,9 +43,10 @@ class Knet(Format):
         if not (0.0 < float(rate) <= 1e6 and 0.0 < float(duration) <= 1e6 and float(steps) > 0.0):
             raise Flaw("sampling frequency, duration and scale factor must be positive")
         numbers = source.free(HEADER, round(float(duration) * float(rate))) * (float(full) / float(steps))
+        without_mean = float(np.abs(numbers - numbers.mean()).max())
         component = DIRECTIONS.get(direction, direction)
         channel = source.channel(
-            component, source.measured(unit), numbers, 1.0 / float(rate), peak=peak, without_mean=True
+            component, source.measured(unit), numbers, 1.0 / float(rate), peak=peak, found=without_mean
         )
         kind = "KiK-net" if direction in DIRECTIONS else "K-NET"
         return Record(kind, f"{station}, earthquake of {origin}", (channel,))

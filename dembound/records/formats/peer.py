@@ -17,7 +17,7 @@ SAMPLES = (rf"NPTS\s*=\s*{COUNT}\b.*?DT\s*=\s*({DECIMAL})", rf"^\s*{COUNT}\s+({D
 class Peer(Format):
     """Second line: event, station and component; third line: quantity and unit; fourth line: number and time step."""
 
-    name = "PEER AT2, VT2 or DT2"
+    name = "PEER AT2/VT2/DT2"
 
     def recognises(self, lines: Sequence[str]) -> bool:
         """Whether the third line has a quantity and its unit."""

@@ -7,6 +7,8 @@ cm and s. Uncorrected accelerations from film are pairs of time and value, in fi
 import re
 from collections.abc import Sequence
 
+import numpy as np
+
 from dembound.records.channel import Record
 from dembound.records.formats.format import Format
 from dembound.records.formats.source import Flaw, Source
@@ -44,13 +46,16 @@ class Smc(Format):
         if not 0.0 < integers[COUNT] < 1e9:
             raise Flaw(f"states {integers[COUNT]:g} values in line {TEXTS + 3}, must be positive")
         numbers, time, rate = source.free(begin, int(integers[COUNT])), 0.0, reals[RATE]
-        step = 1.0 / rate if 0.0 < rate < reals[UNKNOWN] else 0.0
-        if not step:
-            even, numbers = source.evenly(numbers[: len(numbers) // 2 * 2 : 2], numbers[1::2])
-            step, time = (even[-1] - even[0]) / (len(even) - 1), even[0]
+        found = None
+        if 0.0 < rate < reals[UNKNOWN]:
+            step = 1.0 / float(rate)
+        else:
+            points = numbers[: len(numbers) // 2 * 2].reshape(-1, 2)
+            (step, numbers), time = source.from_film(points[:, 0], points[:, 1]), float(points[0, 0])
+            found = float(np.abs(points[:, 1]).max())
         known = [place for place in PEAKS if reals[place] != reals[UNKNOWN]]
         peak = texts[max(known, key=lambda place: abs(reals[place]))] if known else ""
         named = source.found(r"^station\s*=\s*(.*?)\s*component\s*=\s*(.*?)\s*$", 0, TEXTS, "station and component")
         title = f"{named[1]}, {' '.join(source.lines[3].split())}"
-        channel = source.channel(named[2], source.measured(UNITS[kind]), numbers, step, time, peak)
+        channel = source.channel(named[2], source.measured(UNITS[kind]), numbers, step, time, peak, found)
         return Record("USGS SMC", title, (channel,))

@@ -33,6 +33,9 @@ COUNT = r"(\d{1,9})"
 DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[Ee][+-]?\d+)?"
 """Patterns of a number of samples and of any number."""
 
+LONGEST = 10
+"""Times the number of digitised points that even ones may have."""
+
 NUMBER = re.compile(DECIMAL)
 LAYOUT = re.compile(r"\(\s*(\d*)\s*[a-z]+(\d+)(?:\.\d+)?[^()]*\)", re.IGNORECASE)
 END = re.compile(r"\s*(/&|end-of-data)", re.IGNORECASE)
@@ -96,20 +99,23 @@ class Source:
             raise Flaw(f'line {number} has "{fields[wrong].strip()}" in place of a number') from None
 
     def free(self, first: int, count: int) -> np.ndarray:
-        """All numbers from line index `first` to the end of the file, separated by blanks or signs.
+        """The numbers (count,) from line index `first` on, separated by blanks or signs.
 
-        Raises Flaw for fewer than `count`, and for other text; more ones are remarked on.
+        Raises Flaw for fewer ones in the rest of the file, and for other text; more ones are remarked on.
         """
         found: list[float] = []
         for index, line in enumerate(self.lines[first:], start=first):
-            if NUMBER.sub("", line).strip(" \t\x1a"):
-                raise Flaw(f'line {index + 1} has "{line.strip()[:30]}" in place of numbers')
-            found += map(float, NUMBER.findall(line))
+            try:
+                found += [float(text) for text in line.split()]
+            except ValueError:
+                if NUMBER.sub("", line).strip():
+                    raise Flaw(f'line {index + 1} has "{line.strip()[:30]}" in place of numbers') from None
+                found += map(float, NUMBER.findall(line))
         if len(found) < count:
-            raise Flaw(f"ends at line {len(self.lines)}, after {len(found)} of {count} samples")
+            raise Flaw(f"ends at line {len(self.lines)}, after {len(found)} of {count} numbers")
         if len(found) > count:
-            self.remarks.append(f"the header states {count} samples, the file has {len(found)}")
-        return np.array(found)
+            self.remarks.append(f"{len(found) - count} numbers behind the {count} that the header states are left out")
+        return np.array(found[:count])
 
     def measured(self, text: str) -> tuple[Quantity, float]:
         """Quantity and size in SI of a unit in the header, or of the unit that is given instead.
@@ -129,21 +135,40 @@ class Source:
             )
             raise Flaw(f"{said}; give it by --unit: {USUAL}")
         if stated.quantity not in MOTIONS:
-            raise Flaw(f"has {stated.quantity} ({text.strip()}), must have {', '.join(MOTIONS)}")
+            raise Flaw(f"has {stated.quantity} ({text.strip()}), must have {' or '.join(MOTIONS)}")
         return MOTIONS[stated.quantity], stated.size
 
     def evenly(self, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Times (k,) s and values at even times; raises Flaw for times that do not increase or have gaps."""
-        if len(time) < FEWEST:
-            raise Flaw(f"has {len(time)} samples, must have {FEWEST} or more")
-        if not np.isfinite(time).all() or (np.diff(time) < 0.0).any() or time[0] == time[-1]:
-            raise Flaw("must have times that increase")
+        self._require_times(time)
         try:
             time, values, notes = evenly(self.path, time, values)
         except CaseError as error:
             raise Flaw(error.problems[0].removeprefix(f"{self.path}: ")) from None
         self.remarks.extend(notes)
         return time, values
+
+    def from_film(self, time: np.ndarray, values: np.ndarray) -> tuple[float, np.ndarray]:
+        """The median of the time steps (s) of digitised points (k,), and values at such steps on lines between them.
+
+        Points at the same time count with their mean. Raises Flaw for times that go back.
+        """
+        self._require_times(time)
+        time, place = np.unique(time, return_inverse=True)
+        values = np.bincount(place, values) / np.bincount(place)
+        step = float(f"{np.median(np.diff(time)):.6g}")  # of times with few digits
+        if (time[-1] - time[0]) / step > LONGEST * len(time):
+            raise Flaw(f"has gaps of up to {np.diff(time).max():.4g} s between points {step:.4g} s apart")
+        even = np.arange(time[0], time[-1] + 1e-6 * step, step)
+        self.remarks.append(f"digitised at uneven times, resampled every {step:.4g} s by straight lines")
+        return step, np.interp(even, time, values)
+
+    def _require_times(self, time: np.ndarray) -> None:
+        """Raise Flaw for times that are too few, not finite or go back."""
+        if len(time) < FEWEST:
+            raise Flaw(f"has {len(time)} samples, must have {FEWEST} or more")
+        if not (np.abs(time) <= LARGEST).all() or (np.diff(time) < 0.0).any() or time[0] == time[-1]:
+            raise Flaw("must have times that increase")
 
     def channel(
         self,
@@ -153,33 +178,33 @@ class Source:
         time_step: float,
         begin: float = 0.0,
         peak: str = "",
-        without_mean: bool = False,
+        found: float | None = None,
     ) -> Channel:
         """A channel in SI.
 
         Parameters
         ----------
         unit : by `measured`. numbers : (n,) in this unit. peak : as the header states it in this unit; other text for
-        none. without_mean : whether the stated peak is one of the numbers without their mean.
+        none. found : what the stated peak is compared with; by default the largest size of the numbers.
 
         Raises Flaw for too few samples, samples that are not finite, and a time step that is not positive.
         """
         quantity, size = unit
-        values = size * numbers
-        if len(values) < FEWEST:
-            raise Flaw(f"has {len(values)} samples, must have {FEWEST} or more")
-        if not (wrong := np.abs(values) <= LARGEST).all():
-            raise Flaw(f"sample {int(np.argmin(wrong)) + 1} is {numbers[np.argmin(wrong)]:g}, must be finite")
+        if len(numbers) < FEWEST:
+            raise Flaw(f"has {len(numbers)} samples, must have {FEWEST} or more")
+        if not (sound := np.abs(numbers) <= LARGEST).all():
+            raise Flaw(f"sample {int(np.argmin(sound)) + 1} is {numbers[np.argmin(sound)]:g}, must be finite")
         if not SMALLEST <= time_step <= LARGEST:
-            raise Flaw(f"the time step is {time_step:g} s, must be positive")
+            raise Flaw(f"has a time step of {time_step:g} s, must be positive")
         stated, rounding = _with_rounding(peak)
-        if stated is not None:
-            found = float(np.abs(values - values.mean() if without_mean else values).max())
-            if abs(found - size * stated) > size * (PEAK_TOLERANCE * stated + rounding):
-                name, si = component or "channel", SI[quantity]
-                said = f"the header states a peak of {size * stated:.4g} {si}, the samples have {found:.4g} {si}"
-                self.remarks.append(f"{name}: {said}")
-        return Channel(component, quantity, values, time_step, begin, None if stated is None else size * stated)
+        if stated is None:
+            return Channel(component, quantity, size * numbers, time_step, begin)
+        found = float(np.abs(numbers).max()) if found is None else found
+        if abs(found - stated) > PEAK_TOLERANCE * stated + rounding:
+            states, have = (f"{size * each:.4g} {SI[quantity]}" for each in (stated, found))
+            name = component or quantity
+            self.remarks.append(f"{name}: the header states a peak of {states}, the samples have {have}")
+        return Channel(component, quantity, size * numbers, time_step, begin, size * stated)
 
 
 def rows_of(count: int, layout: str) -> int:
