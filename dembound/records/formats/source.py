@@ -75,7 +75,7 @@ class Source:
     def fields(self, first: int, count: int, layout: str) -> list[str]:
         """`count` fields of a Fortran layout such as "(8f9.6)", from line index `first` on.
 
-        Raises Flaw for another layout, and for a file or channel that ends before.
+        Raises Flaw for another layout, a file or channel that ends before, and more numbers in the last line.
         """
         (per, width), rows = _columns_of(layout), rows_of(count, layout)
         if first + rows > len(self.lines):
@@ -86,7 +86,10 @@ class Source:
                     f"line {index + 1} ends the channel after {per * (index - first)} of {count} numbers or fewer"
                 )
         lines = self.lines[first : first + rows]
-        return [line[at : at + width] for line in lines for at in range(0, per * width, width)][:count]
+        fields = [line[at : at + width] for line in lines for at in range(0, per * width, width)]
+        if "".join(fields[count:]).strip():
+            raise Flaw(f"line {first + rows} has more than the last of {count} numbers")
+        return fields[:count]
 
     def fixed(self, first: int, count: int, layout: str) -> np.ndarray:
         """The numbers (count,) of `fields`; raises Flaw as well for what is no number."""

@@ -82,7 +82,7 @@ def _of_columns(source: Source, columns: Columns) -> list[Channel]:
         if column != at:
             spelled = _unit(units[column], MOTIONS) or _only_unit(header)
             even, values = source.evenly(time, np.array(columns.values(column)))
-            between = float(even[-1] - even[0]) / (len(even) - 1)
+            between = float(f"{(even[-1] - even[0]) / (len(even) - 1):.12g}")
             found.append(source.channel(names[column], source.measured(spelled), values, between, float(even[0])))
     return found
 
