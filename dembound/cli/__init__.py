@@ -22,6 +22,7 @@ from dembound.cli import (  # each registers its commands with the application
     stability,
     starting,
     sweep,
+    wave,
 )
 from dembound.cli.app import app, main
 
@@ -46,4 +47,5 @@ __all__ = [
     "stability",
     "starting",
     "sweep",
+    "wave",
 ]

@@ -59,7 +59,7 @@ ORDER = (
     *("new", "check", "run", "advise", "plot", "report", "calibrate", "chart", "sweep"),
     *("cases", "schema", "packing", "boundary", "stability", "dispersion", "exact"),
     *("resume", "rerun", "library", "respond"),
-    *("estimate", "compare", "signals", "view", "movie", "gauge", "hopkinson", "cache"),
+    *("estimate", "compare", "signals", "view", "movie", "wave", "gauge", "hopkinson", "cache"),
 )
 """All commands in the order of work: the usual steps, then the panel `MORE`."""
 

@@ -22,11 +22,13 @@ class Filters:
     """Corners in Hz of the filters of a signal; None and empty for none.
 
     low_pass, high_pass : of the lower and the upper range that remains. notches : frequencies that are taken out.
+    order : of the Butterworth filters in one direction.
     """
 
     low_pass: float | None = None
     high_pass: float | None = None
     notches: tuple[float, ...] = ()
+    order: int = ORDER
 
     def apply(self, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
         """The filtered signal (k,) at even times (k,) s, and what was done.
@@ -36,19 +38,25 @@ class Filters:
         from scipy.signal import butter, iirnotch, sosfiltfilt, tf2sos
 
         rate = (len(time) - 1) / float(time[-1] - time[0])
-        if problems := list(self._problems(rate, len(time))):
-            raise CaseError(problems)
+        self.require(rate, len(time))
         notes = []
         for corner, kind in ((self.high_pass, "highpass"), (self.low_pass, "lowpass")):
             if corner is not None:
-                values = _padded(sosfiltfilt, butter(ORDER, corner, kind, fs=rate, output="sos"), values, rate / corner)
+                values = _padded(
+                    sosfiltfilt, butter(self.order, corner, kind, fs=rate, output="sos"), values, rate / corner
+                )
                 words = f"{kind.removesuffix('pass')} pass at {corner:g} Hz (6 dB)"
-                notes.append(f"filter: {words}, Butterworth of order {ORDER} forwards and backwards")
+                notes.append(f"filter: {words}, Butterworth of order {self.order} forwards and backwards")
         for notch in self.notches:
             sections = tf2sos(*iirnotch(notch, QUALITY, fs=rate))
             values = _padded(sosfiltfilt, sections, values, QUALITY * rate / notch)
             notes.append(f"filter: notch at {notch:g} Hz, {notch / QUALITY:g} Hz wide, forwards and backwards")
         return values, notes
+
+    def require(self, rate: float, count: int) -> None:
+        """Raise CaseError for corners that a record of so many samples does not have; rate : of them, Hz."""
+        if problems := list(self._problems(rate, count)):
+            raise CaseError(problems)
 
     def _problems(self, rate: float, count: int) -> Iterator[str]:
         """Corners that are impossible in this record."""

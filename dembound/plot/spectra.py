@@ -58,6 +58,20 @@ CurveOf = Callable[[Histories, str, int], Curve | None]
 """The line of a run's histories for a monitor and a column; None if the run has none."""
 
 
+def fourier_curve(values: np.ndarray, time_step: float) -> Curve:
+    """The smoothed Fourier amplitudes of values (n,), time_step (s) apart, over those that are not smoothed."""
+    frequency, spectrum = fourier_spectrum(values, time_step)
+    centre = shown_frequencies(len(values), time_step)
+    power = np.abs(spectrum) ** 2
+    return Curve(centre, np.sqrt(smoothed(frequency, power, centre)), (frequency[1:], np.sqrt(power[1:])))
+
+
+def response_curve(acceleration: np.ndarray, time_step: float) -> Curve:
+    """The pseudo-accelerations, 5 % damping, of a base's acceleration (n,), m/s², time_step (s) apart."""
+    found = response_spectrum(acceleration, time_step, usual_periods(len(acceleration), time_step))
+    return Curve(found.period, found.pseudo_acceleration)
+
+
 @styled
 def plot_fourier(
     runs: Sequence[Path],
@@ -73,11 +87,7 @@ def plot_fourier(
     def curve(run: Histories, name: str, column: int) -> Curve | None:
         if name not in run:
             return None
-        history = run[name]
-        frequency, spectrum = fourier_spectrum(history.values[:, column], _time_step(name, history))
-        centre = shown_frequencies(len(history.time), _time_step(name, history))
-        power = np.abs(spectrum) ** 2
-        return Curve(centre, np.sqrt(smoothed(frequency, power, centre)), (frequency[1:], np.sqrt(power[1:])))
+        return fourier_curve(run[name].values[:, column], _time_step(name, run[name]))
 
     return _figure(
         runs, quantity, monitors, component, curve, f"Fourier spectra of the {quantity} at the monitors",
@@ -144,9 +154,7 @@ def plot_response(
     def curve(run: Histories, name: str, column: int) -> Curve | None:
         if name not in run:
             return None
-        history, step = run[name], _time_step(name, run[name])
-        found = response_spectrum(history.values[:, column], step, usual_periods(len(history.time), step))
-        return Curve(found.period, found.pseudo_acceleration)
+        return response_curve(run[name].values[:, column], _time_step(name, run[name]))
 
     return _figure(
         runs, "acceleration", monitors, component, curve, "Response spectra of the monitors", "period (s)",
@@ -178,7 +186,7 @@ def _figure(
                 _draw(panel, curve, run, name, column, run_name, line_style(index))
     if any(line.get_gid() is None for panel in panels.flat for line in panel.lines):
         panels.flat[-1].plot([], [], **LEGEND_OF_FAINT)
-    _on_logarithmic_axes(panels)
+    on_logarithmic_axes(panels)
     for row, name in zip(panels, shown, strict=True):
         place = monitor_title(name, [run[name] for run in histories if name in run])
         row[0].set_title(place, loc="left", fontsize=9, pad=3)
@@ -201,12 +209,17 @@ def _draw(
         behind = {"color": style["color"], **BEHIND}
         panel.plot(twin.along, twin.values, label=f"{label}, free field", gid=twin_of(name), **behind)
     if (line := curve(run, name, column)) is not None:
-        if line.faint is not None:
-            panel.plot(*line.faint, color=style["color"], **FAINT)
-        panel.plot(line.along, line.values, label=label, gid=name, **style)
+        draw_curve(panel, line, name, label, style)
 
 
-def _on_logarithmic_axes(panels: np.ndarray) -> None:
+def draw_curve(panel: Axes, line: Curve, name: str, label: str, style: dict[str, Any]) -> None:
+    """Draw a smoothed spectrum over a thin one that is not; the line has the name, and the label in a legend."""
+    if line.faint is not None:
+        panel.plot(*line.faint, color=style["color"], **FAINT)
+    panel.plot(line.along, line.values, label=label, gid=name, **style)
+
+
+def on_logarithmic_axes(panels: np.ndarray) -> None:
     """Make all axes logarithmic, from the lowest to the highest value of named lines, or down to `DECADES` of it.
 
     Raises CaseError if all lines are zero or blank.

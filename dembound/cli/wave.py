@@ -1,0 +1,234 @@
+"""The command wave."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Table
+from rich.text import Text
+
+from dembound.cli.app import MORE, app, png, writable
+from dembound.cli.console import compact_table, err, out
+from dembound.cli.option_tables import with_tables
+from dembound.errors import CaseError
+
+if TYPE_CHECKING:
+    from dembound.records.channel import Channel, Record
+    from dembound.records.processing import Motion, Processing
+
+STEPS = "Processing"
+"""Panel of the help."""
+
+HEADS = (
+    *("com-\nponent", "sam-\nples", "rate\n(Hz)", "PGA\n(m/s²)", "PGA\n(g)", "PGV\n(m/s)", "PGD\n(m)"),
+    *("Arias\n(m/s)", "D5-95\n(s)", "v end\n(m/s)", "d end\n(m)", "usable\n(Hz)"),
+)
+"""Heads of the table."""
+
+
+class Baseline(StrEnum):
+    """What is removed as the baseline."""
+
+    mean = "mean"
+    linear = "linear"
+    zero_velocity = "zero-velocity"
+    none = "none"
+
+
+@dataclass(frozen=True)
+class ProcessingOptions:
+    """How a record becomes a wave, in the order of the steps; None: as usual, or with --raw nothing."""
+
+    raw: Annotated[
+        bool, typer.Option("--raw", help="Process nothing but what other options name.", rich_help_panel=STEPS)
+    ] = False
+    begin: Annotated[
+        float | None, typer.Option("--from", help="Keep what is from this time on (s).", rich_help_panel=STEPS)
+    ] = None
+    end: Annotated[
+        float | None, typer.Option("--to", help="Keep what is up to this time (s).", rich_help_panel=STEPS)
+    ] = None
+    baseline: Annotated[
+        Baseline | None,
+        typer.Option(
+            metavar="KIND",
+            help="mean: remove that of the samples before the motion, if there are any, else of all; linear: a fitted "
+            "line; zero-velocity: the mean, and then the velocity left at the end; none. By default mean.",
+            rich_help_panel=STEPS,
+        ),
+    ] = None
+    taper: Annotated[
+        float | None,
+        typer.Option(
+            help="Cosine tapers at both ends (s); by default 2, in short records less.", rich_help_panel=STEPS
+        ),
+    ] = None
+    high_pass: Annotated[
+        float | None,
+        typer.Option(
+            help="Keep what is above (Hz), 0: all; by default 0.1, in short records more.", rich_help_panel=STEPS
+        ),
+    ] = None
+    low_pass: Annotated[
+        float | None, typer.Option(help="Keep what is below (Hz); by default all.", rich_help_panel=STEPS)
+    ] = None
+    order: Annotated[
+        int,
+        typer.Option(help="Order of the Butterworth filters, in each direction.", min=1, rich_help_panel=STEPS),
+    ] = 4
+    pga: Annotated[
+        float | None,
+        typer.Option(help="Scale each component to this peak of its acceleration (m/s²).", rich_help_panel=STEPS),
+    ] = None
+    scale: Annotated[float, typer.Option(help="Multiply by this factor.", rich_help_panel=STEPS)] = 1.0
+
+    def of(self, channel: Channel) -> Processing:
+        """What is done to a channel; raises CaseError for a scale beside a PGA, or one without meaning."""
+        from dembound.records.processing import Processing, usual, windowed
+
+        if self.pga is not None and self.scale != 1.0:
+            raise CaseError(["--scale: is not allowed together with --pga"])
+        if self.scale == 0.0 or (self.pga is not None and not self.pga > 0.0):
+            raise CaseError(["--pga, --scale: must not be zero, and a PGA is positive"])
+        kept = windowed(channel, self.begin, self.end)
+        base = Processing() if self.raw else usual(kept.time_step * len(kept.values))
+        high = base.filters.high_pass if self.high_pass is None else self.high_pass or None
+        return Processing(
+            self.begin,
+            self.end,
+            base.baseline if self.baseline is None else self.baseline.value,
+            base.taper if self.taper is None else self.taper,
+            replace(base.filters, high_pass=high, low_pass=self.low_pass, order=self.order),
+            self.pga,
+            self.scale,
+        )
+
+
+def _csv(param: typer.CallbackParam, path: Path | None) -> Path | None:
+    """A wave to write, if its folder exists. Raises CaseError if its name does not end in ``.csv``."""
+    if path is not None and path.suffix.lower() != ".csv":
+        raise CaseError([f"{param.opts[0]}: is {path}, must end in .csv"])
+    return writable(path)
+
+
+@app.command("wave", rich_help_panel=MORE)
+@with_tables
+def wave(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Record: AT2, V1, V2, K-NET, CSV and others.")],
+    component: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="This component only. May be repeated.")
+    ] = None,
+    unit: Annotated[
+        str | None, typer.Option(help="Unit of the values, e.g. g, cm/s² or m/s; by default the file's.")
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="NAME.csv",
+            help="Wave to write, of several components with their names appended; by default FILE_velocity.csv, here.",
+            callback=_csv,
+        ),
+    ] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Picture to write (PNG); by default that of the wave.", callback=png)
+    ] = None,
+    *,
+    processing: ProcessingOptions,
+) -> None:
+    """Make a wave of a measured ground motion (CSV and PNG).
+
+    It is processed, measured and drawn, and its velocity is written as a wave that a case names.
+
+    By default the mean and what is below 0.1 Hz are removed and both ends are tapered; with --raw nothing is done.
+    """
+    from dembound.plot.record import plot_motions
+    from dembound.plot.style import save
+    from dembound.records.formats import read_record
+    from dembound.records.processing import processed
+    from dembound.records.wave_file import write_wave
+
+    record = read_record(file, unit)
+    channels = _chosen(record, component)
+    target = output or Path(f"{file.stem}_velocity.csv")
+    paths = _paths(target, channels)
+    if same := next((path for path in paths if path.exists() and path.samefile(file)), None):
+        raise CaseError([f"--output: {same} is the record"])
+    out.print(f"{file}: {record.format}, {record.title or 'no title'}")
+    for remark in record.remarks:
+        err.print(f"warning: {remark}")
+    motions = [processed(channel, processing.of(channel)) for channel in channels]
+    for line in _lines(motions):
+        out.print(f"  {line}")
+    out.print(_table(channels, motions, processing))
+    for motion in motions:
+        for warning in motion.warnings():
+            err.print(f"warning: {motion.component or file.stem}: {warning}")
+    for path, motion in zip(paths, motions, strict=True):
+        origin = [
+            f"made by dembound wave of {file.name}, {record.format}",
+            record.title,
+            f"component: {motion.component}",
+        ]
+        write_wave(path, motion, [line for line in origin if line])
+        out.print(f"wrote {path}")
+    drawn = picture or target.with_suffix(".png")
+    save(plot_motions(motions, record.title or file.name), drawn)
+    out.print(f"wrote {drawn}")
+
+
+def _chosen(record: Record, names: Sequence[str] | None) -> list[Channel]:
+    """The channels of components, in any case of letters; all without names. Raises CaseError for unknown ones."""
+    known = [channel.component for channel in record.channels]
+    folded = {name.casefold() for name in names or known}
+    if unknown := [name for name in names or () if name.casefold() not in {each.casefold() for each in known}]:
+        raise CaseError([f"--component: is {name}, must be one of {', '.join(known)}" for name in unknown])
+    return [channel for channel in record.channels if channel.component.casefold() in folded]
+
+
+def _lines(motions: Sequence[Motion]) -> Iterator[str]:
+    """What was done, in one line for all components where it is the same."""
+    for steps in zip(*(motion.steps for motion in motions), strict=True):
+        if len(set(steps)) == 1:
+            yield steps[0]
+        else:
+            yield from (f"{step} ({motion.component})" for step, motion in zip(steps, motions, strict=True))
+
+
+def _table(channels: Sequence[Channel], motions: Sequence[Motion], options: ProcessingOptions) -> Table:
+    """The measures of all components, a row each."""
+    from dembound.records.measures import measures_of, usable_band
+    from dembound.waves.unit_names import STANDARD_GRAVITY
+
+    table = compact_table(show_edge=False)
+    table.padding = 0  # twelve columns fit into 80 characters
+    for head in HEADS:
+        table.add_column(Text(head), justify="left" if head == HEADS[0] else "right")
+    for channel, motion in zip(channels, motions, strict=True):
+        found, (low, high) = measures_of(motion), usable_band(channel, options.of(channel))
+        table.add_row(
+            motion.component or "-",
+            f"{len(motion.time)}",
+            f"{1.0 / motion.time_step:.4g}",
+            *(f"{value:.3g}" for value in (found.pga, found.pga / STANDARD_GRAVITY, found.pgv, found.pgd, found.arias)),
+            f"{found.duration:.3g}",
+            *(f"{value + 0.0:.1g}" for value in (found.final_velocity, found.final_displacement)),
+            f"{low:.2g}-{high:.2g}" if low < high else "none",
+        )
+    return table
+
+
+def _paths(target: Path, channels: Sequence[Channel]) -> list[Path]:
+    """A file for each channel: that which is named, or with the names of components, or their numbers, appended."""
+    if len(channels) == 1:
+        return [target]
+    names = [re.sub(r"[^\w-]+", "_", channel.component) for channel in channels]
+    unique = len(set(map(str.casefold, names))) == len(names) and all(names)
+    return [target.with_stem(f"{target.stem}_{name if unique else k}") for k, name in enumerate(names, start=1)]

@@ -1,0 +1,49 @@
+"""A measured ground motion: its histories and its spectra, a column for each component."""
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+from dembound.plot.spectra import LEGEND_OF_FAINT, draw_curve, fourier_curve, on_logarithmic_axes, response_curve
+from dembound.plot.style import line_style, new_figure, styled
+from dembound.records.processing import Motion
+
+LABELS = (
+    "acceleration\n(m/s²)",
+    "velocity\n(m/s)",
+    "displacement\n(m)",
+    "Fourier amplitude of\nthe acceleration (m/s)",
+    "pseudo-acceleration,\n5 % damping (m/s²)",
+)
+"""Axes of the rows: three histories, two spectra."""
+
+HISTORIES = 3
+"""Rows of histories."""
+
+
+@styled
+def plot_motions(motions: Sequence[Motion], title: str) -> Figure:
+    """Acceleration, velocity, displacement, Fourier and response spectrum of components, with common axes in a row."""
+    figure = new_figure(2.5 + 4.0 * len(motions), 9.5)
+    panels = figure.subplots(len(LABELS), len(motions), sharex="row", sharey="row", squeeze=False)
+    for column, motion in zip(panels.T, motions, strict=True):
+        name, look = motion.component or "motion", line_style(0)
+        for panel, values in zip(column, (motion.acceleration, motion.velocity, motion.displacement), strict=False):
+            panel.plot(motion.time, values, gid=name, **look | {"linewidth": 0.7})
+        for panel, curve in zip(column[HISTORIES:], (fourier_curve, response_curve), strict=True):
+            draw_curve(panel, curve(motion.acceleration, motion.time_step), name, name, look)
+        for panel in column[: HISTORIES - 1]:
+            panel.tick_params(labelbottom=False)
+        for panel, along in zip(column[HISTORIES - 1 :], ("time (s)", "frequency (Hz)", "period (s)"), strict=True):
+            panel.set_xlabel(along)
+        column[0].set_title(name)
+    for panel, label in zip(panels[:, 0], LABELS, strict=True):
+        panel.set_ylabel(label)
+    panels[HISTORIES, -1].plot([], [], **LEGEND_OF_FAINT)
+    panels[HISTORIES, -1].legend(
+        *([each[-1:] for each in panels[HISTORIES, -1].get_legend_handles_labels()]), loc="lower center", fontsize=8
+    )
+    for row in panels[HISTORIES:]:
+        on_logarithmic_axes(row)
+    figure.suptitle(title, fontsize=11)
+    return figure

@@ -1,0 +1,245 @@
+"""From a measured channel to a motion that a case takes: baseline, tapers, filters, integration, scale.
+
+Each step is one function, and `processed` lists in words what it has done. Between samples a motion is the band-limited
+function through them, so that integrals and derivatives are those of its Fourier series.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.gauge.baseline import FEWEST_QUIET, quiet_samples
+from dembound.gauge.filters import Filters
+from dembound.records.channel import Channel
+from dembound.results.histories import UNITS
+
+Baseline = Literal["mean", "linear", "zero-velocity", "none"]
+"""What is removed: a constant, a straight line, a constant and the velocity left at the end, or nothing."""
+
+TAPER, HIGH_PASS = 2.0, 0.1
+"""Usual length of tapers, s, and corner of the high pass, Hz."""
+
+LONGEST_TAPER, FEWEST_PERIODS = 0.05, 4.0
+"""Of short records: the usual taper over their length, and periods of the usual corner in them."""
+
+PAD = 1.5
+"""Zeros on either side of a record that is filtered, in periods of the lowest corner for each order of the filter."""
+
+CERTAIN = 0.9
+"""Share of the quiet samples before the first motion that is taken as noise."""
+
+AT_REST = 0.01
+"""Velocity at an end over the peak up to which a motion begins or ends at rest."""
+
+
+@dataclass(frozen=True)
+class Processing:
+    """What is done to a channel, in this order; without arguments nothing.
+
+    begin, end : times between which samples are kept, s. baseline : see `Baseline`. taper : length of the cosine tapers
+    at both ends, s, of the samples and then of the velocity. filters : Butterworth, without shift of phase. peak : PGA
+    (m/s²) to which the motion is scaled at last. factor : by which it is multiplied instead.
+    """
+
+    begin: float | None = None
+    end: float | None = None
+    baseline: Baseline = "none"
+    taper: float = 0.0
+    filters: Filters = field(default_factory=Filters)
+    peak: float | None = None
+    factor: float = 1.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A processed channel (n,): time, s; acceleration, m/s²; velocity, m/s; displacement, m; and what was done."""
+
+    component: str
+    time: np.ndarray
+    acceleration: np.ndarray
+    velocity: np.ndarray
+    displacement: np.ndarray
+    steps: tuple[str, ...]
+
+    @property
+    def time_step(self) -> float:
+        """From one sample to the next, s."""
+        return float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
+
+    def warnings(self) -> Iterator[str]:
+        """Ends at which the motion is not at rest, and so jumps: outside its samples a wave is zero."""
+        peak = float(np.abs(self.velocity).max())
+        for verb, value in (("begins", self.velocity[0]), ("ends", self.velocity[-1])):
+            if abs(value) > AT_REST * peak:
+                yield f"{verb} with {value:.3g} m/s, {abs(value) / peak:.2g} of its peak, and is zero outside: taper it"
+
+
+def usual(length: float) -> Processing:
+    """What a record of this length (s) usually needs to become a wave: mean, tapers of 2 s, high pass at 0.1 Hz.
+
+    Short records have shorter tapers and a higher corner.
+    """
+    taper = min(TAPER, LONGEST_TAPER * length)
+    corner = max(HIGH_PASS, float(f"{FEWEST_PERIODS / length:.2g}"))
+    return Processing(baseline="mean", taper=float(f"{taper:.2g}"), filters=Filters(high_pass=corner))
+
+
+def processed(channel: Channel, settings: Processing) -> Motion:
+    """The motion of a channel. Raises CaseError for windows, tapers and corners that the record does not have."""
+    channel = windowed(channel, settings.begin, settings.end)
+    step, count = channel.time_step, len(channel.values)
+    time = channel.begin + step * np.arange(count)
+    weights, slopes = tapers(count, step, settings.taper)
+    steps = [f"samples: {count} of {channel.quantity}, from {time[0]:g} to {time[-1]:g} s"]
+    unit = UNITS[channel.quantity][0]
+    offset, words = baseline(channel.values, settings.baseline, step, unit)
+    values = weights * (channel.values - offset)
+    steps += words
+    if settings.taper > 0.0:
+        steps.append(f"taper: cosine of {settings.taper:g} s at both ends of the {channel.quantity}")
+    if settings.baseline == "zero-velocity":
+        values, words = without_final_velocity(values, weights, step, channel)
+        steps += words
+    values, pad, words = filtered(values, step, settings.filters)
+    steps += words
+    acceleration, velocity = (each[pad : pad + count] for each in _motions(values, step, channel.quantity))
+    if channel.quantity == "acceleration":
+        steps.append("integration: velocity in the frequency domain")
+    else:
+        steps.append(f"differentiation: acceleration of the {channel.quantity} in the frequency domain")
+    if settings.taper > 0.0:
+        acceleration, velocity = weights * acceleration + slopes * velocity, weights * velocity
+        steps.append(f"taper: cosine of {settings.taper:g} s at both ends of the velocity")
+    factor, words = _factor(acceleration, settings)
+    acceleration, velocity = factor * acceleration, factor * velocity
+    displacement = integrated(velocity, step)
+    return Motion(channel.component, time, acceleration, velocity, displacement, (*steps, *words))
+
+
+def windowed(channel: Channel, begin: float | None, end: float | None) -> Channel:
+    """The samples of a channel from one time to another, s. Raises CaseError if these are fewer than two."""
+    time = channel.begin + channel.time_step * np.arange(len(channel.values))
+    half = 0.5 * channel.time_step  # times are not exact
+    inside = (time > (begin if begin is not None else time[0]) - half) & (
+        time < (end if end is not None else time[-1]) + half
+    )
+    if np.count_nonzero(inside) < 2:
+        raise CaseError([f"--from, --to: keep no samples; the record is from {time[0]:g} to {time[-1]:g} s"])
+    return replace(channel, values=channel.values[inside], begin=float(time[inside][0]))
+
+
+def first_motion(values: np.ndarray) -> int:
+    """Number of quiet samples (n,), as those of gauges, before the first motion; 0 if they are too few to tell."""
+    quiet = quiet_samples(values - np.median(values))
+    before = len(quiet) if quiet.all() else int(np.argmin(quiet))
+    return before if FEWEST_QUIET <= before < len(values) else 0
+
+
+def before_motion(values: np.ndarray) -> np.ndarray:
+    """The samples before the first motion but for the last tenth, in which it may begin below the noise; or none."""
+    return values[: int(CERTAIN * first_motion(values))]
+
+
+def baseline(values: np.ndarray, kind: Baseline, step: float, unit: str) -> tuple[np.ndarray | float, list[str]]:
+    """What is removed from samples (n,), and words: the mean before the motion, else of all; or a fitted line."""
+    if kind == "none":
+        return 0.0, []
+    if kind == "linear":
+        along = np.arange(len(values))
+        slope, level = np.polyfit(along, values, 1)
+        line = level + slope * along
+        return line, [f"baseline: line by least squares, from {line[0]:.3g} to {line[-1]:.3g} {unit}"]
+    noise = before_motion(values)
+    mean = float(np.mean(noise if len(noise) else values))
+    of = f"the first {len(noise) * step:.4g} s, before the motion" if len(noise) else "all samples"
+    return mean, [f"baseline: mean of {of}, {mean:.3g} {unit}"]
+
+
+def without_final_velocity(
+    values: np.ndarray, weights: np.ndarray, step: float, channel: Channel
+) -> tuple[np.ndarray, list[str]]:
+    """Accelerations (n,) less a constant from the first motion on, tapered, which makes their last velocity zero."""
+    if channel.quantity != "acceleration":
+        raise CaseError(
+            [f"--baseline: zero-velocity is for accelerations, {channel.component} is a {channel.quantity}"]
+        )
+    before = first_motion(channel.values)
+    shape = np.where(np.arange(len(values)) < before, 0.0, weights)
+    last = float(integrated(values, step)[-1])
+    constant = last / float(integrated(shape, step)[-1])
+    words = f"baseline: {constant:.3g} m/s² from {channel.begin + before * step:.4g} s on"
+    return values - constant * shape, [f"{words}, as the velocity ends with {last:.3g} m/s"]
+
+
+def tapers(count: int, step: float, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Weights (n,) that rise from 0 to 1 as half a cosine over a length (s) and fall so, and their slopes, 1/s.
+
+    Raises CaseError for tapers that overlap.
+    """
+    if not 0.0 <= length <= 0.5 * step * (count - 1):
+        raise CaseError(
+            [f"--taper: is {length:g} s, must be from 0 to half of the record, {0.5 * step * (count - 1):g} s"]
+        )
+    if length == 0.0:
+        return np.ones(count), np.zeros(count)
+    time = step * np.arange(count)
+    inner = np.minimum(time, time[::-1]) / length
+    weights = np.where(inner < 1.0, 0.5 - 0.5 * np.cos(np.pi * inner), 1.0)
+    slopes = np.where(inner < 1.0, 0.5 * np.pi / length * np.sin(np.pi * inner), 0.0)
+    return weights, np.where(time < time[::-1], slopes, -slopes)
+
+
+def filtered(values: np.ndarray, step: float, filters: Filters) -> tuple[np.ndarray, int, list[str]]:
+    """Samples filtered between zeros (p + n + p,), in which the filters ring out, p, and words.
+
+    Raises CaseError for corners that the record does not have.
+    """
+    corners = [corner for corner in (filters.high_pass, filters.low_pass) if corner is not None]
+    if not corners:
+        return values, 0, []
+    filters.require(1.0 / step, len(values))
+    pad = int(np.ceil(PAD * filters.order / (min(corners) * step)))
+    padded = np.pad(values, pad)
+    done, words = filters.apply(step * np.arange(len(padded)), padded)
+    return done, pad, [*words, f"filter: between zeros of {pad * step:.3g} s, which are cut off again"]
+
+
+def _motions(values: np.ndarray, step: float, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """Acceleration and velocity (n,) of samples of a quantity."""
+    if quantity == "acceleration":
+        return values, integrated(values, step)
+    velocity = values if quantity == "velocity" else differentiated(values, step)
+    return differentiated(velocity, step), velocity
+
+
+def integrated(values: np.ndarray, step: float) -> np.ndarray:
+    """∫ x dt (n,) from the first sample on, of the Fourier series through x (n,), `step` s apart, and of its mean."""
+    mean = float(values.mean())
+    circular = 2j * np.pi * np.fft.rfftfreq(len(values), step)
+    spectrum = np.fft.rfft(values - mean)
+    spectrum[1:] /= circular[1:]
+    found = np.fft.irfft(spectrum, len(values)) + mean * step * np.arange(len(values))
+    return np.asarray(found - found[0])
+
+
+def differentiated(values: np.ndarray, step: float) -> np.ndarray:
+    """dx/dt (n,) of the Fourier series through x (n,), `step` s apart, without the line between its ends."""
+    line = (values[-1] - values[0]) / (step * max(len(values) - 1, 1))
+    straight = values[0] + line * step * np.arange(len(values))
+    spectrum = 2j * np.pi * np.fft.rfftfreq(len(values), step) * np.fft.rfft(values - straight)
+    if len(values) % 2 == 0:
+        spectrum[-1] = 0.0  # the slope of the highest wave is zero at all samples
+    return np.asarray(np.fft.irfft(spectrum, len(values)) + line)
+
+
+def _factor(acceleration: np.ndarray, settings: Processing) -> tuple[float, list[str]]:
+    """The factor of a motion, and words."""
+    if settings.peak is None:
+        return settings.factor, [f"scale: by {settings.factor:g}"] if settings.factor != 1.0 else []
+    peak = float(np.abs(acceleration).max())
+    if peak == 0.0:
+        raise CaseError(["--pga: the record has no motion to scale"])
+    return settings.peak / peak, [f"scale: by {settings.peak / peak:.6g}, to a PGA of {settings.peak:g} m/s²"]

@@ -1,0 +1,79 @@
+"""The command wave."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dembound.waves.file_wave import FileWave
+
+STEP = 0.01
+
+
+@pytest.fixture
+def recorded(tmp_path) -> Path:
+    """Two components in g, 40 s, with offsets; the second is half of the first."""
+    time = STEP * np.arange(4001)
+    motion = 0.2 * np.exp(-(((time - 20.0) / 2.0) ** 2)) * np.sin(2.0 * np.pi * 2.0 * (time - 20.0))
+    path = tmp_path / "record.csv"
+    columns = np.column_stack([time, motion + 0.01, 0.5 * motion - 0.02])
+    np.savetxt(path, columns, "%.9g", ",", header="time_s,acc_NS_g,acc_EW_g", comments="# ")
+    return path
+
+
+def test_a_record_becomes_waves_that_a_case_reads(dembound, recorded, tmp_path) -> None:
+    answer = dembound("wave", recorded)
+    assert (answer.code, answer.err) == (0, "")
+    for words in ("mean of the first", "high pass at 0.1 Hz", "cosine of 2 s at both ends of the velocity"):
+        assert words in answer.out  # nothing is done silently
+    rows = [line.split() for line in answer.out.splitlines() if line[:2] in ("NS", "EW")]
+    # its crests are 0.125 s from the middle, where the Gaussian is 0.996; samples miss them by (2π·2·0.005)²/2 < 0.2 %
+    assert [row[1:3] for row in rows] == [["4001", "100"]] * 2
+    assert float(rows[0][4]) == pytest.approx(0.199, abs=0.001)
+    assert float(rows[0][3]) == pytest.approx(2.0 * float(rows[1][3]), rel=0.01)
+    for name in ("NS", "EW"):
+        path = tmp_path / f"record_velocity_{name}.csv"
+        assert f"wrote {path.name}" in answer.out
+        text = path.read_text(encoding="utf-8")
+        assert f"# component: {name}" in text
+        assert "# filter: high pass at 0.1 Hz" in text
+        wave = FileWave(type="file", path=str(path))
+        assert not list(wave.doubts("m/s", 1.0))
+        assert [velocity for _, _, velocity in wave.ends()] == [0.0, 0.0]
+    assert (tmp_path / "record_velocity.png").stat().st_size > 0
+
+
+def test_a_component_is_cut_scaled_and_named(dembound, recorded, tmp_path) -> None:
+    options = ("--component", "ns", "--from", 10, "--to", 30, "--baseline", "linear", "--low-pass", 25, "--pga", 2)
+    answer = dembound("wave", recorded, *options, "-o", "base.csv", "--picture", "drawn.png")
+    assert answer.code == 0
+    row = next(line.split() for line in answer.out.splitlines() if line.startswith("NS"))
+    assert row[1:4] == ["2001", "100", "2"]
+    assert {path.name for path in tmp_path.iterdir()} == {"record.csv", "base.csv", "drawn.png"}
+    times = np.loadtxt(tmp_path / "base.csv", delimiter=",", skiprows=sum(
+        line[0] in "#t" for line in (tmp_path / "base.csv").read_text(encoding="utf-8").splitlines()
+    ))[:, 0]  # fmt: skip
+    assert (times[0], times[-1]) == pytest.approx((0.0, 20.0))
+
+
+def test_raw_does_nothing_and_warns_of_ends_in_motion(dembound, recorded) -> None:
+    answer = dembound("wave", recorded, "--raw", "--component", "EW")
+    assert answer.code == 0
+    assert not any(words in answer.out for words in ("baseline:", "taper:", "filter:"))
+    assert "warning: EW: ends with -7.8" in answer.err  # −0.02 g over 40 s
+
+
+def test_what_does_not_fit_is_refused_and_nothing_written(dembound, recorded, tmp_path) -> None:
+    for options, problem in (
+        (("--component", "UD"), "--component: is UD, must be one of NS, EW"),
+        (("--pga", "2", "--scale", "2"), "--scale: is not allowed together with --pga"),
+        (("--pga", "-1"), "--pga, --scale: must not be zero"),
+        (("--taper", "30"), "--taper: is 30 s"),
+        (("--high-pass", "60"), "--high-pass: is 60 Hz"),
+        (("-o", "wave.txt"), "--output: is wave.txt, must end in .csv"),
+        (("--component", "NS", "-o", "record.csv"), "--output: record.csv is the record"),
+    ):
+        answer = dembound("wave", recorded, *options)
+        assert answer.code == 2
+        assert answer.err.startswith(problem)
+    assert [path.name for path in tmp_path.iterdir()] == ["record.csv"]
