@@ -47,7 +47,8 @@ def bar_facts(scene: BarScene, time_step: float) -> Entries:
         yield f"monitor {name}", f"node {node} at {scene.positions[node, 0]:.4g} m"
     for name, (cells, needed) in cells_of_waves(scene, time_step).items():
         words = f"{cells:.3g} cells in its shortest wavelength, {needed:.3g} needed for an error of {PERCENT}"
-        yield f"wave {name}", words
+        joined = case.wave[name].joined()
+        yield f"wave {name}", words + (f"; {joined}" if joined else "")
 
 
 def _bar_facts(scene: BarScene) -> Entries:

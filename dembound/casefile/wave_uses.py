@@ -4,10 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from dembound.casefile.model import Case
+from dembound.waves.sampling import CUT
 from dembound.words import percent
-
-CUT = 0.02
-"""Share of its peak by which a history may jump at its ends; a jump of 0.02 sends waves with 1/2500 of the energy."""
 
 
 def wave_use_warnings(case: Case) -> Iterator[str]:

@@ -44,6 +44,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "threads": scene.threads,
         "particle_steps_per_second": scene.count * state.step / seconds["step"],
         "memory_bytes": round(scene.largest_memory),
+        "waves": {name: made for name, wave in scene.case.wave.items() if (made := wave.describe())},
         "laws": [{"law": name, "from": step * run.time_step} for name, step in state.laws],
         "cracks": _count_cracks(record),
         "energy": _describe_energy(record),

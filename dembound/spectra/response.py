@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dembound.spectra.band_limited import band_limited
+
 DAMPING = 0.05
 """The usual share of the critical damping."""
 
@@ -48,10 +50,7 @@ def response_spectrum(
     ----------
     periods : (p,) of the undamped oscillators, s. damping : ζ, share of the critical damping, below 1.
     """
-    from scipy.signal import resample
-
-    padded = np.concatenate([acceleration, np.zeros(len(acceleration))])  # resampling repeats what it is given
-    fine = resample(padded, FINER * len(padded))[: FINER * len(acceleration)]
+    fine = band_limited(acceleration, FINER)
     step = time_step / FINER
     frequencies = 2.0 * np.pi / np.asarray(periods, dtype=float)
     largest = np.array([_largest(fine, step, frequency, damping) for frequency in frequencies])

@@ -9,24 +9,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from dembound.waves.sampling import LOUD, is_sampled, oscillates, usual_step
 from dembound.waves.spectrum import amplitude_spectrum
 from dembound.waves.unit_names import units_in
 from dembound.words import percent
 
-FEWEST = 20
-"""Number of samples below which a table is taken for single points, joined by straight lines."""
-
-EVEN = 0.9
-"""Share of equal steps above which a table is taken for a sampled record."""
-
 LONGER = 3.0
 """Step over the usual step from which on it is a gap."""
-
-LOUD = 0.05
-"""Share of the peak above which values are motion rather than noise."""
-
-FEWEST_TURNS = 6
-"""Number of changes of sign from which on a record oscillates."""
 
 FLAT = 3
 """Number of equal samples at the peak from which on it is clipped."""
@@ -96,12 +85,14 @@ def _quantity_in_words(header: str) -> tuple[str, str] | None:
     return next(found, None)
 
 
-def doubts_of_samples(times: np.ndarray, values: np.ndarray) -> Iterator[str]:
-    """Signs of lost samples, a clipped peak and other errors in a record (k,) at times (k,) s, in words."""
-    steps = np.diff(times)
-    usual, peak = float(np.median(steps)), float(np.abs(values).max())
-    if len(times) < FEWEST or np.isclose(steps, usual, rtol=0.01).mean() < EVEN:
+def doubts_of_samples(times: np.ndarray, values: np.ndarray, *, by_lines: bool = True) -> Iterator[str]:
+    """Signs of lost samples, a clipped peak and others in a record (k,) at times (k,) s, in words.
+
+    by_lines : whether straight lines join the samples.
+    """
+    if not is_sampled(times):
         return
+    steps, usual, peak = np.diff(times), usual_step(times), float(np.abs(values).max())
     loud = np.abs(values) > LOUD * peak
     gaps = (steps > LONGER * usual) & (loud[1:] | loud[:-1])
     if gaps.any():
@@ -114,14 +105,15 @@ def doubts_of_samples(times: np.ndarray, values: np.ndarray) -> Iterator[str]:
     yield from _clipped(values, peak)
     spikes = list(_spike(times, values, peak))
     yield from spikes
-    turns = np.count_nonzero(np.diff(np.sign(values[loud])))
+    turns = oscillates(values)
     if not spikes:
-        yield from _jump(times, values, peak, oscillates=bool(turns >= FEWEST_TURNS))
-    if turns < FEWEST_TURNS:
+        yield from _jump(times, values, peak, turns=turns)
+    if not turns:
         return
     frequencies, amplitudes = amplitude_spectrum(values, usual)
     mean = float(frequencies @ amplitudes**2 / (amplitudes**2).sum())
-    yield from _coarse(mean, usual)
+    if by_lines:
+        yield from _coarse(mean, usual)
     if mean * (times[-1] - times[0]) > TENTHS:  # else its last tenth is part of a period
         yield from _offset(times, values)
 
@@ -142,7 +134,8 @@ def _coarse(mean: float, step: float) -> Iterator[str]:
     if loss > LOST:
         yield (
             f"has {1.0 / (mean * step):.2g} samples in a period of its mean frequency, {mean:.3g} Hz; straight lines "
-            f"between them take {percent(loss)} of it: take a finer record, or interpolate it"
+            f"between them take {percent(loss)} of it: take a finer record, or even samples that begin and end near 0 "
+            'with interpolation = "band_limited"'
         )
 
 
@@ -156,8 +149,8 @@ def _spike(times: np.ndarray, values: np.ndarray, peak: float) -> Iterator[str]:
         yield f"has one sample far from its neighbours, {values[worst + 2]:.4g} at {times[worst + 2]:.4g} s: a spike?"
 
 
-def _jump(times: np.ndarray, values: np.ndarray, peak: float, *, oscillates: bool) -> Iterator[str]:
-    """A message about steps far larger than all others: one if the record oscillates, else up to two in the motion.
+def _jump(times: np.ndarray, values: np.ndarray, peak: float, *, turns: bool) -> Iterator[str]:
+    """Steps far beyond all others: one of a record that oscillates, or one or two within the motion of any other.
 
     A pulse may begin or end with a step, from or to rest, and square waves have more than two steps.
     """
@@ -166,7 +159,7 @@ def _jump(times: np.ndarray, values: np.ndarray, peak: float, *, oscillates: boo
     within, largest = loud[1:] & loud[:-1], np.sort(changes)
     anywhere = int(changes.argmax()), float(largest[-2]), LOUD
     for worst, others, least in (
-        *([anywhere] if oscillates else []),
+        *([anywhere] if turns else []),
         (_at_largest(changes, within), largest[-3], WIDE),
     ):
         if others > 0.0 and changes[worst] > max(least * peak, OUTSTANDING * others):

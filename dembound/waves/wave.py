@@ -85,6 +85,14 @@ class Wave(Table, ABC):
         """
         return iter(())
 
+    def joined(self) -> str:
+        """What joins the samples of a history, in words; empty for a formula."""
+        return ""
+
+    def describe(self) -> dict[str, str | float]:
+        """What was chosen for a history of samples, as plain JSON values; by default nothing."""
+        return {}
+
     def dominant_period(self) -> float:
         """One over the dominant frequency, s; 0 for a step, infinite where nothing oscillates."""
         frequency = self.dominant_frequency()

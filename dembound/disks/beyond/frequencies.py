@@ -34,9 +34,10 @@ def mean_frequency(case: DiskCase) -> float:
     return sum(means) / len(means) if means else math.nan
 
 
-def mean_frequency_of(wave: Wave) -> float:
-    """Mean frequency (Hz) of the energy of one wave's velocity, which must not jump."""
-    return _mean_of(Signal(wave, is_force=False))
+def share_above(wave: Wave, frequency: float) -> float:
+    """Share of the energy of one wave's velocity, which must not jump, above a frequency (Hz)."""
+    frequencies, energy = sizing.energies(Signal(wave, is_force=False))
+    return float(energy[frequencies > frequency].sum() / energy.sum())
 
 
 def _mean_of(signal: Signal) -> float:

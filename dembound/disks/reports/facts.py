@@ -42,7 +42,8 @@ def disk_facts(scene: DiskScene) -> Entries:
     yield from _tension_facts(scene)
     for name, count in particles_per_wavelength(scene).items():
         few = f"{count:.0f} particles per" if count >= 1.0 else "less than one particle per"
-        yield f"wave {name}", f"{few} shortest wavelength"
+        joined = case.wave[name].joined()
+        yield f"wave {name}", f"{few} shortest wavelength" + (f"; {joined}" if joined else "")
 
 
 def _monitor_facts(scene: DiskScene) -> Entries:

@@ -18,7 +18,7 @@ from dembound.casefile.magnitudes import (
     time_warnings,
     waves_used,
 )
-from dembound.disks.beyond.frequencies import mean_frequency_of
+from dembound.disks.beyond.frequencies import share_above
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.reports.incident_facts import arrival
 from dembound.disks.scene import DiskScene, boundary_medium
@@ -115,13 +115,13 @@ def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
 
 def _too_short(scene: DiskScene, wave: Wave, count: float) -> str:
     """The problem of a wave with `count` particles in its shortest wavelength, and the share of its energy."""
+    carried = slowest_speed(scene.ground) / (FEWEST_PER_WAVELENGTH * scene.ground.brick.mean_diameter)
     if count < 1.0:
-        return "has a shortest wavelength below the diameter of a particle; the packing will disperse it"
-    mean = slowest_speed(scene.ground) / mean_frequency_of(wave) / scene.ground.brick.mean_diameter
-    few = f"has {count:.1f} particles in its shortest wavelength, fewer than {FEWEST_PER_WAVELENGTH:g}"
-    if mean < FEWEST_PER_WAVELENGTH:
-        return f"{few}, and {mean:.1f} in that of its mean frequency; the packing will disperse it"
-    return f"{few}, but {mean:.0f} in that of its mean frequency; the packing will disperse its shortest parts only"
+        few = "has a shortest wavelength below the diameter of a particle"
+    else:
+        few = f"has {count:.1f} particles in its shortest wavelength, fewer than {FEWEST_PER_WAVELENGTH:g}"
+    above = percent(share_above(wave, carried))
+    return f"{few}: disks carry waves up to {with_unit(carried, 'Hz')}, and disperse {above} of its energy above"
 
 
 def _too_sudden(scene: DiskScene, wave: Constant) -> str:

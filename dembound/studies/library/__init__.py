@@ -5,8 +5,9 @@ joined by straight lines, is the sum of triangles x_k·hat(t − kΔ), so its hi
 
     u(t) = u_rest(t) + Σ_k x_k h(t − kΔ),
 
-with the response h to one triangle, from one run, and the motion u_rest without waves, under steady loads. If Δ is a
-whole number of time steps this is exact: a direct run differs by rounding.
+with the response h to one triangle, from one run, and the motion u_rest without waves, under steady loads. Where Δ is a
+whole number of time steps this is no approximation: a direct run differs by rounding. A band-limited record is such a
+sum if Δ is that of its points, 1/16 of its samples', or a whole fraction of it; a larger Δ keeps sinc²(fΔ) of it.
 """
 
 from dembound.studies.library.build import build_library

@@ -5,9 +5,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from pydantic import ValidationError
 
 from dembound.errors import CaseError
-from dembound.waves.file_wave import read_text, samples_of
+from dembound.waves import FileWave
+from dembound.words import percent
 
 WHOLE = 1e-6
 """Part of the spacing by which a record's time may differ from a whole multiple, as files round times."""
@@ -17,12 +19,13 @@ class Record(NamedTuple):
     """A record for some inputs of a library.
 
     name : of its results. values : input -> velocities (k,) m/s, or factors of a load, at the times 0, Δ, 2Δ … files :
-    input -> path and text of the file.
+    input -> path and text of the file. losses : by a spacing too coarse for the record, a sentence for each file.
     """
 
     name: str
     values: dict[str, np.ndarray]
     files: dict[str, tuple[Path, str]]
+    losses: tuple[str, ...] = ()
 
 
 class RecordTimes(NamedTuple):
@@ -57,17 +60,17 @@ def read_records(arguments: Sequence[str], inputs: Sequence[str], clock: RecordT
     return records
 
 
-def on_spacing(samples: np.ndarray, clock: RecordTimes) -> np.ndarray:
+def on_spacing(wave: FileWave, clock: RecordTimes) -> np.ndarray:
     """The values of a record at the times 0, Δ, 2Δ … up to its end, Δ being the spacing.
 
-    samples (k, 2), times and values, are joined by straight lines; their times must be whole multiples of the spacing,
-    so that nothing changes. Before and after it a record is zero, so it begins and ends with zero; one that lasts the
-    whole duration may end with another value.
+    The times of its samples must be whole multiples of the spacing. Then straight lines between samples do not change,
+    nor do those of the band-limited function if the spacing is a whole fraction of theirs. Before and after it a record
+    is zero, so it begins and ends with zero; one that lasts the whole duration may end with another value.
 
     Raises ValueError, with the problem.
     """
     spacing, duration, lead = clock
-    times, values = samples.T
+    times, values = wave.samples.times, wave.samples.values
     places = np.round(times / spacing)
     if times[0] < 0.0:
         raise ValueError(f"begins at {times[0]:g} s, must not begin before 0")
@@ -84,7 +87,8 @@ def on_spacing(samples: np.ndarray, clock: RecordTimes) -> np.ndarray:
         raise ValueError(
             f"ends with {values[-1]:g} before the library does, must end with 0; put a line with 0 after it"
         )
-    found = np.interp(np.arange(places[-1] + 1.0), places, values, left=0.0)
+    points = np.interp(np.linspace(0.0, len(places) - 1.0, len(wave.line.values)), np.arange(len(places)), places)
+    found = np.interp(np.arange(places[-1] + 1.0), points, wave.line.values, left=0.0)
     if found[: lead + 1].any():
         first = spacing * (np.flatnonzero(found)[0] - 1)
         needed = (
@@ -94,21 +98,47 @@ def on_spacing(samples: np.ndarray, clock: RecordTimes) -> np.ndarray:
     return found
 
 
+def loss_on_spacing(wave: FileWave, spacing: float) -> str:
+    """What straight lines at a spacing (s) take from a record's highest frequency, in words.
+
+    Empty for one joined by lines, and if the spacing is not above that of its own points.
+    """
+    own = (wave.line.times[-1] - wave.line.times[0]) / (len(wave.line.times) - 1)
+    if wave.joined_by == "lines" or spacing < own * (1.0 + WHOLE):
+        return ""
+    highest = wave.highest_frequency()
+    loss = percent(1.0 - float(np.sinc(highest * spacing)) ** 2)
+    return (
+        f"straight lines at the library's spacing, {spacing:g} s, take {loss} of its amplitude at its highest "
+        f"frequency, {highest:.3g} Hz; with --spacing {own:.6g} histories are those of a direct run"
+    )
+
+
 def _record(argument: str, inputs: Sequence[str], clock: RecordTimes) -> Record:
     """The record of one argument; raises CaseError for its mistakes."""
     paths = _paths(argument, inputs)
-    values, files, problems = {}, {}, []
+    values, files, losses, problems = {}, {}, [], []
     for name, path in paths.items():
         try:
-            text = read_text(path)
-            values[name] = on_spacing(samples_of(text, path), clock)
+            wave = _read(path)
+            values[name] = on_spacing(wave, clock)
+            (text,) = wave.files().values()
             files[name] = path, text
+            losses += [f"{path}: {loss}"] if (loss := loss_on_spacing(wave, clock.spacing)) else []
         except ValueError as error:
             message = str(error).removeprefix("path: ")
             problems.append(message if str(path) in message else f"{path}: {message}")
     if problems:
         raise CaseError(problems)
-    return Record("_".join(dict.fromkeys(path.stem for path in paths.values())), values, files)
+    return Record("_".join(dict.fromkeys(path.stem for path in paths.values())), values, files, tuple(losses))
+
+
+def _read(path: Path) -> FileWave:
+    """The file wave of a direct run; raises ValueError with its only problem."""
+    try:
+        return FileWave.model_validate({"type": "file", "path": path.as_posix()})
+    except ValidationError as error:
+        raise ValueError(error.errors()[0]["msg"].removeprefix("Value error, ")) from None
 
 
 def _paths(argument: str, inputs: Sequence[str]) -> dict[str, Path]:

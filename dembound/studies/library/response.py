@@ -28,10 +28,14 @@ def case_of(library: Library, record: Record) -> DiskCase:
 
 
 def record_warnings(library: Library, records: Sequence[Record]) -> Iterator[tuple[Record, str]]:
-    """Warnings of `dembound run` under each record that are not due to silence: units, samples, lengths, strengths."""
+    """Warnings of `dembound run` under each record that are not due to silence: units, samples, lengths, strengths.
+
+    Also what the library's spacing takes from it.
+    """
     silent = replace(library.case, silent=frozenset(library.inputs))
     before = set(warnings_before(plan(silent)))
     for record in records:
+        yield from ((record, each) for each in record.losses)
         yield from ((record, each) for each in warnings_before(plan(case_of(library, record))) if each not in before)
 
 

@@ -1,5 +1,6 @@
 """Waves from files: what is read, and what is refused."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from dembound.waves import FileWave
 from dembound.waves.file_wave import read_text, samples_of
 
 
-def record(folder: Path, text: str, **keys: float) -> FileWave:
+def record(folder: Path, text: str, **keys: float | str) -> FileWave:
     (folder / "quake.txt").write_text(text, encoding="utf-8")
     table = {"type": "file", "path": "quake.txt", **keys}
     return TypeAdapter(FileWave).validate_python(table, context={"folder": folder})
@@ -117,3 +118,121 @@ def test_absent_or_binary_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "binary").write_bytes(b"\xff\xfe\x00\x80")
     with pytest.raises(ValueError, match=r"is not two columns of numbers"):
         samples(tmp_path / "binary", quantity="stress (Pa)")
+
+
+STEP, COUNT = 0.01, 401
+
+
+def written(times: np.ndarray, values: np.ndarray) -> str:
+    """The text of a file."""
+    return "\n".join(f"{a!r} {b!r}" for a, b in zip(times.tolist(), values.tolist(), strict=True))
+
+
+def burst(share: float, times: np.ndarray, count: int = COUNT) -> np.ndarray:
+    """A sine of a share of the sampling rate under sin⁴, whose spectrum has faded 3 Hz away, so band-limited."""
+    length = STEP * (count - 1)
+    inside = np.sin(np.pi * np.clip(times / length, 0.0, 1.0)) ** 4
+    return inside * np.sin(2.0 * np.pi * share / STEP * times + 0.3)
+
+
+def burst_file(share: float = 0.2, count: int = COUNT) -> str:
+    times = STEP * np.arange(count)
+    return written(times, burst(share, times, count))
+
+
+@pytest.mark.parametrize("share", [0.1, 0.2, 0.3, 0.4])
+def test_a_record_keeps_frequencies_up_to_almost_half_its_rate(tmp_path: Path, share: float) -> None:
+    wave = record(tmp_path, burst_file(share), start=2.0, scale=-3.0)
+    length = STEP * (COUNT - 1)
+    fine = np.linspace(0.0, length, 128 * (COUNT - 1) + 1)
+    exact = -3.0 * burst(share, fine)
+
+    # straight lines between points h apart miss (ωh)²/8 at most and keep sinc²(fh) of a sine, h = a sixteenth of the
+    # step; the rest of the burst's spectrum is 1e-5
+    omega = 2.0 * np.pi * share / 16.0
+    assert np.abs(wave.velocity(2.0 + fine) - exact).max() < 3.0 * (omega**2 / 8.0 + 2e-5)
+    turned = np.exp(-2j * np.pi * share / STEP * fine) * burst(share, fine) ** 2
+    kept = abs(turned @ wave.velocity(2.0 + fine)) / abs(turned @ exact)
+    assert kept == pytest.approx(np.sinc(share / 16.0) ** 2, abs=1e-4)
+    assert kept > 0.995
+    # its integral is that of the velocity itself, exact for straight lines between the points
+    h = fine[1] - fine[0]
+    velocity = wave.velocity(2.0 + fine)
+    summed = np.append(0.0, np.cumsum(0.5 * h * (velocity[1:] + velocity[:-1])))
+    np.testing.assert_allclose(wave.displacement(2.0 + fine), summed, atol=1e-13)
+    assert wave.peak() == pytest.approx(np.abs(exact).max(), rel=omega**2 / 2.0)
+    assert abs(wave.velocity(np.array([wave.peak_time()]))[0]) == pytest.approx(wave.peak(), rel=1e-12)
+    assert wave.joined_by == "band_limited"
+    assert (wave.begin(), wave.duration()) == (2.0, 2.0 + length)
+    assert wave.velocity(np.array([1.999, 2.0 + length + 1e-6])).tolist() == [0.0, 0.0]
+    assert wave == record(tmp_path, burst_file(share), start=2.0, scale=-3.0)
+    assert wave != record(tmp_path, burst_file(share), start=2.0, scale=3.0)
+
+
+def test_what_is_cut_before_a_record_is_tiny(tmp_path: Path) -> None:
+    """Zeros before it stay zeros: a sum of sincs over a tapered record rings there by less than 1e-3 of its peak."""
+    rng, lead = np.random.default_rng(2), 60
+    spectrum = np.fft.rfft(rng.standard_normal(400)) * (np.fft.rfftfreq(400) < 0.4)
+    values = np.fft.irfft(spectrum) * np.sin(np.pi * np.arange(400) / 399) ** 2
+    values[[0, -1]] = 0.0
+    padded = np.concatenate([np.zeros(lead), values, np.zeros(lead)])
+    wave = record(tmp_path, written(STEP * np.arange(len(padded)), padded))
+    outside = np.concatenate([np.linspace(-lead, 0.0, 1000), 399 + np.linspace(0.0, lead, 1000)])
+    rung = np.sinc(outside[:, None] - np.arange(400)) @ values
+
+    assert np.abs(rung).max() < 1e-3 * wave.peak()
+    assert not wave.velocity(STEP * (lead + outside)).any()
+    inside = np.linspace(0.0, 399.0, 16 * 399 + 1)
+    exact = np.sinc(inside[:, None] - np.arange(400)) @ values  # and points lie on it
+    np.testing.assert_allclose(wave.velocity(STEP * (lead + inside)), exact, atol=1e-5 * wave.peak())
+    alone = record(tmp_path, written(STEP * np.arange(400), values))
+    np.testing.assert_allclose(alone.velocity(STEP * inside), exact, atol=1e-5 * wave.peak())
+
+
+ROWS = STEP * np.arange(COUNT)
+PULSE = np.sin(np.pi * ROWS / ROWS[-1]) ** 2
+
+
+@pytest.mark.parametrize(
+    ("times", "values", "joined"),
+    [
+        (ROWS, burst(0.2, ROWS), "400 samples/s"),
+        (np.round(ROWS * 25.0 / 32.0, 3), burst(0.2, ROWS), "band"),  # 128 samples/s, written with three digits
+        (np.delete(ROWS, 200), np.delete(burst(0.2, ROWS), 200), "lines"),  # a lost sample
+        (ROWS, PULSE, "lines"),  # one-sided
+        (ROWS, burst(0.2, ROWS) + 0.03, "lines"),  # begins with 3 % of its peak
+        (ROWS[:19], burst(0.2, ROWS[:19], 19), "lines"),  # few
+    ],
+)
+def test_what_joins_samples_follows_from_them(tmp_path: Path, times, values, joined: str) -> None:
+    wave = record(tmp_path, written(times, values))
+    between = np.linspace(times[0], times[-1], 1000)
+    lines = np.array_equal(wave.velocity(between), np.interp(between, times, values))
+
+    assert lines == (joined == "lines") == (wave.joined_by == "lines")
+    assert wave.joined().endswith("straight lines" if lines else "the band-limited function")
+    assert wave.describe()["interpolation"] == wave.joined_by
+    assert record(tmp_path, written(times, values), interpolation="lines").joined_by == "lines"
+    if not lines:
+        assert np.abs(wave.velocity(between) - np.interp(between, times, values)).max() > 0.1
+
+
+def test_uneven_samples_have_no_band_limit(tmp_path: Path) -> None:
+    with pytest.raises(
+        ValueError, match=r'interpolation: is "band_limited", which needs even times; steps in .* 1 to 2 s'
+    ):
+        record(tmp_path, TRIANGLE, interpolation="band_limited")
+
+
+def test_a_function_far_beyond_its_samples_and_lines_that_lose_much_are_warned_of(tmp_path: Path) -> None:
+    square = np.where(np.sin(2.0 * np.pi * ROWS) > 0.0, 1.0, -1.0)
+    square[[0, -1]] = 0.0
+    for text, keys, words in (
+        (written(ROWS, square), {}, r'exceeds its largest sample by .* give interpolation = "lines"'),
+        (written(ROWS, square), {"interpolation": "lines"}, None),
+        (burst_file(0.3), {}, None),
+        (burst_file(0.3), {"interpolation": "lines"}, 'straight lines between them take .* "band_limited"'),
+    ):
+        found = list(record(tmp_path, text, **keys).doubts("m/s", 1.0))
+        assert len(found) == (words is not None), found
+        assert words is None or re.search(words, found[0])

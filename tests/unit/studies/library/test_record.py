@@ -6,19 +6,26 @@ import pytest
 from dembound.errors import CaseError
 from dembound.studies.library import RecordTimes, read_records
 from dembound.studies.library.record import on_spacing
+from dembound.waves import FileWave
 
 CLOCK = RecordTimes(spacing=0.1, duration=1.0)
 
 
+def wave(rows) -> FileWave:
+    """A file wave of these times and velocities."""
+    text = "\n".join(f"{time!r} {value!r}" for time, value in np.asarray(rows).tolist())
+    return FileWave.model_validate({"type": "file", "path": "r.txt"}, context={"files": {"r.txt": text}})
+
+
 def test_values_between_lines_are_on_straight_lines_and_begin_later_under_a_wave_at_an_angle():
     samples = np.array([[0.2, 0.0], [0.3, 2.0], [0.6, -4.0], [0.8, 0.0]])
-    np.testing.assert_allclose(on_spacing(samples, CLOCK), [0, 0, 0, 2, 0, -2, -4, -2, 0], atol=1e-14)
+    np.testing.assert_allclose(on_spacing(wave(samples), CLOCK), [0, 0, 0, 2, 0, -2, -4, -2, 0], atol=1e-14)
     # one as long as the library may end anyhow
-    np.testing.assert_allclose(on_spacing(np.array([[0.0, 0.0], [1.0, 5.0]]), CLOCK), np.arange(11) * 0.5)
-    rows = np.array([(0.0, 0.0), (0.2, 0.0), (0.3, 1.0), (0.4, 0.0)])
-    assert on_spacing(rows, CLOCK._replace(lead=2))[3] == 1.0
+    np.testing.assert_allclose(on_spacing(wave([[0.0, 0.0], [1.0, 5.0]]), CLOCK), np.arange(11) * 0.5)
+    rows = [(0.0, 0.0), (0.2, 0.0), (0.3, 1.0), (0.4, 0.0)]
+    assert on_spacing(wave(rows), CLOCK._replace(lead=2))[3] == 1.0
     with pytest.raises(ValueError, match=r"begins at 0\.2 s, but .* it must be 0 up to 0\.3 s"):
-        on_spacing(rows, CLOCK._replace(lead=3))
+        on_spacing(wave(rows), CLOCK._replace(lead=3))
 
 
 @pytest.mark.parametrize(
@@ -34,7 +41,7 @@ def test_values_between_lines_are_on_straight_lines_and_begin_later_under_a_wave
 )
 def test_what_no_library_responds_to_is_said(rows, problem):
     with pytest.raises(ValueError, match=problem):
-        on_spacing(np.array(rows), CLOCK)
+        on_spacing(wave(rows), CLOCK)
 
 
 @pytest.fixture
