@@ -103,6 +103,11 @@ class Boundary(Table):
         return self.is_outside
 
     @property
+    def is_interface(self) -> bool:
+        """Whether other rock begins at the side, so that the waves it returns are no error; by default not."""
+        return False
+
+    @property
     def may_move(self) -> bool:
         """Whether the side may be moved away: by default true of artificial sides through which no waves enter."""
         return self.is_artificial and not self.waves
@@ -138,6 +143,11 @@ class Boundary(Table):
         is then used unchanged if it is as strong, and refused otherwise.
         """
         return None
+
+    def own_keys(self, *kinds: type["Boundary"]) -> dict[str, Any]:
+        """The keys that are given and belong to some kinds of sides, but for the type."""
+        keys = {key for kind in kinds for key in kind.model_fields} - {"type"}
+        return self.model_dump(include=keys, exclude_unset=True)
 
     def driven_by(self, waves: Mapping[Motion, str]) -> Self:
         """The side with other waves: kind -> name."""

@@ -31,6 +31,8 @@ class FreeField(Dashpots):
     def _whole_masses(self) -> "FreeField":
         if self.half_mass:
             raise ValueError("half_mass: is not allowed on a free-field side, whose other half is in the column")
+        if self.rock is not None:
+            raise ValueError("rock: is not allowed on a free-field side, whose column is of the same ground")
         return self
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:

@@ -13,6 +13,7 @@ from pydantic import model_validator
 
 from dembound.boundaries.boundary import Boundary, Place
 from dembound.boundaries.driven import Driven
+from dembound.boundaries.rock import Rock
 from dembound.boundaries.sides import normal_axis, plane_of
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import Dashpots, Viscous, ViscousInput
@@ -35,7 +36,7 @@ class Springs(Boundary):
         None,
         unit="Pa",
         means="modulus",
-        help="E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium",
+        help="E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium, or of rock",
         gt=0.0,
     )
     poisson_ratio: float | None = quantity(
@@ -100,9 +101,10 @@ class Springs(Boundary):
         return self.model_copy(update={"source": None, "distance": distance}) if distance > 0.0 else self
 
     def shear_modulus(self, medium: BoundaryMedium) -> float:
-        """G in Pa."""
+        """G in Pa: as given, of the rock beyond the side, or of the medium."""
         if self.young_modulus is None:
-            return medium.shear_modulus
+            rock: Rock | None = getattr(self, "rock", None)
+            return medium.shear_modulus if rock is None else rock.shear_modulus
         return self.young_modulus / (2.0 * (1.0 + (self.poisson_ratio or 0.0)))
 
     def distances(self, edge: Edge) -> np.ndarray:
@@ -128,7 +130,7 @@ class Viscoelastic(Dashpots, Springs):
 
     def dashpots_alone(self) -> Viscous:
         """The side without its springs."""
-        return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
+        return Viscous(type="viscous", **self.own_keys(Dashpots))
 
 
 class ViscoelasticInput(Dashpots, Springs, Driven):
@@ -166,5 +168,4 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
 
     def dashpots_alone(self) -> ViscousInput:
         """The side without its springs."""
-        shared = {*Dashpots.model_fields, *Driven.model_fields} - {"type"}
-        return ViscousInput(type="viscous_input", **self.model_dump(include=shared))
+        return ViscousInput(type="viscous_input", **self.own_keys(Dashpots, Driven))

@@ -9,10 +9,11 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
+from dembound.boundaries.rock import Rock
 from dembound.boundaries.sides import Factor, Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import quantity
@@ -38,21 +39,46 @@ class Dashpots(Boundary):
         means="factor of dashpots",
         help='factor β of the dashpots across the side\'s normal; "matched": that of the impedance of the packing',
     )
+    rock: Rock | None = quantity(
+        None,
+        unit="1",
+        help="rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β",
+    )
     half_mass: bool = quantity(
         False,
         unit="1",
         help="whether the particles are half cells, on sides of disks in one row; not beside a free field",
     )
 
+    @model_validator(mode="after")
+    def _rock_or_factors(self) -> Self:
+        given = sorted({"beta_p", "beta_s"} & self.model_fields_set)
+        if self.rock is not None and given:
+            raise ValueError(f"rock: gives the factors of both waves; leave out {' and '.join(given)}")
+        return self
+
     @property
     def factors(self) -> Mapping[Motion, Factor]:
-        """The factors of P and of S waves as given."""
+        """The factors of P and of S waves as given; those of rock are known at an edge only."""
         return {"p": self.beta_p, "s": self.beta_s}
+
+    def factors_at(self, edge: Edge, medium: BoundaryMedium) -> dict[Motion, float]:
+        """The factors as numbers, those of the rock if there is one."""
+        return super().factors_at(edge, medium) if self.rock is None else self.rock.factors(edge, medium)
+
+    def with_factors(self, factors: Mapping[Motion, Factor]) -> Self:
+        """The side with other factors, and no rock."""
+        return super().with_factors(factors).model_copy(update={"rock": None})
+
+    @property
+    def is_interface(self) -> bool:
+        """Whether there is rock beyond the side."""
+        return self.rock is not None
 
     @property
     def is_artificial(self) -> bool:
-        """True, as dashpots represent the medium beyond."""
-        return True
+        """Whether dashpots stand in for the same medium beyond; other rock belongs to the problem."""
+        return self.rock is None
 
     @property
     def half_cells(self) -> bool:
@@ -70,10 +96,16 @@ class Dashpots(Boundary):
         if self.half_mass and packing and side not in packing.regular_sides:
             has = f"has such {' and '.join(packing.regular_sides)}" if packing.regular_sides else "has none"
             yield f"boundary.{side}.half_mass: needs a side of disks in one row; pattern {packing.pattern} {has}"
+        if self.rock is not None and "bar" in tables:
+            yield f"boundary.{side}.rock: is for sides of disks; give beta_p, the impedance beyond over that of the bar"
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
-        """The factors β, and whether masses are halved."""
-        return {**super().describe(edge, medium), "half_mass": self.half_mass}
+        """The factors, whether masses are halved, and the impedance of the rock over that of the ground."""
+        found = {**super().describe(edge, medium), "half_mass": self.half_mass}
+        for motion in self.factors if self.rock is not None else ():
+            matched = found[f"matched_{motion}"]
+            found[f"rock_{motion}"] = found[f"beta_{motion}"] / matched if matched else None
+        return found
 
     def dampings(self, edge: Edge, medium: BoundaryMedium) -> np.ndarray:
         """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4); D : their widths."""
@@ -103,7 +135,7 @@ class ViscousInput(Dashpots, Driven):
 
     def at_rest(self) -> Boundary:
         """A viscous side with the same dashpots and without a wave."""
-        return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
+        return Viscous(type="viscous", **self.own_keys(Dashpots))
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """The absorbing dashpots, plus the force that introduces the incident wave."""

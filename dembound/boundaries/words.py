@@ -17,6 +17,8 @@ IN_WORDS = {
         "matched_p",
         "matched_s",
         "half_mass",
+        "rock_p",
+        "rock_s",
         "alpha_n",
         "alpha_s",
         "shear_modulus",
@@ -50,7 +52,19 @@ def side_in_words(side: Mapping[str, Any]) -> str:
     there = {key: sign for key, sign in FACTORS.items() if key in side}
     factors = "".join(f", {sign} = {side[key]:g}{_beside_matched(side, key)}" for key, sign in there.items())
     half = ", half mass" if side.get("half_mass") else ""
-    return f"{side['type']}{factors}{half}{_springs_in_words(side)}{_others(side)}"
+    return f"{side['type']}{factors}{half}{_springs_in_words(side)}{_rock_in_words(side)}{_others(side)}"
+
+
+def _rock_in_words(side: Mapping[str, Any]) -> str:
+    """The impedance of rock over that of the ground, and the amplitude it returns at normal incidence."""
+    ratios = {motion.upper(): side.get(f"rock_{motion}") for motion in ("p", "s")}
+    each = [
+        f"{ratio:.3g} times the ground's impedance for {kind} waves, returns {100.0 * reflected(ratio, 1.0).real:.3g} % "
+        "of their amplitude"
+        for kind, ratio in ratios.items()
+        if ratio is not None
+    ]
+    return f"; rock of {'; of '.join(each)}" if each else ""
 
 
 def _beside_matched(side: Mapping[str, Any], key: str) -> str:

@@ -153,6 +153,12 @@ def _sentences(found: Measured) -> list[str]:
         lines.append(
             "; ".join([line, *(f"{name} {_percent(arrival.sent_back(each))}" for name, each in beside.items())])
         )
+    if found.rock:
+        each = " and ".join(f"{100.0 * share:.3g} % for {kind.upper()} waves" for kind, share in found.rock.items())
+        lines.append(
+            f"the rock itself returns of the amplitude along the normal {each}; dashpots stand for it there alone, and "
+            "what rock returns at other angles is not predicted"
+        )
     highest = found.found.frequencies.max()
     gaps = {kind: found.gaps[kind] for kind in found.found.kinds if found.gaps.get(kind, math.inf) < NEAR_GAP * highest}
     if gaps:

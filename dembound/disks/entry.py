@@ -33,6 +33,9 @@ APART = 8.0
 and where it is pulled. Effects of a side decay with the depth y as exp(−2πy/brick), and over a disk without
 bricks."""
 
+MOTIONS: tuple[Motion, Motion] = ("p", "s")
+"""Kinds of waves, in the order of wave speeds."""
+
 FAINT = 1e-12
 """Springs against single motions over those of the contacts: disks that hang by one contact may roll."""
 
@@ -111,6 +114,13 @@ def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, fl
         share = factors[motion] / (factors[motion] + matched)
         found[motion] = -(share * end.depth(motion) + (1.0 - share) * end.mass_begins)
     return found
+
+
+def side_ends(scene: DiskScene, side: str) -> dict[Motion, tuple[float, float]]:
+    """Depths m and s (m) of a side with dashpots, by kind of wave that runs along its normal."""
+    end, speeds = _Strip.of(scene.case, side), scene.ground.wave_speeds(normal_axis(side))
+    running = [motion for motion, speed in zip(MOTIONS, speeds, strict=True) if math.isfinite(speed)]
+    return {motion: (end.mass_begins, end.depth(motion)) for motion in running}
 
 
 def depths_held(scene: DiskScene, side: str) -> dict[Motion, float]:

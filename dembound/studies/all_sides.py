@@ -11,7 +11,7 @@ from dembound.version import __version__
 
 
 def factors_of(case: DiskCase) -> list[tuple[str, Motion]]:
-    """The sides with dashpots, each with the waves ("p", "s") whose motion is not held there.
+    """The sides with dashpots but for those on rock, each with the waves ("p", "s") whose motion is not held there.
 
     Raises CaseError if there are none.
     """
@@ -19,10 +19,10 @@ def factors_of(case: DiskCase) -> list[tuple[str, Motion]]:
         (side, motion)
         for side, table in case.boundary.items()
         for motion in get_args(Motion)
-        if motion in table.factors and "xy"[axis_of_motion(side, motion)] not in case.motion.held
+        if motion in table.factors and not table.is_interface and "xy"[axis_of_motion(side, motion)] not in case.motion.held
     ]
     if not found:
-        raise CaseError(["boundary: has no side with dashpots that can move, so there is nothing to calibrate"])
+        raise CaseError(["boundary: has no side with dashpots that can move, but for those on rock, so there is nothing to calibrate"])
     return found
 
 

@@ -245,7 +245,7 @@ def _travel(scene: DiskScene, side: str, motion: Motion) -> float:
 def calibrated_motion(case: DiskCase, side: str, motion: Motion | None = None) -> Motion:
     """The motion, or else the default one, for which a side is calibrated.
 
-    Raises CaseError when the side has no dashpots or its motion is held.
+    Raises CaseError when the side has no dashpots, its factors follow from rock, or its motion is held.
     """
     table = case.side(side)
     if not table.factors:
@@ -253,6 +253,8 @@ def calibrated_motion(case: DiskCase, side: str, motion: Motion | None = None) -
         raise CaseError(
             [f"boundary.{side}: is {table.type}, only sides with dashpots can be calibrated; here: {usable}"]
         )
+    if table.is_interface:
+        raise CaseError([f"boundary.{side}.rock: gives the factors of this side, which needs no calibration"])
     motion = motion or default_motion(case, side)
     _must_move(case, side, motion)
     return motion

@@ -40,7 +40,7 @@ def disk_choices(case: DiskCase) -> Named:
 
 def _matched_factors(case: DiskCase) -> Named:
     """Matched factors β for all sides with other factors, but not for sides where a wave enters, which would change."""
-    absorbing = {side: table for side, table in case.boundary.items() if table.factors and not table.waves}
+    absorbing = {side: table for side, table in case.boundary.items() if table.factors and table.may_move}
     if not absorbing:
         return
     scene = build(case)

@@ -50,8 +50,8 @@ def with_whole_cells(case: DiskCase) -> DiskCase:
 
 
 def _may_be_whole(table: Boundary) -> bool:
-    """Whether a side may have half cells or whole ones, and lets no waves in."""
-    return table.may_halve and not table.waves
+    """Whether a side may have half cells or whole ones, lets no waves in, and is to return none."""
+    return table.may_halve and not table.waves and not table.is_interface
 
 
 def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: DiskScene, time_step: float) -> float:
@@ -76,10 +76,12 @@ def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: Dis
 def _equal_dashpots(
     table: Boundary, side: str, shares: Mapping[Motion, Reflected], mass_apart: bool, own: DiskScene
 ) -> Boundary:
-    """A side of half cells with factors for equal reflection.
+    """A side of half cells with factors for equal reflection; rock remains.
 
     mass_apart : whether the out-of-phase part is found separately.
     """
+    if table.is_interface:
+        return table.with_half_cells(True)
     factors = {
         motion: homogenised_beta(own, side, motion)
         * factor_for(share.dashpots if mass_apart and table.may_halve else share.signed)

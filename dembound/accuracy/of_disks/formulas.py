@@ -15,6 +15,7 @@ from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
 from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_errors
+from dembound.accuracy.of_disks.rock_sides import errors_on_rock
 from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, Frequencies, delay_of, frequencies_of
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
@@ -50,8 +51,11 @@ class Formulas:
     def of_waves_in(self, motions: Motions) -> Iterator[Cause]:
         """A continuum, and sides with dashpots that waves enter through."""
         yield from self._continuum({name: own.place for name, own in motions.items()})
+        yield from self._rock(motions)
         for side, waves in self.scene.case.driving.items():
             table = self.scene.case.side(side)
+            if table.is_interface:
+                continue
             if table.is_artificial and not table.absorbs:
                 reason = f'"{table.type}" has no dashpots, by which its reflection would be known'
                 yield Cause.unknown(f"{side} side", reason)
@@ -63,6 +67,19 @@ class Formulas:
                 parts = {name: self._returned(own, side, waves, shares) for name, own in motions.items()}
                 words = "by the reflection of dashpots at normal incidence"
                 yield Cause(f"{side} side", words, parts, factor=USUAL)
+
+    def _rock(self, motions: Motions) -> Iterator[Cause]:
+        """Sides on rock, beyond the reflection of the rock."""
+        for side, table in self.scene.case.boundary.items():
+            if not table.is_interface:
+                continue
+            if self.scene.case.hole or self.scene.case.load or table.dashpots_alone() != table:
+                reason = "dashpots stand for rock at normal incidence alone; at other angles it is not predicted"
+                yield Cause.unknown(f"{side} side", reason)
+            back = {motion: self.held_sides.reflects(OPPOSITE[side], motion) for motion in table.factors}
+            parts = {name: errors_on_rock(self.scene, side, own, back) for name, own in motions.items()}
+            words = "by the place where its disks begin, beside the reflection of its rock at normal incidence"
+            yield Cause(f"{side} side", words, parts, of_disks=True, factor=USUAL)
 
     def _continuum(self, places: Mapping[str, np.ndarray]) -> Iterator[Cause]:
         """Errors of the continuum beyond sides, at places (2,) m of monitors."""

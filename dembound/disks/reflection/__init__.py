@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from dembound.boundaries import normal_axis
+from dembound.boundaries.words import reflected
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import linear_law
 from dembound.disks.beyond.frequencies import frequencies_of
@@ -44,7 +45,8 @@ class Measured:
     without factors, or with matched ones. continuum : reflections, with the number of nodes, if the side and all
     absorbing sides were of type "outside"; None where they cannot be, and beside a narrow periodic body only for the
     angle 0. arrivals : waves that reach the side. gaps : Hz, the lowest frequency at which copies of the brick reflect
-    waves of a type themselves, c/2L for bricks of length L along the normal.
+    waves of a type themselves, c/2L for bricks of length L along the normal. rock : reflected over incident velocity of
+    the rock of a side, along its normal, by kind of wave.
     """
 
     side: str
@@ -54,11 +56,12 @@ class Measured:
     continuum: tuple[int, Reflections] | None
     arrivals: list[Arrival]
     gaps: dict[str, float]
+    rock: dict[str, float] = field(default_factory=dict)
 
 
 def measured_sides(case: DiskCase) -> list[str]:
-    """The sides that represent the medium beyond; raises CaseError if there are none."""
-    sides = [side for side, table in case.boundary.items() if table.is_artificial]
+    """The sides that represent the medium or rock beyond; raises CaseError if there are none."""
+    sides = [side for side, table in case.boundary.items() if table.is_artificial or table.is_interface]
     if not sides:
         raise CaseError(["boundary: has no side that absorbs; choose another one with --side"])
     return sides
@@ -104,12 +107,13 @@ def measure_side(
     scene = end_scene(case, side)
     own = factors_in(scene, side)
     best = {motion: homogenised_beta(scene, side, motion) for motion in own}  # nan where the motion is held
-    unmatched = any(abs(beta - best[motion]) > ROUNDING * best[motion] for motion, beta in own.items())
+    rock = {m: reflected(beta, best[m]).real for m, beta in own.items() if table.is_interface and np.isfinite(best[m])}
+    unmatched = not table.is_interface and any(abs(beta - best[motion]) > ROUNDING * best[motion] for motion, beta in own.items())
     scenes = [scene, *([_matched(scene, side)] if unmatched else [])]
     if quick:
         found, *others = (by_smeared_supports(each, side, chosen, angles) for each in scenes)
-        return Measured(side, table.type, found, others[0] if unmatched else None, None, arrivals, {})
-    step, row, other = choose_step(whole)[0], BrickInRow(ground, side), _as_continuum(case, side)
+        return Measured(side, table.type, found, others[0] if unmatched else None, None, arrivals, {}, rock)
+    step, row, other = choose_step(whole)[0], BrickInRow(ground, side), None if table.is_interface else _as_continuum(case, side)
     ends: list[End] = [end_of(each, row) for each in scenes]
     at_once = other is not None and not _is_narrow(other) and beside_elements(ground, side, other.continua[0]) is ground
     if other is not None and at_once:
@@ -118,7 +122,7 @@ def measure_side(
     if other is not None and not at_once:
         others += _of_continuum(other, side, step, chosen, angles, report)
     continuum = None if other is None else (other.continua[0].count, others[-1])
-    return Measured(side, table.type, found, others[0] if unmatched else None, continuum, arrivals, gaps)
+    return Measured(side, table.type, found, others[0] if unmatched else None, continuum, arrivals, gaps, rock)
 
 
 def _of_continuum(

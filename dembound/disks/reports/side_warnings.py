@@ -26,7 +26,8 @@ TAKEN = 0.1
 
 def _send_back(scene: DiskScene) -> Iterator[str]:
     """Warnings about dashpots and springs that reflect much of plane waves along the side's normal."""
-    sides = [side for side in scene.edges if scene.case.side(side).factors]
+    tables = {side: scene.case.side(side) for side in scene.edges}
+    sides = [side for side, table in tables.items() if table.factors and not table.is_interface]
     frequency = mean_frequency(scene.case) if sides else math.nan
     for side in sides:
         for motion, beta in factors_in(scene, side).items():

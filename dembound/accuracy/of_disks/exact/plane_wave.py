@@ -33,6 +33,8 @@ class ExactPlaneWave(Exact[DiskCase]):
             return None
         ((side, waves),) = case.driving.items()
         far = case.side(OPPOSITE[side])
+        if case.side(side).is_interface or far.is_interface:
+            return None
         if len(waves) != 1 or not far.factors or far.waves or not LAWS[case.material.law].is_linear:
             return None
         ((motion, _),) = waves.items()
