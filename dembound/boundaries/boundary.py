@@ -9,6 +9,9 @@ from dembound.boundaries.sides import Factor, Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import Box, Table
 
+BoundaryType = type["Boundary"]
+"""A type of sides."""
+
 Place = tuple[Edge, BoundaryMedium]
 """A side's place: its particles, and the medium that it represents."""
 
@@ -144,7 +147,7 @@ class Boundary(Table):
         """
         return None
 
-    def own_keys(self, *kinds: type["Boundary"]) -> dict[str, Any]:
+    def own_keys(self, *kinds: BoundaryType) -> dict[str, Any]:
         """The keys that are given and belong to some kinds of sides, but for the type."""
         keys = {key for kind in kinds for key in kind.model_fields} - {"type"}
         return self.model_dump(include=keys, exclude_unset=True)

@@ -14,9 +14,10 @@ class Rock(Table):
 
     def factors(self, edge: Edge, medium: BoundaryMedium) -> dict[Motion, float]:
         """β = ρ_r c_r/(ρc)·H/ΣD of an edge, with ρ and c of the medium; 1 where it has no such waves."""
-        pairs = {"p": (self.p_wave_speed, medium.p_wave_speed), "s": (self.s_wave_speed, medium.s_wave_speed)}
+        pairs = ((self.p_wave_speed, medium.p_wave_speed), (self.s_wave_speed, medium.s_wave_speed))
         times = self.density / medium.density / edge.diameter_sum_ratio
-        return {motion: times * own / given if given > 0.0 else 1.0 for motion, (own, given) in pairs.items()}
+        p, s = (times * own / given if given > 0.0 else 1.0 for own, given in pairs)
+        return {"p": p, "s": s}
 
     @property
     def shear_modulus(self) -> float:

@@ -59,8 +59,8 @@ def _rock_in_words(side: Mapping[str, Any]) -> str:
     """The impedance of rock over that of the ground, and the amplitude it returns at normal incidence."""
     ratios = {motion.upper(): side.get(f"rock_{motion}") for motion in ("p", "s")}
     each = [
-        f"{ratio:.3g} times the ground's impedance for {kind} waves, returns {100.0 * reflected(ratio, 1.0).real:.3g} % "
-        "of their amplitude"
+        f"{ratio:.3g} times the ground's impedance for {kind} waves, returns "
+        f"{100.0 * reflected(ratio, 1.0).real:.3g} % of their amplitude"
         for kind, ratio in ratios.items()
         if ratio is not None
     ]

@@ -123,6 +123,11 @@ def side_ends(scene: DiskScene, side: str) -> dict[Motion, tuple[float, float]]:
     return {motion: (end.mass_begins, end.depth(motion)) for motion in running}
 
 
+def mass_begins(scene: DiskScene, side: str) -> float:
+    """Depth m (m) of a side."""
+    return _Strip.of(scene.case, side).mass_begins
+
+
 def depths_held(scene: DiskScene, side: str) -> dict[Motion, float]:
     """The depth s (m) for those waves along a side's normal whose motion the side prescribes."""
     axis = normal_axis(side)

@@ -29,6 +29,7 @@ from dembound.disks.stability import choose_step
 from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.trials import trials_of_disks
+from dembound.disks.within import with_incident_waves
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
 from dembound.motion.moving_picture import MovingPicture
 from dembound.motion.paths import Front, Source
@@ -57,7 +58,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def build(self, case: DiskCase) -> DiskScene:
         """The scene of a case; raises the errors for loads without particles and for a singular material."""
-        scene = build(case)
+        scene = with_incident_waves(build(case))
         _ = scene.steady_load, scene.ground.material_tensor
         return scene
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from dembound.boundaries import Periodic, is_far
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor, with_shares
-from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
+from dembound.boundaries.support import BoundaryMedium, Edge, Incident, SupportBuilder, Supports, Waves
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.beyond.edges import edges_beside_column, find_edges
@@ -196,7 +196,7 @@ def _scene(
         between=between,
         ground_waves=waves,
     )
-    return replace(scene, supports=_supports(scene))
+    return with_waves(scene, case.wave)
 
 
 def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
@@ -244,8 +244,12 @@ def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
     ]
     if built_in[0] != built_in[1]:
         return build(case)  # masses, contacts and the column change with them
-    other = replace(scene, case=case)
-    return replace(other, supports=_supports(other))
+    return with_waves(replace(scene, case=case), case.wave)
+
+
+def with_waves(scene: DiskScene, waves: Waves) -> DiskScene:
+    """The scene with these waves, by the names that its sides have for them."""
+    return replace(scene, supports=_supports(scene, waves))
 
 
 def with_half_contacts(
@@ -287,35 +291,36 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
     )
 
 
-def _supports(scene: DiskScene) -> Supports:
-    """The support table: rows of all sides, of all loads that follow a wave, and of continua."""
+def _supports(scene: DiskScene, waves: Waves) -> Supports:
+    """The support table: rows of all sides under these waves, of all loads that follow a wave, and of continua."""
     case, ground, builder = scene.case, scene.ground, SupportBuilder(held=scene.ground.held)
     for side, table in case.boundary.items():
         if side in scene.edges:
             edge, builder.side = scene.edges[side], side
-            table.support(edge, boundary_medium(case, ground, edge.axis), case.wave, builder)
+            table.support(edge, boundary_medium(case, ground, edge.axis), waves, builder)
     builder.side = ""
     drive(scene, builder)
     for each in scene.continua:
         each.support(builder)
     bottom = case.side("bottom")
     if bottom.is_outside and bottom.waves:
-        _let_in_below(scene, bottom.waves_by_axis(1), builder)
+        names = bottom.waves_by_axis(1)
+        x, y = (None if name is None else waves[name] for name in names)
+        _let_in_below(scene, (x, y), builder)
     if scene.outside is not None and scene.ground_waves is not None:
         let_in(scene.outside, scene.ground_waves, scene.positions, builder)
     return builder.table()
 
 
-def _let_in_below(scene: DiskScene, names: tuple[str | None, str | None], builder: SupportBuilder) -> None:
-    """Add the waves along x and y, by their names, that enter through the continuum below to the support table.
+def _let_in_below(scene: DiskScene, signals: tuple[Incident | None, Incident | None], builder: SupportBuilder) -> None:
+    """Add the waves along x and y, None for none, that enter through the continuum below to the support table.
 
     Beside a free-field column they enter through its foot, and the body's disks that stand on the ground below have the
     forces of their twins.
     """
     beneath = scene.outside if scene.foot is None else scene.foot
     assert beneath is not None
-    x, y = (None if name is None else scene.case.wave[name] for name in names)
-    waves = rising_waves(beneath.body.medium, beneath.box[1], (x, y), scene.ground.brick.mean_diameter)
+    waves = rising_waves(beneath.body.medium, beneath.box[1], signals, scene.ground.brick.mean_diameter)
     disks = disks_on_foot(scene)
     twins = disks if scene.twin is None else scene.twin[disks]
     builder.side = "bottom"

@@ -19,10 +19,13 @@ def factors_of(case: DiskCase) -> list[tuple[str, Motion]]:
         (side, motion)
         for side, table in case.boundary.items()
         for motion in get_args(Motion)
-        if motion in table.factors and not table.is_interface and "xy"[axis_of_motion(side, motion)] not in case.motion.held
+        if motion in table.factors
+        and not table.is_interface
+        and "xy"[axis_of_motion(side, motion)] not in case.motion.held
     ]
     if not found:
-        raise CaseError(["boundary: has no side with dashpots that can move, but for those on rock, so there is nothing to calibrate"])
+        which = "has no side with dashpots that can move, but for those on rock"
+        raise CaseError([f"boundary: {which}, so there is nothing to calibrate"])
     return found
 
 

@@ -4,7 +4,7 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import PrivateAttr, ValidationInfo, model_validator
@@ -52,6 +52,8 @@ class FileWave(Wave):
     from the current folder. Texts by path that are passed as "files" replace files.
     """
 
+    halves: ClassVar[bool] = True
+
     type: Literal["file"]
     path: str = quantity(
         ...,
@@ -83,7 +85,7 @@ class FileWave(Wave):
         shortest = _shortest(samples[:, 0])
         self._require_resolved(float(np.abs(samples[:, 0]).max()), shortest, f'path: a time in "{path}"')
         self._require_resolved(self.start, shortest, "start:")
-        self._samples = Polyline(self.start + samples[:, 0], self.scale * samples[:, 1])
+        self._samples = Polyline(self.start + samples[:, 0], self.share * self.scale * samples[:, 1])
         if self.interpolation == "band_limited" and not is_even(samples[:, 0]):
             least, most = np.diff(samples[:, 0]).min(), np.diff(samples[:, 0]).max()
             raise ValueError(

@@ -59,9 +59,9 @@ class SineBurst(Shape):
     def peak(self) -> float:
         """Largest |velocity|, m/s: the amplitude, or a little less when tapered."""
         if not self.taper:
-            return abs(self.amplitude)
+            return self.share * abs(self.amplitude)
         e = self._crest()
-        return abs(self.amplitude) * math.cos(e) ** 2 * math.sin(2 * self.cycles * e)
+        return self.share * abs(self.amplitude) * math.cos(e) ** 2 * math.sin(2 * self.cycles * e)
 
     def peak_time(self) -> float:
         """Time of the first largest |velocity|, s."""

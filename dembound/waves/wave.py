@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import AfterValidator, model_validator
@@ -28,15 +28,30 @@ NonZero = Annotated[float, AfterValidator(_not_zero)]
 class Wave(Table, ABC):
     """A velocity history, zero before `start`; as the factor of a load its values are pure numbers.
 
+    Of an outcrop it is that of the incident wave, half as large as given; of motion within the ground as given.
+
     Attributes
     ----------
     stays : whether the velocity remains constant in the end.
+    halves : whether the type multiplies its history by `share`.
     """
 
     stays: ClassVar[bool] = False
+    halves: ClassVar[bool] = False
 
     type: str
     start: float = quantity(0.0, unit="s", help="time at which the wave begins", ge=0.0)
+    motion: Literal["incident", "outcrop", "within"] | None = quantity(
+        None,
+        unit="1",
+        help='what moves so: the "incident" wave below; a free "outcrop" of the rock, twice as fast; or the side, '
+        '"within" the ground; absent: incident, at sides of prescribed velocity within',
+    )
+
+    @property
+    def share(self) -> float:
+        """Incident wave over the history: ½ for an outcrop, whose free surface doubles it, else 1."""
+        return 0.5 if self.motion == "outcrop" else 1.0
 
     @abstractmethod
     def velocity(self, t: np.ndarray) -> np.ndarray:
@@ -123,6 +138,8 @@ class Wave(Table, ABC):
 class Shape(Wave):
     """A wave given by a formula: `amplitude` times a shape whose argument is the time since `start`."""
 
+    halves: ClassVar[bool] = True
+
     amplitude: NonZero = quantity(
         ..., unit="m/s", means="velocity", help="factor M of the shape, of either sign; not 0"
     )
@@ -134,15 +151,15 @@ class Shape(Wave):
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
         """Particle velocity, m/s, at the times t, s; same shape as t."""
-        return self.amplitude * self._velocity_shape(np.asarray(t, dtype=float) - self.start)
+        return self.share * self.amplitude * self._velocity_shape(np.asarray(t, dtype=float) - self.start)
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
         """Exact time integral of the velocity from −∞ to t, m; same shape as t."""
-        return self.amplitude * self._displacement_shape(np.asarray(t, dtype=float) - self.start)
+        return self.share * self.amplitude * self._displacement_shape(np.asarray(t, dtype=float) - self.start)
 
     def peak(self) -> float:
         """Largest |velocity|, m/s: the amplitude's size, as the shapes reach 1."""
-        return abs(self.amplitude)
+        return self.share * abs(self.amplitude)
 
     @abstractmethod
     def _velocity_shape(self, since: np.ndarray) -> np.ndarray:

@@ -2,25 +2,28 @@
 
 The rock begins at the plane of the side; of the disks there the mass begins at a depth m, and the stiffness, on which
 the dashpots act, at s (disks/entry.py). For long waves of the wave number k that is an impedance too many of
-i k (s α² − m) at the plane, over that of the ground, with α of the rock; and the reflection (1 − α)/(1 + α) has an error
-of 2 i k (s α² − m)/(1 + α)², a multiple of the acceleration. Shifts of the entry time are no error.
+i k (s α² − m) at the plane, over that of the ground, with α of the rock. The reflection (1 − α)/(1 + α) then has an
+error of 2 i k (s α² − m)/(1 + α)², a multiple of the acceleration. Shifts of the entry time are no error.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
 from dembound.accuracy.cause import MOTIONS
 from dembound.accuracy.history import History
-from dembound.boundaries import axis_of_motion, normal_axis
+from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.disks.entry import side_ends
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.scene import DiskScene
 
 
-def errors_on_rock(scene: DiskScene, side: str, own: History, back: dict[str, float]) -> dict[str, np.ndarray | float]:
+def errors_on_rock(
+    scene: DiskScene, side: str, own: History, back: Mapping[Motion, float]
+) -> dict[str, np.ndarray | float]:
     """Errors (k, 2) of a recorded motion by a side on rock, by quantity.
 
     back : by kind of wave, the reflection of the opposite side, from which the motion comes back to the rock; 0 where

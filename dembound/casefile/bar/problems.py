@@ -31,6 +31,9 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
     """
     loaded = [(f"{place}.wave", load.wave) for place, load in numbered("load", tables["load"])]
     yield from unknown_waves([*driving_waves(tables["boundary"]), *loaded], tables["wave"])
+    for name, wave in tables["wave"].items():
+        if wave and wave.motion is not None:
+            yield f"wave.{name}.motion: is for sides of disks; ends of bars take the incident wave, or its velocity"
     for side, end in tables["boundary"].items():
         yield from end.problems(side, tables) if end else ()
     yield from _across_the_bar(tables["boundary"])

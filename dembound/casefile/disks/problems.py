@@ -22,6 +22,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import STRENGTH_KEYS, Material, with_history
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.motions_of_waves import motion_problems
 from dembound.casefile.disks.static_problems import static_problems
 from dembound.casefile.messages import corners, numbered, show
 from dembound.casefile.output import Output
@@ -41,6 +42,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         named.append(("incident.wave", incident.wave))
         yield from incident_problems(incident, tables)
     yield from unknown_waves([*driving_waves(tables["boundary"]), *named], tables["wave"])
+    yield from motion_problems(tables)
     for side, table in tables["boundary"].items():
         yield from table.problems(side, tables) if table else ()
     if tables["motion"]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from dembound.boundaries import normal_axis
+from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.words import reflected
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import linear_law
@@ -56,7 +56,7 @@ class Measured:
     continuum: tuple[int, Reflections] | None
     arrivals: list[Arrival]
     gaps: dict[str, float]
-    rock: dict[str, float] = field(default_factory=dict)
+    rock: Mapping[Motion, float] = field(default_factory=dict)
 
 
 def measured_sides(case: DiskCase) -> list[str]:
@@ -107,13 +107,20 @@ def measure_side(
     scene = end_scene(case, side)
     own = factors_in(scene, side)
     best = {motion: homogenised_beta(scene, side, motion) for motion in own}  # nan where the motion is held
-    rock = {m: reflected(beta, best[m]).real for m, beta in own.items() if table.is_interface and np.isfinite(best[m])}
-    unmatched = not table.is_interface and any(abs(beta - best[motion]) > ROUNDING * best[motion] for motion, beta in own.items())
+    known = {motion: beta for motion, beta in own.items() if table.is_interface and np.isfinite(best[motion])}
+    rock = {motion: reflected(beta, best[motion]).real for motion, beta in known.items()}
+    unmatched = not table.is_interface and any(
+        abs(beta - best[motion]) > ROUNDING * best[motion] for motion, beta in own.items()
+    )
     scenes = [scene, *([_matched(scene, side)] if unmatched else [])]
     if quick:
         found, *others = (by_smeared_supports(each, side, chosen, angles) for each in scenes)
         return Measured(side, table.type, found, others[0] if unmatched else None, None, arrivals, {}, rock)
-    step, row, other = choose_step(whole)[0], BrickInRow(ground, side), None if table.is_interface else _as_continuum(case, side)
+    step, row, other = (
+        choose_step(whole)[0],
+        BrickInRow(ground, side),
+        None if table.is_interface else _as_continuum(case, side),
+    )
     ends: list[End] = [end_of(each, row) for each in scenes]
     at_once = other is not None and not _is_narrow(other) and beside_elements(ground, side, other.continua[0]) is ground
     if other is not None and at_once:

@@ -127,8 +127,14 @@ def under(
     name : of the case. files : texts of the files that the tables refer to.
     """
     data = parsed(base.text)
-    data["wave"] |= {key: dict(table) for key, table in waves.items()}
+    data["wave"] |= {key: dict(table) | _motion_of(base, key) for key, table in waves.items()}
     return _of_disks(loads(tomli_w.dumps(data), base.folder, name, files))
+
+
+def _motion_of(case: DiskCase, name: str) -> dict[str, str]:
+    """The key motion of a wave, which holds for the records in its place."""
+    motion = case.wave[name].motion
+    return {} if motion is None else {"motion": motion}
 
 
 def _of_disks(case: Case) -> DiskCase:
@@ -159,7 +165,10 @@ def _base(planned: Plan[DiskScene], spacing: float, duration: float, lead: int) 
             "pictures": False,
             "load_factor": case.output.load_factor,
         },
-        "wave": {name: _triangle(spacing, 2.0 * (duration + lead * spacing)) for name in inputs_of(case)},
+        "wave": {
+            name: _triangle(spacing, 2.0 * (duration + lead * spacing)) | _motion_of(case, name)
+            for name in inputs_of(case)
+        },
     }
     return with_changes(case, changes)
 
