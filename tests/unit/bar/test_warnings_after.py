@@ -63,7 +63,7 @@ def test_swings_that_impacts_leave_are_warned_of(tmp_path, courant: float, swing
     run = {"duration": 3e-4, "courant": courant}
     case = small({"bar": bar, "method": {"type": "finite_difference"}, "run": run, "output": {"pictures": False}})
     folder = run_case(case, tmp_path)
-    said = [each for each in after(case, folder) if "swing" in each]
+    said = [each for each in after(case, folder) if "oscillate" in each]
     assert len(said) == swings
     if swings:
         assert said[0].startswith("output.snapshots: their velocities oscillate from step to step, by up to ")
@@ -71,7 +71,7 @@ def test_swings_that_impacts_leave_are_warned_of(tmp_path, courant: float, swing
         with h5py.File(folder / "run.h5", "a") as file:
             for group in file["snapshots"].values():
                 group["velocity"][...] = 1.0
-        assert not [each for each in after(case, folder) if "swing" in each]
+        assert not [each for each in after(case, folder) if "oscillate" in each]
 
 
 def test_contacts_that_never_close_are_warned_of(tmp_path) -> None:

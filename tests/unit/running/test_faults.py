@@ -376,7 +376,7 @@ def test_without_a_checkpoint_the_run_is_begun_anew_from_its_record(folder, tmp_
     partial.mkdir()
     (tmp_path / "bar" / "run.h5").unlink()
     (tmp_path / "bar" / "checkpoint.npz").unlink()
-    with pytest.raises(CaseError, match=r"ended before it could write one$"):
+    with pytest.raises(CaseError, match=r"ended before its first checkpoint$"):
         resume_case(tmp_path / "bar")
 
 
