@@ -60,7 +60,11 @@ def deconvolve(case: DiskCase, surface: np.ndarray, time_step: float, motion: Mo
     if motion not in waves or {0, 1} & {*table.prescribed(1)}:
         kind = "wave_p or wave_s" if motion is None else f"wave_{motion}"
         raise CaseError([f"boundary.{SIDE}: must absorb and name a {kind}, whose ground and rock are taken"], case.name)
-    ground = Level.of(build(case), SIDE, motion)
+    return incident_below(Level.of(build(case), SIDE, motion), surface, time_step)
+
+
+def incident_below(ground: Level, surface: np.ndarray, time_step: float) -> Deconvolved:
+    """The incident wave below level ground whose free surface has a velocity (n,) m/s, sampled at a step (s)."""
     way = ground.height / ground.speed
     early = math.ceil((way + max(0.0, -ground.mass, -ground.stiffness) / ground.speed) / time_step)
     count = len(surface) + early

@@ -53,8 +53,9 @@ def not_level(side: str, table: Boundary, tables: Mapping[str, Any]) -> Iterator
         yield f"boundary.{side} without springs"
     if tables["hole"]:
         yield "ground without holes"
-    motion = tables["motion"]
-    for name in ("left", "right"):
-        lateral = sides.get(name)
-        if lateral and lateral.factors and not lateral.needs_column and not (motion and motion.held):
-            yield f"level ground: boundary.{name} takes from the wave; give periodic, free_field or outside"
+    held = tables["motion"] and tables["motion"].held
+    lateral = {name: sides.get(name) for name in ("left", "right")}
+    taking = [name for name, each in lateral.items() if each and each.factors and not each.needs_column and not held]
+    if taking:
+        names = " and ".join(f"boundary.{name}" for name in taking)
+        yield f"level ground: {names} take from the wave; give periodic, free_field or outside"
