@@ -93,13 +93,14 @@ class Source:
 
     def fixed(self, first: int, count: int, layout: str) -> np.ndarray:
         """The numbers (count,) of `fields`; raises Flaw as well for what is no number."""
-        fields = self.fields(first, count, layout)
-        try:
-            return np.array([float(text) for text in fields])
-        except ValueError:
-            wrong = next(index for index, text in enumerate(fields) if not NUMBER.fullmatch(text.strip()))
-            number = first + 1 + wrong // _columns_of(layout)[0]
-            raise Flaw(f'line {number} has "{fields[wrong].strip()}" in place of a number') from None
+        found: list[float] = []
+        for text in self.fields(first, count, layout):
+            try:
+                found.append(float(text))
+            except ValueError:
+                number = first + 1 + len(found) // _columns_of(layout)[0]
+                raise Flaw(f'line {number} has "{text.strip()}" in place of a number') from None
+        return np.array(found)
 
     def free(self, first: int, count: int) -> np.ndarray:
         """The numbers (count,) from line index `first` on, separated by blanks or signs.
@@ -118,7 +119,7 @@ class Source:
             raise Flaw(f"ends at line {len(self.lines)}, after {len(found)} of {count} numbers")
         if len(found) > count:
             self.remarks.append(f"{len(found) - count} numbers behind the {count} that the header states are left out")
-        return np.array(found[:count])
+        return _sound(np.array(found[:count]))
 
     def measured(self, text: str) -> tuple[Quantity, float]:
         """Quantity and size in SI of a unit in the header, or of the unit that is given instead.
@@ -132,20 +133,20 @@ class Source:
             stated = given
         if stated is None:
             said = (
-                f'the unit "{text.strip()}" of the values is not known'
+                f'has values in "{text.strip()}", which is not known'
                 if text.strip()
                 else "states no unit of the values"
             )
-            raise Flaw(f"{said}; give it by --unit: {USUAL}")
+            raise Flaw(f"{said}; give their unit by --unit: {USUAL}")
         if stated.quantity not in MOTIONS:
             raise Flaw(f"has {stated.quantity} ({text.strip()}), must have {' or '.join(MOTIONS)}")
         return MOTIONS[stated.quantity], stated.size
 
     def evenly(self, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Times (k,) s and values at even times; raises Flaw for times that do not increase or have gaps."""
-        self._require_times(time)
+        _require_increasing(time)
         try:
-            time, values, notes = evenly(self.path, time, values)
+            time, values, notes = evenly(self.path, time, _sound(values))
         except CaseError as error:
             raise Flaw(error.problems[0].removeprefix(f"{self.path}: ")) from None
         self.remarks.extend(notes)
@@ -156,22 +157,15 @@ class Source:
 
         Points at the same time count with their mean. Raises Flaw for times that go back.
         """
-        self._require_times(time)
+        _require_increasing(time)
         time, place = np.unique(time, return_inverse=True)
-        values = np.bincount(place, values) / np.bincount(place)
+        values = np.bincount(place, _sound(values)) / np.bincount(place)
         step = float(f"{np.median(np.diff(time)):.6g}")  # of times with few digits
         if (time[-1] - time[0]) / step > LONGEST * len(time):
             raise Flaw(f"has gaps of up to {np.diff(time).max():.4g} s between points {step:.4g} s apart")
         even = np.arange(time[0], time[-1] + 1e-6 * step, step)
         self.remarks.append(f"digitised at uneven times, resampled every {step:.4g} s by straight lines")
         return step, np.interp(even, time, values)
-
-    def _require_times(self, time: np.ndarray) -> None:
-        """Raise Flaw for times that are too few, not finite or go back."""
-        if len(time) < FEWEST:
-            raise Flaw(f"has {len(time)} samples, must have {FEWEST} or more")
-        if not (np.abs(time) <= LARGEST).all() or (np.diff(time) < 0.0).any() or time[0] == time[-1]:
-            raise Flaw("must have times that increase")
 
     def channel(
         self,
@@ -195,19 +189,33 @@ class Source:
         quantity, size = unit
         if len(numbers) < FEWEST:
             raise Flaw(f"has {len(numbers)} samples, must have {FEWEST} or more")
-        if not (sound := np.abs(numbers) <= LARGEST).all():
-            raise Flaw(f"sample {int(np.argmin(sound)) + 1} is {numbers[np.argmin(sound)]:g}, must be finite")
         if not SMALLEST <= time_step <= LARGEST:
             raise Flaw(f"has a time step of {time_step:g} s, must be positive")
+        values = size * _sound(numbers)
         stated, rounding = _with_rounding(peak)
         if stated is None:
-            return Channel(component, quantity, size * numbers, time_step, begin)
+            return Channel(component, quantity, values, time_step, begin)
         found = float(np.abs(numbers).max()) if found is None else found
         if abs(found - stated) > PEAK_TOLERANCE * stated + rounding:
             states, have = (f"{size * each:.4g} {SI[quantity]}" for each in (stated, found))
             name = component or quantity
             self.remarks.append(f"{name}: the header states a peak of {states}, the samples have {have}")
-        return Channel(component, quantity, size * numbers, time_step, begin, size * stated)
+        return Channel(component, quantity, values, time_step, begin, size * stated)
+
+
+def _sound(numbers: np.ndarray) -> np.ndarray:
+    """Samples as they are; raises Flaw if one is not finite."""
+    if not (sound := np.abs(numbers) <= LARGEST).all():
+        raise Flaw(f"sample {int(np.argmin(sound)) + 1} is {numbers[np.argmin(sound)]:g}, must be finite")
+    return numbers
+
+
+def _require_increasing(time: np.ndarray) -> None:
+    """Raise Flaw for times that are too few, not finite or go back."""
+    if len(time) < FEWEST:
+        raise Flaw(f"has {len(time)} samples, must have {FEWEST} or more")
+    if not (np.abs(time) <= LARGEST).all() or (np.diff(time) < 0.0).any() or time[0] == time[-1]:
+        raise Flaw("must have times that increase")
 
 
 def rows_of(count: int, layout: str) -> int:

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
+from dembound.errors import CaseError
 from dembound.gauge.reading.scope import Columns, read_columns
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
@@ -56,7 +57,7 @@ def _of_one_column(source: Source) -> Channel:
     if sum(index < first for index in numbers) >= BROKEN_OFF:
         raise Flaw(f"line {first} is no number like the lines around it")
     header = "\n".join(source.lines[:first])
-    values = np.array([float(source.lines[index]) for index in numbers if index >= first])
+    values = np.array([float(source.lines[index].strip()) for index in numbers if index >= first])
     if (step := _step(header)) is None:
         raise Flaw('has one column and states no time step, must have a line such as "dt = 0.01 s" above the values')
     return source.channel("", source.measured(_only_unit(header)), values, step)
@@ -70,20 +71,23 @@ def _of_columns(source: Source, columns: Columns) -> list[Channel]:
         raise Flaw(f"has {count} columns without names, must have a line with their names above them")
     units = [[*columns.units(column), names[column]] for column in range(count)]
     timed = [column for column in range(count) if TIME.match(names[column]) or _unit(units[column], ("times",))]
-    first = np.array(columns.values(0))
-    if timed or step is None or (not any(names) and (np.diff(first) > 0.0).all()):
+    try:
+        values = [np.array(columns.values(column)) for column in range(count)]
+    except CaseError as error:
+        raise Flaw(error.problems[0].removeprefix(f"{source.path}: ")) from None
+    if timed or step is None or (not any(names) and (np.diff(values[0]) > 0.0).all()):
         at = timed[0] if timed else 0
         size = unit.size if (unit := unit_named(_unit(units[at], ("times",)))) else 1.0
-        time = size * np.array(columns.values(at))
+        time = size * values[at]
     else:
-        at, time = -1, step * np.arange(float(len(first)))
+        at, time = -1, step * np.arange(float(len(values[0])))
     found = []
     for column in range(count):
         if column != at:
             spelled = _unit(units[column], MOTIONS) or _only_unit(header)
-            even, values = source.evenly(time, np.array(columns.values(column)))
+            even, numbers = source.evenly(time, values[column])
             between = float(f"{(even[-1] - even[0]) / (len(even) - 1):.12g}")
-            found.append(source.channel(names[column], source.measured(spelled), values, between, float(even[0])))
+            found.append(source.channel(names[column], source.measured(spelled), numbers, between, float(even[0])))
     return found
 
 

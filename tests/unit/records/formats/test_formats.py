@@ -133,7 +133,7 @@ def test_a_wrong_peak_in_the_header_is_remarked_on(tmp_path):
 def test_a_given_unit_replaces_one_of_the_same_quantity(tmp_path):
     without = changed(tmp_path, "sample_step.txt", ("[cm/s²]", ""))
     assert refusal(without) == (
-        "PATH, read as columns of text: states no unit of the values; give it by --unit: "
+        "PATH, read as columns of text: states no unit of the values; give their unit by --unit: "
         "g, gal, cm/s², m/s², cm/s, m/s, cm or m"
     )
     (channel,) = read_record(without, "gal").channels
