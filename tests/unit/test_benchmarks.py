@@ -27,6 +27,7 @@ COMMANDS = (
     "estimates",
     "golden",
     "single_edits",
+    "record_interpolation",
 )
 
 
