@@ -78,7 +78,7 @@ NO_UNITS = frozenset(re.findall(r"\S+", "x y z n e w ns ew ud n-s e-w u-d h1 h2 
 """Texts in brackets that are directions of a component, or say that values have no unit."""
 
 _SIGNS = str.maketrans("⁰¹²³⁴⁻−μµ·⋅×*", "01234--uu    ")
-_FACTOR = re.compile(r"\s*(/?)\s*([a-zε]+)\s?\^?(-?\d+)?")
+_FACTOR = re.compile(r"\s*(/?)\s*([a-zε]+)\s?\^?(-?\d)?")
 _SPLIT_POWER = re.compile(r"(\b[a-z]+)[ .]((?:s|sec|cm|mm|m)\^?-\d)", re.IGNORECASE)
 _BRACKETS = re.compile(r"[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]")
 _SUFFIX = re.compile(r"(?<=[a-z0-9])_([a-zµμ²/^_]+?)(?=[\s,;:\"']|$)", re.IGNORECASE)

@@ -163,7 +163,8 @@ def _fields(text: str, separator: str) -> Iterator[list[str]]:
             fields = [field.strip() for field in next(csv.reader([plain], delimiter=separator))]
         else:
             fields = [field.strip() for field in plain.split(separator)]
-        yield [] if plain != line and line.startswith("#") and _number(fields[0], ",") is not None else fields
+        numeric = bool(fields) and _number(fields[0], ",") is not None
+        yield [] if numeric and line.startswith("#") else fields
 
 
 def _numbers(path: Path, rows: Sequence[tuple[int, list[str]]], separator: str) -> Columns:

@@ -12,9 +12,11 @@ from dembound.records.formats.format import Format
 from dembound.records.formats.source import DECIMAL, Flaw, Source
 
 HEADER = 17
-DIRECTIONS = {
-    **{str(number): f"{name} (borehole)" for number, name in enumerate(("N-S", "E-W", "U-D"), start=1)},
-    **{str(number): f"{name} (surface)" for number, name in enumerate(("N-S", "E-W", "U-D"), start=4)},
+KIK_NET = {
+    str(number): f"{direction} ({place})"
+    for number, (place, direction) in enumerate(
+        ((place, direction) for place in ("borehole", "surface") for direction in ("N-S", "E-W", "U-D")), start=1
+    )
 }
 """Components by their numbers in files of KiK-net."""
 
@@ -31,22 +33,18 @@ class Knet(Format):
     def read(self, source: Source) -> Record:
         """The component of the file."""
 
-        def stated(key: str, pattern: str) -> tuple[str, ...]:
-            return tuple(map(str, source.found(rf"^{key}\s+{pattern}", 0, HEADER, key.replace("\\", "")).groups()))
+        def stated(key: str, pattern: str = rf"({DECIMAL})") -> tuple[str, ...]:
+            found = source.found(rf"^{key}\s+{pattern}", 0, HEADER, key.replace("\\", ""))
+            return tuple(map(str, found.groups()))
 
-        (rate,) = stated(r"Sampling Freq\(Hz\)", rf"({DECIMAL})")
-        (duration,) = stated(r"Duration Time\(s\)", rf"({DECIMAL})")
+        (rate,), (duration,) = stated(r"Sampling Freq\(Hz\)"), stated(r"Duration Time\(s\)")
         full, unit, steps = stated("Scale Factor", rf"({DECIMAL})\((\w+)\)/({DECIMAL})")
-        (peak,) = stated(r"Max\. Acc\. \(gal\)", rf"({DECIMAL})")
         (station,), (direction,) = stated("Station Code", r"(\S+)"), stated(r"Dir\.", r"(\S+)")
-        (origin,) = stated("Origin Time", r"(\S.*\S)")
+        (peak,), (origin,) = stated(r"Max\. Acc\. \(gal\)"), stated("Origin Time", r"(\S.*\S)")
         if not (0.0 < float(rate) <= 1e6 and 0.0 < float(duration) <= 1e6 and float(steps) > 0.0):
             raise Flaw("sampling frequency, duration and scale factor must be positive")
-        numbers = source.free(HEADER, round(float(duration) * float(rate))) * (float(full) / float(steps))
-        without_mean = float(np.abs(numbers - numbers.mean()).max())
-        component = DIRECTIONS.get(direction, direction)
-        channel = source.channel(
-            component, source.measured(unit), numbers, 1.0 / float(rate), peak=peak, found=without_mean
-        )
-        kind = "KiK-net" if direction in DIRECTIONS else "K-NET"
-        return Record(kind, f"{station}, earthquake of {origin}", (channel,))
+        values = source.free(HEADER, round(float(duration) * float(rate))) * (float(full) / float(steps))
+        found = float(np.abs(values - values.mean()).max())
+        component, step = KIK_NET.get(direction, direction), 1.0 / float(rate)
+        channel = source.channel(component, source.measured(unit), values, step, peak=peak, found=found)
+        return Record("KiK-net" if direction in KIK_NET else "K-NET", f"{station}, earthquake of {origin}", (channel,))

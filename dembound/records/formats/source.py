@@ -133,11 +133,11 @@ class Source:
             stated = given
         if stated is None:
             said = (
-                f'has values in "{text.strip()}", which is not known'
+                f'"{text.strip()}" as unit of the values, which is not known'
                 if text.strip()
-                else "states no unit of the values"
+                else "no unit of the values"
             )
-            raise Flaw(f"{said}; give their unit by --unit: {USUAL}")
+            raise Flaw(f"states {said}; give it by --unit: {USUAL}")
         if stated.quantity not in MOTIONS:
             raise Flaw(f"has {stated.quantity} ({text.strip()}), must have {' or '.join(MOTIONS)}")
         return MOTIONS[stated.quantity], stated.size

@@ -13,6 +13,7 @@ from dembound.gauge.reading.scope import Columns, read_columns
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
 from dembound.records.formats.source import DECIMAL, MOTIONS, NUMBER, Flaw, Source
+from dembound.table import LARGEST, SMALLEST
 from dembound.waves.unit_names import unit_named, units_in
 
 TIME = re.compile(r"(t|time|sec|seconds?)(?![a-z])", re.IGNORECASE)
@@ -109,9 +110,12 @@ def _only_unit(header: str) -> str:
 
 
 def _step(header: str) -> float | None:
-    """The time step in a header, s; None without one."""
+    """The time step in a header, s; None without one. Raises Flaw for one that is not positive."""
     found = STEP.search(header)
     if found is None:
         return None
     unit = (found[1] or found[3] or "s").lower()
-    return float(found[2]) * (1e-3 if unit.startswith("m") else 1.0)
+    step = float(found[2]) * (1e-3 if unit.startswith("m") else 1.0)
+    if not SMALLEST <= step <= LARGEST:
+        raise Flaw(f"has a time step of {step:g} s, must be positive")
+    return step

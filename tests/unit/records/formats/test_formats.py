@@ -120,8 +120,9 @@ def test_channels_of_two_files_in_one(tmp_path):
     np.testing.assert_array_equal(one.values, two.values)
 
 
-def test_a_column_of_times_has_a_beginning():
-    assert {channel.begin for channel in read_record(SAMPLES / "sample.csv").channels} == {2.0}
+def test_a_column_of_times_has_a_beginning(tmp_path):
+    path = changed(tmp_path, "sample.csv", ("# Sample", "#\n# of 1 m^400, no unit\n# Sample"))
+    assert {channel.begin for channel in read_record(path).channels} == {2.0}
 
 
 def test_a_wrong_peak_in_the_header_is_remarked_on(tmp_path):
@@ -133,7 +134,7 @@ def test_a_wrong_peak_in_the_header_is_remarked_on(tmp_path):
 def test_a_given_unit_replaces_one_of_the_same_quantity(tmp_path):
     without = changed(tmp_path, "sample_step.txt", ("[cm/s²]", ""))
     assert refusal(without) == (
-        "PATH, read as columns of text: states no unit of the values; give their unit by --unit: "
+        "PATH, read as columns of text: states no unit of the values; give it by --unit: "
         "g, gal, cm/s², m/s², cm/s, m/s, cm or m"
     )
     (channel,) = read_record(without, "gal").channels
