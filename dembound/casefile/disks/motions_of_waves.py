@@ -8,12 +8,11 @@ from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.sides import normal_axis
 from dembound.casefile.cross_checks import driving_waves
 from dembound.casefile.messages import numbered
-from dembound.waves import Wave
 
 
 def motion_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     """Kinds of motion where they have no meaning, one line each; invalid tables are None."""
-    waves: dict[str, Wave] = {name: wave for name, wave in tables["wave"].items() if wave and wave.motion is not None}
+    waves: dict[str, Any] = {name: wave for name, wave in tables["wave"].items() if wave and wave.motion is not None}
     for name, wave in waves.items():
         if wave.motion == "outcrop" and not wave.halves:
             why = f'which type "{wave.type}" does not know; give half of it as incident'
