@@ -8,6 +8,7 @@ from dembound.exact.cavity import CavityMotion, cavity_moment, cavity_motion
 from dembound.exact.dispersion import Lattice, cells_per_wavelength, courant_limit
 from dembound.exact.garvin import buried_explosion
 from dembound.exact.lamb import rayleigh_speed, surface_displacement
+from dembound.exact.lamb_below import buried_displacement
 from dembound.exact.scattering import PlaneWave, ScatteredMotion, scattered_motion
 from dembound.exact.solid import Solid
 
@@ -19,6 +20,7 @@ __all__ = [
     "Solid",
     "bar_stress",
     "bar_velocity",
+    "buried_displacement",
     "buried_explosion",
     "cavity_moment",
     "cavity_motion",

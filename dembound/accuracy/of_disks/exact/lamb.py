@@ -1,4 +1,4 @@
-"""Lamb's problem: the motion of the surface of a half-space beside a vertical line load."""
+"""Lamb's problem: the motion of a half-space at or near its surface, beside a vertical line load."""
 
 from __future__ import annotations
 
@@ -27,12 +27,16 @@ from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
+from dembound.exact.lamb_below import buried_displacement
 from dembound.exact.solid import Solid
 from dembound.motion.silence import monitored
 from dembound.waves import Wave
 
 CORNER = 0.25
 """Least distance between the load and a side that does not mirror it, over the distance from load to monitor."""
+
+SHALLOW = 1e-6
+"""Depth over distance up to which a monitor is on the surface, to rounding."""
 
 ON_TOP = "must be on the top of the scene, where the solution is computed"
 
@@ -50,8 +54,8 @@ class LineLoad:
 class LambProblem(Problem):
     """A line load on the surface, and the distances (m, positive to the right) of the monitors from it.
 
-    With a symmetry side the load lies in that plane, and twice the case's force acts. Monitors are assumed to be on the
-    surface. wave : the load over its force.
+    With a symmetry side the load lies in that plane, and twice the case's force acts. Monitors are as deep below the
+    `surface` (m) as the centres of their disks. wave : the load over its force.
     """
 
     name: ClassVar[str] = "lamb"
@@ -60,6 +64,7 @@ class LambProblem(Problem):
     load: LineLoad
     wave: Wave
     away: Mapping[str, float]
+    surface: float
     places: Mapping[str, np.ndarray]
 
     @property
@@ -89,24 +94,29 @@ class LambProblem(Problem):
         for distance in away.values():
             end = case.run.duration - abs(distance) / solid.p_wave_speed
             must_be_continuous(load.wave, wave.velocity, BEGINNING * end, end)
-        return cls(solid, load, wave, away, places)
+        return cls(solid, load, wave, away, case.box[3], places)
 
     def motions(self, times: np.ndarray) -> dict[str, History]:
-        """Motion of the surface at the monitors; the velocity is the slope between the times."""
+        """Motion of the monitors; the velocity is the slope between the times."""
         return {name: self._motion(times, self.places[name], distance) for name, distance in self.away.items()}
 
     def _motion(self, times: np.ndarray, place: np.ndarray, distance: float) -> History:
-        """Motion at a place (2,) m of the surface, at a distance (m) from the load."""
-        solid = self.solid
-        speeds = solid.p_wave_speed, solid.s_wave_speed
+        """Motion at a place (2,) m, at a horizontal distance (m) from the load."""
+        solid, depth = self.solid, self.surface - float(place[1])
         try:
-            along, down = surface_displacement(
-                times, abs(distance), lambda t: self.load.force * self.wave.velocity(t), solid.density, *speeds
-            )
+            if depth > SHALLOW * abs(distance):
+                along, down = buried_displacement(times, abs(distance), depth, self._force, solid)
+            else:
+                speeds = solid.p_wave_speed, solid.s_wave_speed
+                along, down = surface_displacement(times, abs(distance), self._force, solid.density, *speeds)
         except RuntimeError:
             raise CaseError([f"wave.{self.load.wave}: {ROUGH}"]) from None
         moved = np.column_stack([np.sign(distance) * along, -down, np.zeros(len(times))])
         return History.of(place, times, moved, np.gradient(moved, times, axis=0))
+
+    def _force(self, times: np.ndarray) -> np.ndarray:
+        """The load (N per metre, downwards) at times of any shape."""
+        return self.load.force * self.wave.velocity(times)
 
 
 def _away(scene: DiskScene, load: LineLoad, name: str, place: np.ndarray) -> float:

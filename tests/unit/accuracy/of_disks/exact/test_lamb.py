@@ -7,9 +7,10 @@ import pytest
 from dembound.accuracy.of_disks.exact import lamb as module
 from dembound.accuracy.of_disks.exact import write_exact
 from dembound.errors import CaseError
-from dembound.exact import lamb
-from dembound.exact.lamb import surface_displacement
+from dembound.exact import Solid, buried_displacement, lamb_below
 from dembound.kinds import loads, with_changes
+
+ROCK = Solid(2500.0, 300.0, 300.0 / np.sqrt(2.0))
 
 CASE = """
 [packing]
@@ -52,7 +53,7 @@ def test_a_load_on_the_open_surface_moves_both_sides_alike(tmp_path):
     case = loads(CASE)
     time, before, behind = histories(tmp_path / "run.h5", case)
     pulse = case.wave["pulse"].velocity
-    out, down = surface_displacement(time, 2.0, lambda t: 1000.0 * pulse(t), 2500.0, 300.0, 300.0 / np.sqrt(2.0))
+    out, down = buried_displacement(time, 2.0, 0.25, lambda t: 1000.0 * pulse(t), ROCK)  # half a disk deep
 
     # both from the same quadrature
     np.testing.assert_allclose(behind, np.column_stack([out, -down, 0.0 * time]), atol=1e-12 * down.max())
@@ -63,7 +64,7 @@ def test_a_mirror_plane_doubles_the_load_and_stands_at_the_side(tmp_path):
     case = with_changes(loads(CASE), {"boundary.left.type": "symmetry", "load": [{**HAMMER, "position": [0.25, 4.75]}]})
     time, near, _ = histories(tmp_path / "run.h5", case)
     pulse = case.wave["pulse"].velocity
-    out, down = surface_displacement(time, 2.75, lambda t: 2000.0 * pulse(t), 2500.0, 300.0, 300.0 / np.sqrt(2.0))
+    out, down = buried_displacement(time, 2.75, 0.25, lambda t: 2000.0 * pulse(t), ROCK)
     np.testing.assert_allclose(near, np.column_stack([out, -down, 0.0 * time]), atol=1e-12 * down.max())
 
 
@@ -121,7 +122,7 @@ def test_jumps_are_found_beside_steep_flanks_and_before_the_quadrature(tmp_path,
     pulse = [(0.0, 0.0), (0.03, 0.0), (0.0305, 1.0), (0.031, 0.0)]
     samples = [*pulse, (at, 0.0), (np.nextafter(at, 1.0), step), (1.0, 0.0)]
     np.savetxt(tmp_path / "wave.txt", samples, fmt="%.17g")
-    monkeypatch.setattr(module, "surface_displacement", lambda times, *_: np.zeros((2, len(times))))
+    monkeypatch.setattr(module, "buried_displacement", lambda times, *_: np.zeros((2, len(times))))
     case = with_changes(loads(CASE, tmp_path), {"wave.pulse": {"type": "file", "path": "wave.txt"}})
     if refused:
         with pytest.raises(CaseError, match=rf"wave\.pulse: has a jump at {at:.3g} s; .* continuous wave$"):
@@ -132,7 +133,7 @@ def test_jumps_are_found_beside_steep_flanks_and_before_the_quadrature(tmp_path,
 
 def test_a_load_whose_quadrature_does_not_settle_is_refused(tmp_path, monkeypatch):
     # as of one that jumps to and fro between two samples; the pulse takes more than the fewest panels
-    monkeypatch.setattr(lamb, "MOST_PANELS", lamb.FEWEST_PANELS)
+    monkeypatch.setattr(lamb_below, "MOST_PANELS", lamb_below.FEWEST_PANELS)
     with pytest.raises(CaseError, match=r"wave\.pulse: is so rough .* continuous wave$"):
         write_exact(loads(CASE), tmp_path / "run.h5")
     assert not list(tmp_path.iterdir())
