@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from dembound.plot.spectra import LEGEND_OF_FAINT, draw_curve, fourier_curve, on_logarithmic_axes, response_curve
 from dembound.plot.style import line_style, new_figure, styled
 from dembound.records.processing import Motion
+from dembound.spectra.response import FEWEST_PER_PERIOD
 
 LABELS = (
     "acceleration\n(m/s²)",
@@ -30,8 +31,11 @@ def plot_motions(motions: Sequence[Motion], title: str) -> Figure:
         name, look = motion.component or "motion", line_style(0)
         for panel, values in zip(column, (motion.acceleration, motion.velocity, motion.displacement), strict=False):
             panel.plot(motion.time, values, gid=name, **look | {"linewidth": 0.7})
-        for panel, curve in zip(column[HISTORIES:], (fourier_curve, response_curve), strict=True):
-            draw_curve(panel, curve(motion.acceleration, motion.time_step), name, name, look)
+        base = motion.acceleration, motion.time_step
+        for panel, curve in zip(
+            column[HISTORIES:], (fourier_curve(*base), response_curve(*base, FEWEST_PER_PERIOD)), strict=True
+        ):
+            draw_curve(panel, curve, name, name, look)
         for panel in column[: HISTORIES - 1]:
             panel.tick_params(labelbottom=False)
         for panel, along in zip(column[HISTORIES - 1 :], ("time (s)", "frequency (Hz)", "period (s)"), strict=True):

@@ -24,8 +24,9 @@ from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legen
 from dembound.results.histories import UNITS, MonitorRecord, Quantity, read_histories
 from dembound.results.reader import record_names
 from dembound.spectra.fourier import fourier_spectrum, shown_frequencies, smoothed
-from dembound.spectra.response import response_spectrum, usual_periods
+from dembound.spectra.response import SAMPLES_PER_PERIOD, response_spectrum, slope, usual_periods
 from dembound.spectra.transfer import transfer_function
+from dembound.words import with_unit
 
 DECADES = 1e-4
 """Smallest amplitude shown, over the largest."""
@@ -66,9 +67,12 @@ def fourier_curve(values: np.ndarray, time_step: float) -> Curve:
     return Curve(centre, np.sqrt(smoothed(frequency, power, centre)), (frequency[1:], np.sqrt(power[1:])))
 
 
-def response_curve(acceleration: np.ndarray, time_step: float) -> Curve:
-    """The pseudo-accelerations, 5 % damping, of a base's acceleration (n,), m/s², time_step (s) apart."""
-    found = response_spectrum(acceleration, time_step, usual_periods(len(acceleration), time_step))
+def response_curve(acceleration: np.ndarray, time_step: float, shortest: int) -> Curve:
+    """The pseudo-accelerations, 5 % damping, of a base's acceleration (n,), m/s², time_step (s) apart.
+
+    shortest : samples in the shortest period.
+    """
+    found = response_spectrum(acceleration, time_step, usual_periods(len(acceleration), time_step, shortest))
     return Curve(found.period, found.pseudo_acceleration)
 
 
@@ -148,18 +152,30 @@ def plot_response(
 ) -> Figure:
     """Response spectra of the monitors' accelerations for 5 % damping, a panel each; twins are dashed.
 
+    They begin at eight samples of the coarsest run in a period, from which on they are within 0.5 % of those of the
+    band-limited motion through the samples.
+
     Parameters and errors as of `plot_histories`.
     """
+    if component == "rotation":
+        raise CaseError(["--component: is rotation; a response spectrum is of x or y"])
+    begins = []
 
     def curve(run: Histories, name: str, column: int) -> Curve | None:
         if name not in run:
             return None
-        return response_curve(run[name].values[:, column], _time_step(name, run[name]))
+        step = _time_step(name, run[name])
+        found = response_curve(slope(run[name].values[:, column], step), step, SAMPLES_PER_PERIOD)
+        begins.append(found.along[0])
+        return found
 
-    return _figure(
-        runs, "acceleration", monitors, component, curve, "Response spectra of the monitors", "period (s)",
+    figure = _figure(
+        runs, "velocity", monitors, component, curve, "", "period (s)",
         lambda column: f"pseudo-acceleration {direction(column)}, 5 % damping (m/s²)",
     )  # fmt: skip
+    begin = with_unit(max(begins), "s", digits=2)
+    figure.suptitle(f"Response spectra of the monitors, from {begin} on: eight samples in a period", fontsize=11)
+    return figure
 
 
 def _figure(
@@ -173,8 +189,6 @@ def _figure(
     label: Callable[[int], str],
 ) -> Figure:
     """A panel for each monitor and component with the lines of all runs, on logarithmic axes."""
-    if component == "rotation" and quantity == "acceleration":
-        raise CaseError(["--component: is rotation; a response spectrum is of x or y"])
     histories = [read_histories(path, quantity) for path in runs]
     shown = chosen_monitors(runs, histories, monitors)
     columns = [0] if quantity == "stress" else shown_columns(_those(histories, shown), component)

@@ -20,6 +20,8 @@ from dembound.words import percent
 
 NO_COLUMNS = "is not two columns of numbers, separated by blanks or semicolons, in a .csv file by commas"
 
+OF_A_RECORD = "if it is a measured record: `dembound wave` makes a wave of it"
+
 MOST_SAMPLES = 2**20
 """Largest number of even samples for a spectrum; very uneven times could need far more."""
 
@@ -240,7 +242,7 @@ def samples_of(text: str, path: Path, quantity: str = "values") -> np.ndarray:
         plain = [line for _, line in lines]
         samples = np.loadtxt(plain, ndmin=2, delimiter=separator) if plain else np.empty((0, 2))
     except ValueError:  # which quotes the file: it may be any file
-        raise ValueError(f'path: "{path}" {NO_COLUMNS}: {_misfit(lines, separator)}') from None
+        raise ValueError(f'path: "{path}" {NO_COLUMNS}: {_misfit(lines, separator)}; {OF_A_RECORD}') from None
     problem = _problem(samples, quantity)
     if problem:
         raise ValueError(f'path: "{path}" {problem}')
@@ -297,7 +299,7 @@ def _problem(samples: np.ndarray, quantity: str) -> str:
     if samples.size == 0:
         return "contains no numbers"
     if samples.shape[1] != 2:
-        return f"has {samples.shape[1]} columns, must have two: time (s), {quantity}"
+        return f"has {samples.shape[1]} columns, must have two: time (s), {quantity}; {OF_A_RECORD}"
     if not np.isfinite(samples).all():
         return "contains values that are not finite"
     if np.abs(samples).max() > LARGEST:
