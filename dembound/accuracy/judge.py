@@ -10,7 +10,7 @@ from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.moved_sides import Extended
-from dembound.accuracy.proposal import Advice
+from dembound.accuracy.proposal import Advice, Receiver
 from dembound.accuracy.reference import Exact, FinerRun
 from dembound.accuracy.runner import Run
 from dembound.casefile import Case
@@ -61,10 +61,19 @@ class Judge(ABC, Generic[C, S]):
         yield from ()
 
     @abstractmethod
-    def advise(self, case: C, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None) -> Advice:
+    def advise(
+        self,
+        case: C,
+        bounds: Sequence[float],
+        of: Truth,
+        kept: Sequence[str],
+        longest: float | None,
+        receiver: Receiver,
+    ) -> Advice:
         """The errors of a case, and the cheapest choices for several bounds.
 
         kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: the default.
+        receiver : of what is known before all is.
 
         Raises CaseError for cases whose errors are not known, that do not move at their monitors, and where no choice
         keeps the values of `kept`; the errors of building a scene and of runs.

@@ -32,6 +32,16 @@ class Proposal:
         return share.upper <= bound and not share.at_least
 
 
+class Receiver:
+    """Receives proposals as soon as they are known; the default ignores them."""
+
+    def given(self, proposal: Proposal) -> None:
+        """The errors of the case itself are known."""
+
+    def best(self, bound: float, proposal: Proposal) -> None:
+        """The best choice for an error bound is known; bounds come from the largest to the smallest."""
+
+
 @dataclass(frozen=True)
 class Advice:
     """Choices advised for a case.

@@ -7,7 +7,7 @@ results are written.
 import math
 import time
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from dembound.accuracy.choice import AnyCase, digest
 from dembound.accuracy.history import History, Motions
+from dembound.accuracy.watch import current
 from dembound.casefile import Case
 from dembound.motion.clock import Clock
 from dembound.motion.kind import Finding, Plan
@@ -102,11 +103,11 @@ class Runner:
 
     Attributes
     ----------
-    work : total work of its runs, in the unit of their kind of body.
+    work : total work of its runs, in the unit of their kind of body. count : their number.
     """
 
-    def __init__(self, kept: Kept | None = None, shown: Shown = lambda name: nullcontext(Progress())) -> None:
-        self.work = 0
+    def __init__(self, kept: Kept | None = None, shown: Shown = lambda name: current().run(name)) -> None:
+        self.work = self.count = 0
         self._kept, self._shown = kept or InMemory(), shown
 
     def run(self, case: Case, name: str = "", inside: Box | None = None) -> Run:
@@ -120,6 +121,7 @@ class Runner:
                 found, _, _ = measure(case, progress, inside=inside, timed=False)
             self._kept.add(key, found)
             self.work += found.work
+            self.count += 1
         return found
 
 

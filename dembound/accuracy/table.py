@@ -9,7 +9,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from dembound.accuracy.budget import Budget, Share
-from dembound.accuracy.cause import TITLES, Cause
+from dembound.accuracy.cause import TITLES, Cause, Causes
+from dembound.accuracy.history import Motions
 from dembound.casefile.messages import counted
 from dembound.results.estimates import LEAST, in_words
 from dembound.words import columns, percent
@@ -35,6 +36,19 @@ def lines_of(budget: Budget) -> list[str]:
     if not any(budget.largest(name, "rock")[1].is_known for name in budget.motions):
         return _wrapped(_sentences(budget))
     return [WHAT, *_table(budget), *_wrapped(_sentences(budget))]
+
+
+def in_one_line(causes: Sequence[Cause], motions: Motions) -> str:
+    """The largest error by each known cause at monitors whose motion is not negligible; motions : by monitor.
+
+    Without motions only causes whose sizes do not depend on them are known.
+    """
+    sizes = {
+        cause.name: Budget(motions, Causes([cause])).worst().share.value if motions else cause.largest
+        for cause in causes
+        if cause.how != "unknown"
+    }
+    return ", ".join(f"{name} {in_words(size)}" for name, size in sizes.items())
 
 
 def next_step(budget: Budget, results: Path, case: Path | None) -> str:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from decimal import Decimal
 from enum import StrEnum
 from pathlib import Path
@@ -19,9 +18,6 @@ from dembound.words import percent, with_unit
 if TYPE_CHECKING:
     from dembound.accuracy.proposal import Advice, Proposal
     from dembound.casefile import Case
-
-WIDTH = 80
-"""Largest number of characters in a line of the tables."""
 
 
 class Truth(StrEnum):
@@ -99,6 +95,8 @@ def advise_cases(
     Only small scenes with larger disks are run; see docs/tasks/trust_a_result.md.
     """
     from dembound.accuracy.advise import BOUNDS, advise
+    from dembound.cli.advice_table import Table
+    from dembound.cli.progress import watched
 
     bound = bound_of(error)
     targets = [] if bound is None else [path.with_name(f"{name_within(path.stem, bound)}.toml") for path in cases]
@@ -110,11 +108,12 @@ def advise_cases(
     missed = []
     for number, path in enumerate(cases):
         case = load_case(path, changes)
-        found = advise(case, bounds, None if of is None else of.value, kept, seeds, longest)
-        for line in lines_of(case, found):
-            out.print(line, markup=False, soft_wrap=True)
+        with watched(case.name) as watching:
+            table = Table(case, bounds, watching)
+            found = advise(case, bounds, None if of is None else of.value, kept, seeds, longest, table)
+        _print(f"advice took {with_unit(found.cpu_seconds, 's', 2)} of CPU time")
         if bound is None:
-            out.print(f"write one: dembound advise {path} --error 3%", markup=False, soft_wrap=True)
+            _print(f"write one: dembound advise {path} --error 3%")
         elif not found.best[bound].holds(bound):
             missed.append(_missed(case, found, bound))
         elif found.best[bound].choice.changes:
@@ -155,8 +154,11 @@ def chosen(
     Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `advise`.
     """
     from dembound.accuracy.advise import advise
+    from dembound.cli.progress import watched
 
-    found = advise(case, (bound,), kept=_kept(keep, changes), longest=longest)
+    with watched(case.name) as watching:
+        watching.missing = f"the cheapest choice within {percent(bound, 3)}; nothing has been run"
+        found = advise(case, (bound,), kept=_kept(keep, changes), longest=longest)
     best = found.best[bound]
     if not best.holds(bound):
         raise NotAccurateError(_missed(case, found, bound))
@@ -170,26 +172,9 @@ def _kept(keep: Sequence[str] | None, changes: Sequence[str] | None) -> list[str
     return [*(keep or ()), *(text.partition("=")[0].strip() for text in changes or ())]
 
 
-def lines_of(case: Case, found: Advice) -> Iterator[str]:
-    """The errors of a case, and the cheapest choices for it, in lines of at most 80 characters."""
-    from dembound.accuracy.table import lines_of as table_of
-    from dembound.results.estimates import in_words
-
-    cost, spent = with_unit(found.given.cost, "s", 2), with_unit(found.cpu_seconds, "s", 2)
-    yield f"{case.name}: its steps take about {cost}; advice took {spent} of CPU time"
-    yield from table_of(found.given.budget)
-    yield ""
-    yield "   requested  predicted  at most      time   what changes"
-    before = ""
-    for bound, best in found.best.items():
-        share = best.budget.worst().share
-        numbers = f"{in_words(share.value):>9} {in_words(share.upper):>8}  {with_unit(best.cost, 's', 2):>8}   "
-        words = best.choice.name if best.choice.changes else "nothing"
-        if not best.holds(bound):
-            words = f"no choice holds it, least: {words}"
-        before, words = words, "the same" if words == before != "nothing" else words
-        first = f"{percent(bound, 3):>12}  {numbers}"
-        yield from textwrap.wrap(words, WIDTH, initial_indent=first, subsequent_indent=" " * 8)
+def _print(line: str) -> None:
+    """Print a line."""
+    out.print(line, markup=False, soft_wrap=True)
 
 
 def _lines(best: Proposal) -> list[str]:

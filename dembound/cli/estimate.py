@@ -34,6 +34,7 @@ def estimate(
     Writes estimate.h5 and the entry error_estimate of summary.json; see docs/tasks/trust_a_result.md.
     """
     from dembound.accuracy.estimate import estimate_results
+    from dembound.cli.progress import watched
     from dembound.results.folder import with_name
 
     prepare_computing(threads)
@@ -42,7 +43,9 @@ def estimate(
     for path in results:
         try:
             folder = with_name(results_file(path)).parent
-            _show(folder, estimate_results(folder, repeat))
+            with watched(folder.name):
+                found = estimate_results(folder, repeat)
+            _show(folder, found)
         except CaseError as error:
             problems += [line for line in str(error).splitlines() if line not in problems]
             failure = failure if isinstance(error, RecordError) else CaseError
@@ -53,9 +56,12 @@ def estimate(
 def print_estimate(folder: Path) -> None:
     """Print the error estimate of a completed run, or why there is none."""
     from dembound.accuracy.estimate import estimate_results
+    from dembound.cli.progress import watched
 
     try:
-        _show(folder, estimate_results(folder))
+        with watched(folder.name):
+            found = estimate_results(folder)
+        _show(folder, found)
     except DemboundError as error:
         err.print(f"{folder.name}: errors are not estimated: {error}")
 

@@ -1,21 +1,40 @@
-"""Progress of a run on stderr: a bar on a terminal, else a line every ten seconds; and its warnings."""
+"""Progress of a run, estimate or advice on stderr: a bar on a terminal, else a line every ten seconds; and warnings."""
 
+import math
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 
+import typer
 from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as RichProgress
 from rich.text import Text
 
+from dembound.accuracy.cause import Cause
+from dembound.accuracy.history import Motions
+from dembound.accuracy.table import in_one_line
+from dembound.accuracy.watch import Watch, watched_by
 from dembound.cli.compiling import COMPILATION
 from dembound.cli.console import INTERVAL, err
+from dembound.interrupts import exit_code_of
 from dembound.motion.trackers import Run
 from dembound.running import Progress
+from dembound.words import with_unit
+
+
+class Shown(Progress):
+    """Progress that is shown under a name, which may change."""
+
+    def begin(self, name: str) -> None:
+        """Something else begins, of this name."""
+
+    def aside(self) -> AbstractContextManager[None]:
+        """Inside, other things may be printed to the terminal."""
+        return nullcontext()
 
 
 @contextmanager
-def progress_of(name: str) -> Iterator[Progress]:
+def progress_of(name: str) -> Iterator[Shown]:
     """The progress of the case of that name."""
     if not err.is_terminal:
         yield Lines(name)
@@ -35,6 +54,51 @@ def progress_of(name: str) -> Iterator[Progress]:
         COMPILATION.beside_bar = False
 
 
+class Watching(Watch):
+    """Shows what is computed for an estimate or for advice, and prints what is known meanwhile.
+
+    Parameters
+    ----------
+    name : of the case; shown : its progress.
+
+    Attributes
+    ----------
+    missing : what is not known yet, in words.
+    """
+
+    def __init__(self, name: str, shown: Shown) -> None:
+        self.name, self.shown, self.missing = name, shown, "all errors"
+
+    def begins(self, what: str) -> None:
+        """Show what begins, after the part of the whole that it belongs to."""
+        self.shown.begin(": ".join(filter(None, (self.name, self.part, what))))
+
+    @contextmanager
+    def run(self, what: str) -> Iterator[Progress]:
+        """Show the steps of a companion."""
+        self.begins(what)
+        yield self.shown
+
+    def knows(self, causes: Sequence[Cause], motions: Motions, missing: str) -> None:
+        """Print the causes in one line, which remains if the rest is interrupted."""
+        self.missing = missing
+        if known := in_one_line(causes, motions):
+            err.print(f"{self.name}: largest errors by formula: {known}; still to be found: {missing}")
+
+
+@contextmanager
+def watched(name: str) -> Iterator[Watching]:
+    """The receiver of an estimate or of advice about the case of that name; a request to end says what is missing."""
+    with progress_of(name) as shown:
+        watching = Watching(name, shown)
+        try:
+            with watched_by(watching):
+                yield watching
+        except KeyboardInterrupt as stop:
+            err.print(f"{name}: stopped; missing: {watching.missing}")
+            raise typer.Exit(exit_code_of(stop)) from None
+
+
 class _Compiling(ProgressColumn):
     """The note on compiling in a bar of progress."""
 
@@ -48,7 +112,7 @@ def print_warning(name: str, message: str) -> None:
     err.print(f"{name}: warning: {message}")
 
 
-class Lines(Progress):
+class Lines(Shown):
     """A run's progress as plain lines.
 
     Parameters
@@ -59,23 +123,35 @@ class Lines(Progress):
 
     def __init__(self, name: str, now: Callable[[], float] = time.monotonic) -> None:
         self.name, self.now = name, now
-        self.began = self.said = now()
+        self.began = self.begun = self.said = now()
         self.next = INTERVAL
         """Seconds of a static stage after which the next line is printed."""
         self.steps: int | None = None
         """Steps of the run at the last line; None before the first block."""
         self.compiled = 0.0
         """Seconds of compiling up to the last line, which a rate does not include."""
+        self.stage = ""
+        """The static stage of the last line."""
+
+    def begin(self, name: str) -> None:
+        """Print the name of what begins, unless a line was printed a short time ago."""
+        self.name, self.steps, self.stage, self.began, self.next = name, None, "", self.now(), INTERVAL
+        if self.began - self.begun >= INTERVAL:
+            self.begun = self.began
+            err.print(name)
 
     def warned(self, message: str) -> None:
         """Print the warning at once, on a separate line."""
         print_warning(self.name, message)
 
-    def settling(self, steps: int, ratio: float) -> None:
-        """Print time, steps and force ratio of the static stage, after 10, 20, 40, … seconds."""
+    def settling(self, steps: int, ratio: float, stage: str) -> None:
+        """Print time, steps and force ratio of a static stage, 10, 20, 40, … seconds after its begin."""
+        if self.stage not in ("", stage):
+            self.began, self.next = self.now(), INTERVAL
+        self.stage = stage
         if (took := self.now() - self.began) >= self.next:
             self.next *= 2.0
-            err.print(f"{self.name}: static stage, {took:.0f} s, {steps:,} steps, unbalanced force ratio {ratio:.1e}")
+            err.print(f"{self.name}: {stage}, {took:.0f} s, {steps:,} steps, unbalanced force ratio {ratio:.1e}")
 
     def running(self, run: Run, steps: int) -> None:
         """Print steps done and in all, simulated time, and particle-steps per second since the last line."""
@@ -86,13 +162,15 @@ class Lines(Progress):
             stepping = since - (compiled - self.compiled)
             rate = (run.state.step - self.steps) * run.scene.count / stepping / 1e6
             self.said, self.steps, self.compiled = self.said + since, run.state.step, compiled
+            left = (steps - run.state.step) * run.scene.count / (1e6 * rate) if rate > 0.0 else math.inf
+            self.begun = self.said
             err.print(
                 f"{self.name}: {run.state.step:,} of {steps:,} steps, {run.time:.4g} s simulated, "
-                f"{rate:.3g} M particle-steps/s"
+                f"{rate:.3g} M particle-steps/s, about {with_unit(left, 's', 2)} left"
             )
 
 
-class ProgressBar(Progress):
+class ProgressBar(Shown):
     """A run's progress as a bar, with rate and time left."""
 
     def __init__(self, bar: RichProgress, name: str) -> None:
@@ -103,9 +181,21 @@ class ProgressBar(Progress):
         """Print the warning on a separate line above the bar."""
         print_warning(self.name, message)
 
-    def settling(self, steps: int, ratio: float) -> None:
-        """The static stage, whose number of steps is not known in advance."""
-        self.bar.update(self.task, description=f"{self.name}: static stage, {steps:,} steps, ratio {ratio:.1e}")
+    def begin(self, name: str) -> None:
+        """A new bar, for what begins."""
+        self.bar.remove_task(self.task)
+        self.name, self.task = name, self.bar.add_task(name, total=None, rate="")
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """Inside, there is no bar."""
+        self.bar.stop()
+        yield
+        self.bar.start()
+
+    def settling(self, steps: int, ratio: float, stage: str) -> None:
+        """A static stage, whose number of steps is not known in advance."""
+        self.bar.update(self.task, description=f"{self.name}: {stage}, {steps:,} steps, ratio {ratio:.1e}")
 
     def running(self, run: Run, steps: int) -> None:
         """The run itself."""

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)
 
-OnLook = Callable[[int, float], None]
-"""Called with the number of steps of a static stage done so far, and its force ratio."""
+OnLook = Callable[[int, float, str], None]
+"""Called with the number of steps of a static stage done so far, its force ratio, and its name."""
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ class Progress:
     def warned(self, message: str) -> None:
         """A warning about a probable mistake, issued before the first step or when the record is complete."""
 
-    def settling(self, steps: int, ratio: float) -> None:
-        """The static stage has done this many steps and has reached this force ratio."""
+    def settling(self, steps: int, ratio: float, stage: str) -> None:
+        """A static stage of this name has done this many steps and has reached this force ratio."""
 
     def running(self, run: Run, steps: int) -> None:
         """A block of steps is done; steps: the number in the whole run."""

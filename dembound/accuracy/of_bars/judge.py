@@ -16,7 +16,7 @@ from dembound.accuracy.of_bars.extended import extended_bar
 from dembound.accuracy.of_bars.finer import Finer, finer
 from dembound.accuracy.of_bars.pulse import PulseInBar
 from dembound.accuracy.of_bars.search import advice_for_bar
-from dembound.accuracy.proposal import Advice
+from dembound.accuracy.proposal import Advice, Receiver
 from dembound.accuracy.runner import Run
 from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.bar.scene import BarScene
@@ -36,10 +36,16 @@ class BarJudge(Judge[BarCase, BarScene]):
         return causes_of_bar(case, recorded, time_step)
 
     def advise(
-        self, case: BarCase, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None
+        self,
+        case: BarCase,
+        bounds: Sequence[float],
+        of: Truth,
+        kept: Sequence[str],
+        longest: float | None,
+        receiver: Receiver,
     ) -> Advice:
         """The cheapest nodes, steps and absorbing ends."""
-        return advice_for_bar(case, bounds, kept, longest)
+        return advice_for_bar(case, bounds, kept, longest, receiver)
 
     def extended(self, case: BarCase, most: int) -> Extended:
         """The bar with more spacings beyond ends that are neither loaded nor driven."""

@@ -27,7 +27,7 @@ from dembound.accuracy.of_bars.floors import Floors, first_echo, is_regular
 from dembound.accuracy.of_bars.motions import BarMotions
 from dembound.accuracy.of_bars.options import GIVEN_ENDS, BarOption, bar_options, may_break, other_options
 from dembound.accuracy.of_bars.window import Window
-from dembound.accuracy.proposal import Advice, Proposal
+from dembound.accuracy.proposal import Advice, Proposal, Receiver
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
@@ -44,10 +44,13 @@ ALONG = "; its nodes and method remain, as it may break, and the error is that b
 """What is said of a bar that may break."""
 
 
-def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str], longest: float | None = None) -> Advice:
+def advice_for_bar(
+    case: BarCase, bounds: Sequence[float], kept: Sequence[str], longest: float | None, receiver: Receiver
+) -> Advice:
     """The errors of a bar, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
     kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: `COSTLIEST`.
+    receiver : of what is known before all is.
 
     Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
     keeps the values of `kept`; the errors of building a scene.
@@ -57,6 +60,8 @@ def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str], 
     own = given_motion(case)
     if not own.moves:
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
+    given = Proposal(Choice("the case as it is", {}, case), own.choice.cost, own.budget)
+    receiver.given(given)
     motions = affordable(own, bar_options(case, kept), longest)
     if bounds and not motions:
         raise CaseError(["advise: no choice keeps the values of --keep, --set and --longest"], case.name)
@@ -69,7 +74,8 @@ def advice_for_bar(case: BarCase, bounds: Sequence[float], kept: Sequence[str], 
             words += ALONG + (_otherwise(own, bound, kept, longest) if not motion.holds(bound) else "")
         found = Proposal(Choice.of(case, motion.choice.case(case), words), motion.choice.cost, motion.budget)
         best[bound] = found if may_break(case) else ended_earlier(found, case, bound, motion.recorded, kept)
-    return Advice(Proposal(Choice("the case as it is", {}, case), own.choice.cost, own.budget), best, tried)
+        receiver.best(bound, best[bound])
+    return Advice(given, best, tried)
 
 
 def given_motion(case: BarCase) -> Motion:

@@ -10,28 +10,36 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import OWN, Choice
-from dembound.accuracy.of_disks.causes import causes_of_choice, entry_notes
+from dembound.accuracy.of_disks.causes import causes_of_choice, entry_notes, of_ground
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.law import elastic_twin
 from dembound.accuracy.of_disks.search import CUT, LONGEST, Search, before_breaks
-from dembound.accuracy.proposal import Advice, Proposal
+from dembound.accuracy.proposal import Advice, Proposal, Receiver
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
+from dembound.accuracy.watch import begins, current
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.motion.kind import Plan
 from dembound.motion.silence import monitored
 from dembound.running import plan
+from dembound.words import percent
 
 
 def advice_for_disks(
-    case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None = None
+    case: DiskCase,
+    bounds: Sequence[float],
+    of: Truth,
+    kept: Sequence[str],
+    longest: float | None,
+    receiver: Receiver,
 ) -> Advice:
     """The errors of a case, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
     of : truth to which errors are relative; with "disks" the disks do not change. kept : keys that do not change.
-    longest : CPU seconds that the steps of a choice may take; None: the default. A case that keeps the only bound in
+    longest : CPU seconds that the steps of a choice may take; None: the default. receiver : of what is known before all
+    is. A case that keeps the only bound in
     less time than a search takes is the choice itself.
 
     Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building and
@@ -39,6 +47,7 @@ def advice_for_disks(
     """
     _require_known(case)
     kept = [*kept, "packing.radius"] if of == "disks" else kept
+    begins("the packing, and the time step")
     planned: Plan[DiskScene] = plan(case)
     most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
     companions = Companions(case, planned.scene, planned.time_step, most, Runner())
@@ -50,7 +59,9 @@ def advice_for_disks(
     if not _is_reached(planned) or not any(map(np.any, moved)):
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
     given = _given(companions, of, planned_cost(planned).seconds)
+    receiver.given(given)
     if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
+        receiver.best(bounds[0], given)
         return Advice(given, {bounds[0]: given}, 1)
     searches = [Search(companions, planned, of, kept, given.cost, longest=longest)]
     searches[0].know(given.budget)
@@ -58,14 +69,20 @@ def advice_for_disks(
         own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
         cost = planned_cost(twin.planned).seconds
         searches.insert(0, Search(own, twin.planned, of, kept, cost, twin, longest))
-    best = {bound: _best(given, case, searches, bound) for bound in sorted(bounds, reverse=True)}
+    best = {}
+    for number, bound in enumerate(sorted(bounds, reverse=True)):
+        current().part = f"within {percent(bound, 3)}, {number + 1} of {len(bounds)}"
+        best[bound] = _best(given, case, searches, bound)
+        receiver.best(bound, best[bound])
     return Advice(given, best, sum(search.tried for search in searches))
 
 
 def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
     """The proposal of the unchanged case."""
     scene = companions.scene
-    causes = causes_of_choice(companions, scene, companions.time_step, 0.0) + Causes([], [], entry_notes(scene))
+    ground = of_ground(companions, scene, companions.time_step, told=True)
+    causes = causes_of_choice(companions, scene, companions.time_step, 0.0, ground)
+    causes += Causes([], [], entry_notes(scene))
     budget = Budget(companions.recorded(scene), causes, of)
     return Proposal(Choice(OWN + before_breaks(companions), {}, companions.case), cost, budget)
 

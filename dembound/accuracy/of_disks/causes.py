@@ -15,6 +15,7 @@ from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.kinks import causes_of_kinks
 from dembound.accuracy.of_disks.pair import sides_of_pair
+from dembound.accuracy.watch import current
 from dembound.casefile.disks import DiskCase
 from dembound.disks.entry import late_by
 from dembound.disks.scene import DiskScene, build
@@ -51,6 +52,8 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
     scene = build(case)
     moved = " and ".join(sides_of_pair(case)) if case.monitor else ""
     reason = ""
+    if moved or scene.has_history:
+        _tell(Formulas(scene, time_step).causes(recorded), scene, recorded)
     if moved and (case.ground.size is not None or case.incident is not None):
         reason = f"of {moved}: beside a continuum no companions are run"
     elif moved:
@@ -64,6 +67,15 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
     unknown = [Cause.unknown(SIDES, reason)] if reason else []
     known, cost = _of_ground_of_run(case, scene, recorded, time_step, most)
     return Causes([*unknown, *known], _not_counted(scene), entry_notes(scene), cost / work)
+
+
+def _tell(causes: Sequence[Cause], scene: DiskScene, motions: Motions) -> None:
+    """Inform the receiver of the causes found by formula, before companions are run; motions : by monitor."""
+    missing = [SIDES] if sides_of_pair(scene.case) else []
+    missing += [f"{side} side" for side in HeldSides(scene).among_others]
+    missing += [f"{STEP} as contacts open or slide"] if scene.has_history else []
+    if missing:
+        current().knows(causes, motions, f"errors by {', '.join(missing)}, from companions")
 
 
 def _of_ground_of_run(
@@ -143,14 +155,20 @@ def causes_of_choice(
     return found
 
 
-def of_ground(companions: Companions, scene: DiskScene, time_step: float) -> list[Cause]:
-    """All causes of the error of a choice but artificial sides, which would need companions of its own."""
+def of_ground(companions: Companions, scene: DiskScene, time_step: float, *, told: bool = False) -> list[Cause]:
+    """All causes of the error of a choice but artificial sides, which would need companions of its own.
+
+    told : whether the receiver is informed of those by formula as soon as they are known.
+    """
     motions = companions.recorded(scene)
     words = "by the motion between the disks of companions"
     places = Cause(PLACES, words, companions.moved(scene), of_disks=True, factor=USUAL)
     formulas = Formulas(scene, time_step)
     kinks = causes_of_kinks(formulas, motions, companions.diameter)
-    known = _with_steps_of_contacts(list(formulas.causes(motions)), companions, scene, time_step)
+    known = formulas.causes(motions)
+    if told:
+        _tell(known, scene, motions)
+    known = _with_steps_of_contacts(known, companions, scene, time_step)
     return [*known, *kinks, places, *_held(companions, scene)]
 
 

@@ -13,6 +13,7 @@ from dembound.accuracy.history import History, Motions
 from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import Coarser, coarser
 from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
+from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.pair import Pair, pair_of, ratios, sides_of_pair
 from dembound.accuracy.of_disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
 from dembound.accuracy.runner import Run, Runner, at_step
@@ -107,7 +108,7 @@ class Companions:
     @cached_property
     def _far(self) -> Run:
         """The run with far sides."""
-        return self._measured(self._with_far_sides(self._own))
+        return self._measured(self._with_far_sides(self._own), "far sides" if self.pair else "larger disks")
 
     def _with_far_sides(self, case: DiskCase) -> DiskCase:
         """A companion with its sides so far away that nothing returns, if they may move."""
@@ -232,10 +233,10 @@ class Companions:
         """
         is_own = OFTEN * self.scene.count * self.case.run.duration / self.time_step <= self.most
         case, step = (self.case, self.time_step) if is_own else (self._own, self.step)
-        run = self.runner.run(at_step(case, step))
+        run = self.runner.run(at_step(case, step), self._named("as contacts open or slide"))
         if not any(LAWS[name].has_history for name in run.laws):
             return {}
-        shorter = self.runner.run(at_step(case, 0.5 * step))
+        shorter = self.runner.run(at_step(case, 0.5 * step), self._named("with half the step"))
         end, time = min(run.finding(BREAK_TIME), shorter.finding(BREAK_TIME)), next(iter(self.far.values())).time
         own, half = ({name: each.at(time) for name, each in one.motions.items()} for one in (run, shorter))
         if is_own:
@@ -252,7 +253,9 @@ class Companions:
         """The motion of the disks of all patches with far sides and a mirror plane at a side that stays."""
         if side not in self._mirrored:
             sides = {**self._own.boundary, side: Symmetry(type="symmetry")}
-            self._mirrored[side] = self._run(self._with_far_sides(replace(self._own, boundary=sides)))
+            self._mirrored[side] = self._run(
+                self._with_far_sides(replace(self._own, boundary=sides)), f"a mirror plane at {side}"
+            )
         return self._mirrored[side]
 
     def _with_row_at(self, side: str) -> Motions:
@@ -263,7 +266,9 @@ class Companions:
             copies[axis] += 1
             origin[axis] -= 0.0 if is_far(side) else own.packing.brick_size[axis]
             packing = own.packing.with_copies(*copies).model_copy(update={"origin": tuple(origin)})
-            self._behind[side] = self._run(self._with_far_sides(replace(own, packing=packing)))
+            self._behind[side] = self._run(
+                self._with_far_sides(replace(own, packing=packing)), f"one more row at {side}"
+            )
         return self._behind[side]
 
     def _places(self, scene: DiskScene) -> dict[str, np.ndarray]:
@@ -321,15 +326,27 @@ class Companions:
         """Motion at a scene's monitors in a companion with given sides, moved outwards by `wider` of its length."""
         own = replace(self._own, boundary=sides)
         case = enlarged(build(own), farther(own.packing, self._needed, wider)) if wider else own
-        return self._motion(self._run(case), self._places(scene))
+        return self._motion(self._run(case, "sides of its own"), self._places(scene))
 
-    def _run(self, case: DiskCase) -> Motions:
+    def _run(self, case: DiskCase, what: str) -> Motions:
         """The motion of the monitors of a companion, until bonds break with far sides."""
-        return self._until_break(self._measured(case).motions)
+        return self._until_break(self._measured(case, what).motions)
 
-    def _measured(self, case: DiskCase) -> Run:
-        """The run of a companion."""
-        return self.runner.run(at_step(case, self.step))
+    def _measured(self, case: DiskCase, what: str) -> Run:
+        """The run of a companion; what : it has, in words."""
+        return self.runner.run(at_step(case, self.step), self._named(f"with {what}"))
+
+    @cached_property
+    def expected(self) -> int:
+        """Number of companions of the case itself, about."""
+        own = 1 if self.pair is None else len(self.pair.scenes)
+        return own + (2 if self.scene.has_history else 0) + len(HeldSides(self.scene).among_others)
+
+    def _named(self, what: str) -> str:
+        """The next companion, in words."""
+        number = self.runner.count + 1
+        of = f" of about {self.expected}" if number <= self.expected else ""
+        return f"companion {number}{of}, {what}"
 
 
 def _stays(case: DiskCase, side: str) -> bool:

@@ -19,7 +19,7 @@ from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.extended import extended_disks
 from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.seeds import cause_of_packing
-from dembound.accuracy.proposal import Advice
+from dembound.accuracy.proposal import Advice, Receiver
 from dembound.accuracy.reference import Exact
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS, require_linear
@@ -64,11 +64,17 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
             yield f"the elastic law holds up to {limit['factor']:.3g} times these waves, then {limit['limit']}"
 
     def advise(
-        self, case: DiskCase, bounds: Sequence[float], of: Truth, kept: Sequence[str], longest: float | None
+        self,
+        case: DiskCase,
+        bounds: Sequence[float],
+        of: Truth,
+        kept: Sequence[str],
+        longest: float | None,
+        receiver: Receiver,
     ) -> Advice:
         """The cheapest disks, sides and boxes in a continuum."""
         require_linear(case.material.law)
-        return advice_for_disks(case, bounds, of, kept, longest)
+        return advice_for_disks(case, bounds, of, kept, longest, receiver)
 
     def extended(self, case: DiskCase, most: int) -> Extended:
         """The scene with more bricks beyond its sides."""

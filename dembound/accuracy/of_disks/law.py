@@ -179,4 +179,6 @@ def _factor(case: DiskCase, planned: Plan[DiskScene], most: float, runner: Runne
         step = choose_step(built)[0]
         if built.disk_count * case.run.duration / step <= most:
             break
-    return runner.run(at_step(quiet, step)).finding(LOAD_FACTOR), built.ground.brick.mean_diameter
+    return runner.run(at_step(quiet, step), "load factor of the elastic law").finding(
+        LOAD_FACTOR
+    ), built.ground.brick.mean_diameter

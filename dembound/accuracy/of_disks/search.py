@@ -27,6 +27,7 @@ from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_errors
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.accuracy.proposal import Proposal
+from dembound.accuracy.watch import begins
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
@@ -335,6 +336,7 @@ class Search:
         """
         if (known := self.known.get(key := digest(built.case))) is not None:
             return known
+        begins(f"choice {self.tried + 1}, {built.option.words}")
         option, scene, step = built.option, built.planned.scene, built.planned.time_step
         motions = self.companions.recorded(scene)
         try:

@@ -28,7 +28,8 @@ def cause_of_packing(case: DiskCase, motions: Motions, seeds: int) -> Causes:
     : by monitor, at the times at which it is found. Raises CaseError for a packing without a seed, and the errors of
     runs.
     """
-    runs = [Runner().run(each) for each in _reseeded(case, seeds)]
+    runner = Runner()
+    runs = [runner.run(each, f"random packing {k + 1} of {seeds}") for k, each in enumerate(_reseeded(case, seeds))]
     parts: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in motions.items():
         there = [run.motions[name].at(own.time) for run in runs]

@@ -43,7 +43,7 @@ def settle(scene: DiskScene, on_look: OnLook | None = None, stages: Stages | Non
     kept = stages or Stages()
     if scene.before is not None:
         before = _settle_built(scene.before, _Stage("before", "before the excavation the static stage", on_look, kept))
-        stage = _Stage("body", "the static stage", on_look, kept)
+        stage = _Stage("body", "after the excavation the static stage", on_look, kept)
         excavated = _settle(scene, lambda: _excavate(scene, before.start), stage)
         return replace(excavated, before=before)
     return _settle_built(scene, _Stage("body", "the static stage", on_look, kept))

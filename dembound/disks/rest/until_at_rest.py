@@ -30,7 +30,7 @@ class UntilAtRest(Tracker):
     body : the scene that settles.
     system : its parts.
     loading : applies its loads.
-    on_look : receives the number of steps done and the force ratio from time to time.
+    on_look : receives the number of steps done, the force ratio and the name from time to time.
     stage : its name in messages.
 
     Attributes
@@ -62,7 +62,7 @@ class UntilAtRest(Tracker):
         self.forces = self._contact_forces(state.displacement)
         self.ratio = self._body.force_ratio(self._system, self.forces, self._contacts)
         if self._on_look is not None:
-            self._on_look(state.step, self.ratio)
+            self._on_look(state.step, self.ratio, self._stage)
         if loading.is_rising(state.step):
             self._begin_anew(state)
         elif self.ratio <= static.ratio:

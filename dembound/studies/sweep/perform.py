@@ -136,7 +136,7 @@ class Begun(Progress):
             self._is_made = True
             self._path.touch()
 
-    def settling(self, steps: int, ratio: float) -> None:
+    def settling(self, steps: int, ratio: float, stage: str) -> None:
         """Report the progress of a static stage."""
         self.make()
 

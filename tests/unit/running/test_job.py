@@ -185,7 +185,7 @@ class Heard(Progress):
     def warned(self, message: str) -> None:
         self.warnings.append((message.split(":")[0], len(self.blocks)))
 
-    def settling(self, steps: int, ratio: float) -> None:
+    def settling(self, steps: int, ratio: float, stage: str) -> None:
         self.static.append((steps, ratio))
 
     def running(self, run: Run, steps: int) -> None:
