@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,12 @@ import numpy as np
 from dembound.accuracy.cause import QUANTITIES, SIDES, Cause, Causes, Truth, share_of
 from dembound.accuracy.history import Motions, loud
 from dembound.accuracy.repeat import Repeat
+from dembound.results.estimates import in_words, split_in_words
 
 
 @dataclass(frozen=True)
 class Share:
-    """An error, RMS over RMS.
+    """An error, RMS over RMS, see `dembound.results.relative_error`.
 
     value : expected error; upper : error with 95 % factors of causes and with causes of which only a bound is known.
     at_least : whether a cause is unknown.
@@ -31,10 +33,16 @@ class Share:
         """Whether the expected error or an upper value is known."""
         return math.isfinite(self.upper)
 
+    def __str__(self) -> str:
+        if not self.is_known:
+            return "unknown"
+        least = "at least " if self.at_least else ""
+        return f"{least}{in_words(self.value)}, {'of known causes ' if least else ''}at most {in_words(self.upper)}"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Worst:
-    """The largest error over all monitors whose motion is not negligible.
+    """The largest error over all monitors whose motion is not negligible; printed as one line of text.
 
     by : nonzero shares by cause.
     """
@@ -44,10 +52,14 @@ class Worst:
     quantity: str = ""
     by: Mapping[str, float] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        where = f" of the {self.quantity} at {self.monitor}" if self.monitor else ""
+        return f"{self.share}{where}{f' ({split_in_words(self.by)})' if self.by else ''}"
+
 
 @dataclass(frozen=True)
 class Budget:
-    """The error of a motion.
+    """The error of a motion at its monitors.
 
     Attributes
     ----------
@@ -111,9 +123,19 @@ class Budget:
         """Quantities recorded at a monitor."""
         return [name for name in QUANTITIES if name in self.motions[monitor].values]
 
+    @cached_property
+    def _loud(self) -> dict[str, set[str]]:
+        """By quantity, the monitors at which it is not negligible."""
+        return {quantity: set(loud(self.motions, quantity)) for quantity in QUANTITIES}
+
     def largest(self, monitor: str, of: Truth | None = None) -> tuple[str, Share]:
-        """The quantity of a monitor with the largest error, and that error; nan if none is known."""
-        totals = {quantity: self.total(monitor, quantity, of) for quantity in self.quantities(monitor)}
+        """The quantity of a monitor with the largest error, and that error; nan if none is known.
+
+        Negligible quantities do not count, unless all are.
+        """
+        recorded = self.quantities(monitor)
+        counted = [quantity for quantity in recorded if monitor in self._loud[quantity]] or recorded
+        totals = {quantity: self.total(monitor, quantity, of) for quantity in counted}
         return max(
             ((q, share) for q, share in totals.items() if share.is_known),
             key=lambda each: each[1].upper,
@@ -126,7 +148,7 @@ class Budget:
             Worst(share, name, quantity)
             for name in self.motions
             for quantity in self.quantities(name)
-            if name in loud(self.motions, quantity) and (share := self.total(name, quantity, of)).is_known
+            if name in self._loud[quantity] and (share := self.total(name, quantity, of)).is_known
         ]
         if not found:
             return Worst(Share(0.0, 0.0))

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from dembound.accuracy.history import History, Motions
+from dembound.results.relative_error import relative_error
 
 SIDES, GRID, STEP, CONTINUUM, ENTRY, WALLS, NEAR = (
     *("sides", "grid", "time step", "continuum", "entry of the wave", "walls of holes", "near loads"),
@@ -74,16 +75,15 @@ class Cause:
         return max((size for size in sizes if isinstance(size, float)), default=0.0)
 
     def share(self, monitor: str, quantity: str, motion: History) -> float:
-        """RMS of the contribution over RMS of the motion, for the component with the largest motion; nan if unknown."""
+        """The relative error of the motion by the contribution, see `relative_error`; nan if unknown."""
         part = self.parts.get(monitor, {}).get(quantity, np.nan)
         return part if isinstance(part, float) else share_of(part, quantity, motion)
 
 
 def share_of(part: np.ndarray, quantity: str, motion: History) -> float:
-    """RMS of a contribution (k, c) over RMS of the motion, for the component with the largest motion; nan at rest."""
+    """The relative error of the motion by a contribution (k, c), see `relative_error`; nan at rest."""
     column = motion.component(quantity)
-    size = float(np.linalg.norm(motion.values[quantity][:, column]))
-    return float(np.linalg.norm(part[:, column])) / size if size > 0.0 else np.nan
+    return relative_error(part[:, column], motion.values[quantity][:, column])
 
 
 @dataclass(frozen=True)

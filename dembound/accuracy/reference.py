@@ -10,13 +10,14 @@ import numpy as np
 
 from dembound.accuracy.cause import Truth
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.history import History, Motions, earlier, loud_of
+from dembound.accuracy.history import LEAST, History, Motions, earlier, loud_of
 from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
-from dembound.results.compare import distance, on_common_clock, relative_errors
+from dembound.results.compare import distance, on_common_clock
 from dembound.results.histories import Quantity
 from dembound.results.reader import COMPONENTS
+from dembound.results.relative_error import largest_component, peak_error, relative_error
 
 Component = Literal["x", "y"]
 
@@ -110,7 +111,7 @@ class FinerRun(Protocol):
 class MonitorError:
     """The error at one monitor.
 
-    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : distance of the compared particles, m, 0 if
+    rms : see `relative_error`; peak : see `peak_error`; apart : distance of the compared particles, m, 0 if
     it is rounding only. rest : RMS error of the reference itself, by formula.
     """
 
@@ -148,7 +149,7 @@ def errors(choice: Choice, outcome: Run, reference: Reference, requested: Reques
             _error(name, recorded[name], expected[name], columns[name], requested),
             rest=reference.rest.get(name, {}).get(requested.quantity, 0.0),
         )
-        for name in loud_of(peaks)
+        for name in loud_of(peaks, LEAST[requested.quantity])
     ]
     return sorted(found, key=lambda error: -error.total)
 
@@ -167,7 +168,7 @@ def _column(values: np.ndarray, requested: Requested) -> int:
         return 0
     if requested.component is not None:
         return COMPONENTS.index(requested.component)
-    return int(np.argmax(np.abs(values[:, :2]).max(axis=0, initial=0.0)))
+    return largest_component(values)
 
 
 def _error(name: str, found: History, expected: History, column: int, requested: Requested) -> MonitorError:
@@ -177,7 +178,7 @@ def _error(name: str, found: History, expected: History, column: int, requested:
         right, left = on_common_clock(*theirs, *mine)
     else:
         left, right = on_common_clock(*mine, *theirs)
-    rms, peak = relative_errors(left, right)
+    rms, peak = relative_error(left - right, right), peak_error(left - right, right)
     apart = distance(found.place, expected.place)
     component = "stress" if requested.quantity == "stress" else COMPONENTS[column]
     return MonitorError(name, component, rms, peak, apart)

@@ -19,10 +19,11 @@ from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.motion.cracks import MANY
-from dembound.results.compare import on_common_clock, relative_errors
+from dembound.results.compare import on_common_clock
 from dembound.results.estimates import in_words
 from dembound.results.histories import FREE_FIELD, Quantity, read_histories
 from dembound.results.reader import energy_of, is_line, open_record, text_of
+from dembound.results.relative_error import largest_component, relative_error
 from dembound.running import run_case
 
 SHORTER = 0.98
@@ -105,8 +106,8 @@ class Cracked:
 class Repeat:
     """The cracks of a run compared with those of the same case with a smaller time step.
 
-    changes : monitor -> quantity -> RMS of the difference of both motions, as vectors, over the RMS of the run's
-    motion, over the whole run. cost : work of the second run over that of the first.
+    changes : monitor -> quantity -> `relative_error` of the second motion beside the first, over the whole run. cost :
+    work of the second run over that of the first.
     """
 
     own: Cracked
@@ -188,5 +189,7 @@ def _changes(record: Path, other: Path) -> dict[str, dict[str, float]]:
         for name, own in read_histories(record, quantity).items():
             values, expected = on_common_clock(again[name].time, again[name].values[:, :2], own.time, own.values[:, :2])
             if not name.endswith(FREE_FIELD) and expected.any():
-                found.setdefault(name, {})[quantity] = relative_errors(values, expected)[0]
+                column = largest_component(expected)
+                change = relative_error((values - expected)[:, column], expected[:, column])
+                found.setdefault(name, {})[quantity] = change
     return found

@@ -57,6 +57,8 @@ def _described(
     if "discriminator" in schema:
         selector, variants = schema["discriminator"]["propertyName"], schema["discriminator"]["mapping"]
         if details[0]["type"].startswith("union_tag"):
+            named = {key for place in variants.values() for key in shared[place.rsplit("/", 1)[-1]]["properties"]}
+            yield from (f"{path}.{key}: {unknown('key', key, sorted(named))}" for key in raw if key not in named)
             found = f"is {show(raw[selector])}" if selector in raw else "is missing"
             yield f"{path}.{selector}: {found}, must be {_one_of(variants)}{_meant(raw.get(selector), variants)}"
             return

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Column
 
 from dembound.cli.advise import Of
 from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, load_case, prepare_computing
-from dembound.cli.console import compact_table, err, out
+from dembound.cli.console import err, out, print_rows
 from dembound.interrupts import exit_code_of
 
 if TYPE_CHECKING:
@@ -126,19 +125,15 @@ def _print(charted: Charted) -> None:
         err.print(f"{charted.case.name}: {text}")
     has_rest = bool(charted.reference.rest)
     errors = ("measured (%)", "total (%)", "peak (%)") if has_rest else ("RMS (%)", "peak (%)")
-    heads = ("choice", *errors, "cost (s)", "run (s)", "work", "")
-    table = compact_table(
-        Column(heads[0], overflow="fold"),
-        *(Column(head, no_wrap=True, justify="right") for head in heads[1:]),
-        title=f"{charted.case.name}: {charted.quantity} beside {charted.reference.sentence}",
-    )
+    rows: list[Sequence[str]] = [("choice", *errors, "cost (s)", "run (s)", "work", "")]
     by_cost = sorted(enumerate(charted.lines), key=lambda each: (bool(each[1].outcome.failure), each[1].point.cost))
     for number, line in by_cost:
         found = charted.found(line)
-        table.add_row(
-            f"{line.choice.name}: {found}" if found else line.choice.name, *_cells(charted, number, line, has_rest)
-        )
-    out.print(table)
+        name = f"{line.choice.name}: {found}" if found else line.choice.name
+        cells = _cells(charted, number, line, has_rest)
+        rows.append((name, *cells, *[""] * (len(rows[0]) - 1 - len(cells))))
+    print_rows(f"{charted.case.name}: {charted.quantity} beside {charted.reference.sentence}", rows)
+    out.print("")
     out.print(charted.reference.covered)
     out.print("* no other choice is more accurate and as cheap (Pareto front)")
     out.print("cost: least CPU time of the steps; those within a quarter of each other count as equal")

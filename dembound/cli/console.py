@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import sys
+import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 from rich import box
@@ -12,6 +14,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from dembound.errors import HIDDEN, escaped, visible
+from dembound.words import columns
 
 INTERVAL = 10.0
 """Seconds between two lines of progress where there is no terminal."""
@@ -41,6 +44,27 @@ err = PlainConsole(stderr=True)
 def compact_table(*columns: Column | str, **looks: Any) -> Table:
     """A table without frame and with narrow gaps between its columns, so that it fits into 80 characters."""
     return Table(*columns, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, title_justify="left", **looks)
+
+
+def print_rows(title: str, rows: Sequence[Sequence[str]], left: int = 1) -> None:
+    """Print a title and rows, the first of which is the head, in aligned columns; the first `left` are names.
+
+    Names are never cut, so lines may be wider than a terminal. There the cells of the first column are broken, but only
+    between words; elsewhere every row is one line, for scripts.
+    """
+    lines = columns(rows, left)
+    if out.is_terminal and (excess := max(map(len, lines)) - out.width) > 0:
+        lines = columns(
+            [line for row in rows for line in _broken(row, max(len(row[0]) for row in rows) - excess)], left
+        )
+    for line in (title, "", *lines):
+        out.print(line, soft_wrap=True)
+
+
+def _broken(row: Sequence[str], width: int) -> list[Sequence[str]]:
+    """The rows of which a row consists after its first cell is broken between words to be at most so wide."""
+    first, *more = textwrap.wrap(row[0], max(width, 1), break_long_words=False, break_on_hyphens=False) or [""]
+    return [[first, *row[1:]], *([f"  {part}", *[""] * (len(row) - 1)] for part in more)]
 
 
 class _UntilClosed(io.FileIO):

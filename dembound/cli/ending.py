@@ -38,7 +38,7 @@ def ending(folder: Path, summary: Mapping[str, Any], *, estimated: bool = False)
 
 
 def peaks(monitors: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """A table of the largest velocity at each monitor: its size, component and time; without twins in a free field."""
+    """A table of the largest component of velocity at each monitor but twins in a free field: its size and its time."""
     from dembound.casefile.disks.monitor import FREE_FIELD
 
     own = [name for name in monitors if not name.endswith(FREE_FIELD)]
@@ -47,9 +47,9 @@ def peaks(monitors: Mapping[str, Mapping[str, Any]]) -> list[str]:
         return []
     sizes, speed = in_one_unit([abs(each["peak_velocity"]) for each in shown.values()], "m/s")
     times, second = in_one_unit([each["peak_time"] or 0.0 for each in shown.values()], "s")
-    rows: list[Sequence[str]] = [("monitor", f"peak |v| ({speed})", "along", f"at ({second})")]
+    rows: list[Sequence[str]] = [("monitor", "component", f"peak ({speed})", f"at ({second})")]
     for (name, each), size, time in zip(shown.items(), sizes, times, strict=True):
         moves = each["peak_time"] is not None
-        rows.append((name, size, *((each["component"], time) if moves else ("-", "-"))))
+        rows.append((name, f"v_{each['component']}" if moves else "-", size, time if moves else "-"))
     more = len(own) - len(shown)
     return [*columns(rows), *([f"… and {more} more in summary.json"] if more else [])]

@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Column
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, Side, app, png, writable
-from dembound.cli.console import compact_table, out
+from dembound.cli.console import out, print_rows
 from dembound.cli.plotted import (
     CALIBRATIONS,
     ComponentOfMotion,
@@ -22,6 +21,7 @@ from dembound.cli.plotted import (
     SceneField,
 )
 from dembound.errors import CaseError, RecordError
+from dembound.words import in_one_unit
 
 
 class Field(StrEnum):
@@ -168,34 +168,33 @@ def compare_histories(
 ) -> None:
     """Print the errors of histories against those of a reference run.
 
-    RMS is the RMS difference of vectors in % of the reference's RMS; largest is the largest difference in % of its
-    peak.
+    RMS and largest are those of the component along which the reference moves most, in % of its RMS and of its peak.
 
-    End and reference are the values of both at the end, along the component with the largest motion.
+    This is the error that estimate, advise and chart give; across is that of the other component over its own RMS.
+
+    End and reference are the values of the component in both at the end.
 
     All twins in a free-field column have one line, for the twin with the largest RMS.
 
     If waves enter a run later or earlier than the reference because of other disks or sides, the shift is subtracted.
     """
     from dembound.results.compare import compare
+    from dembound.results.histories import SCALES
     from dembound.results.reader import understood
 
     files = [results_file(path) for path in (reference, *results)]
     with understood(*files):
         found = compare(files[0], files[1:], quantity.value, as_recorded)
-    unit = found[0].unit
-    components = list(dict.fromkeys(name for line in found for name in line.along))
-    parts = components if len(components) > 1 else []
-    heads = ("RMS (%)", *parts, "largest (%)", f"end ({unit})", "reference")
-    names = (Column(head, overflow="fold") for head in ("run", "monitor"))
-    numbers = (Column(head, no_wrap=True) for head in heads)
-    table = compact_table(*names, *numbers, title=f"{quantity.value} beside {reference}")
-    for line in found:
-        along = (f"{100.0 * line.along[name]:.3f}" if name in line.along else "–" for name in parts)
-        ends = f"{line.component} {line.last:.4g}", f"{line.reference_last:.4g}"
-        rms, peak = f"{100.0 * line.rms:.3f}", f"{100.0 * line.peak:.3f}"
-        table.add_row(line.run, line.monitor, rms, *along, peak, *ends)
-    out.print(table)
+    at_ends = [value * SCALES[quantity.value] for line in found for value in (line.last, line.reference_last)]
+    ends, unit = in_one_unit(at_ends, found[0].unit.removeprefix("M"))
+    has_across = any(line.across is not None for line in found)
+    heads = ("RMS (%)", "largest (%)", *(["across (%)"] if has_across else []), f"end ({unit})", "reference")
+    rows = [("run", "monitor", "along", *heads)]
+    for k, line in enumerate(found):
+        errors = (line.rms, line.peak, *([line.across] if has_across else []))
+        shares = ("–" if error is None else f"{100.0 * error:.3g}" for error in errors)
+        rows.append((line.run, line.monitor, line.component, *shares, *ends[2 * k : 2 * k + 2]))
+    print_rows(f"{quantity.value} beside {reference}", rows, left=3)
     for run, shift in {line.run: line.shift for line in found if line.shift}.items():
         how = "later" if shift > 0.0 else "earlier"
         out.print(f"{run}: waves enter {abs(shift):.2g} s {how} than in the reference; this shift is subtracted")

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Column, Table
 
 from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, load_case
 from dembound.cli.calibration import CalibrationMethod
-from dembound.cli.console import INTERVAL, compact_table, err, out
+from dembound.cli.console import INTERVAL, err, out, print_rows
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
+from dembound.words import in_one_unit
 
 if TYPE_CHECKING:
     from dembound.studies.sweep.statistics import Statistic
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 FAILED = 3
 """Exit code of a sweep with members that failed."""
 
+
+PREFIXED = ("m/s", "m", "s", "Pa")
+"""Units that are printed with the prefix that suits the number."""
 
 MOST_ROWS = 40
 """Largest number of rows of the printed table."""
@@ -165,7 +168,7 @@ def _print(swept: Swept) -> bool:
     _print_warnings(swept)
     found = [each for each in statistics(swept.members, swept.outcomes) if each.quantity in swept.shown]
     if found:
-        out.print(_table(swept.case.name, found[:MOST_ROWS]))
+        print_rows(swept.case.name, list(_rows(found[:MOST_ROWS])), left=2)
     if len(found) > MOST_ROWS:
         out.print(f"{len(found) - MOST_ROWS} more rows are in statistics.csv")
     out.print(f"{swept.case.name}: {len(swept.members) - len(failed)} of {len(swept.members)} members done")
@@ -182,22 +185,21 @@ def _print_warnings(swept: Swept) -> None:
         err.print(f"{swept.case.name}: {left} more warnings are in summary.json of the members")
 
 
-def _table(title: str, statistics: Sequence[Statistic]) -> Table:
-    """A row for each group of members and quantity."""
+def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
+    """A head, and a row for each group of members and quantity, with three digits; all digits are in the files."""
     from dembound.accuracy.labels import in_words, short_keys
     from dembound.studies.sweep.values import unit_of
 
-    table = compact_table(
-        *(Column(head, overflow="fold") for head in ("members", "quantity")),
-        *(Column(head, no_wrap=True) for head in ("n", "mean", "spread", "95 % ±", "unit")),
-        title=title,
-    )
+    yield "members", "quantity", "n", "mean", "spread", "95 % ±", "unit"
     for each in statistics:
         pairs = zip(short_keys(each.group), each.group.values(), strict=True)
         group = ", ".join(f"{key} {in_words(value)}" for key, value in pairs)
-        numbers = [f"{value:.6g}" if value == value else "–" for value in (each.mean, each.spread, each.interval)]
-        table.add_row(group or "all", each.quantity, str(each.count), *numbers, unit_of(each.quantity))
-    return table
+        numbers, unit = (each.mean, each.spread, each.interval), unit_of(each.quantity)
+        texts = [f"{value:.3g}" for value in numbers]
+        if unit in PREFIXED:
+            texts, unit = in_one_unit(numbers, unit)
+        shown = ("–" if value != value else text for value, text in zip(numbers, texts, strict=True))
+        yield group or "all", each.quantity, str(each.count), *shown, "" if unit == "1" else unit
 
 
 def _leave(swept: Swept, folder: Path, title: str | None) -> Iterator[Path]:

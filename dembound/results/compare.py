@@ -9,6 +9,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.results.histories import FREE_FIELD, UNITS, MonitorRecord, Quantity, delay_of, read_histories
 from dembound.results.reader import COMPONENTS, record_names
+from dembound.results.relative_error import largest_component, peak_error, relative_error
 from dembound.results.resample import at_times
 
 SAME_PLACE = 1e-9
@@ -26,19 +27,19 @@ FAINT = 1e-6
 class Difference:
     """One monitor of a run compared with the reference.
 
-    rms : √(Σ|a − b|²/Σ|b|²) of the vectors along x and y; peak : largest |a − b| over largest |b|; along : rms for
-    every component that is not `SMALL` in the reference. component : with the largest motion in the reference; last,
-    reference_last : its values at the end; unit : of these values. shift : s, by which the run's history was made
-    earlier, as waves enter the run later than the reference; else 0. apart : m, distance of the compared places, 0 if
-    it is only rounding; place, reference_place : these places, as text.
+    component : the one with the largest motion in the reference; rms, peak : its `relative_error` and `peak_error`.
+    across : relative error of the other component, None if that is `SMALL` in the reference. last, reference_last :
+    values of the component at the end; unit : of these. shift : s, by which the run was made earlier, as waves enter it
+    so much later than the reference; 0 without. apart : m, distance of the places whose motions are compared, 0 if it
+    is rounding only; place, reference_place : these places, as text.
     """
 
     run: str
     monitor: str
+    component: str
     rms: float
     peak: float
-    along: Mapping[str, float]
-    component: str
+    across: float | None
     last: float
     reference_last: float
     unit: str
@@ -100,22 +101,17 @@ def _difference(
     )
     if not expected.any():
         raise CaseError([f"monitor {monitor}: its {quantity} is zero in the reference"])
-    rms, peak = relative_errors(values, expected)
-    sizes = np.sqrt(np.mean(expected**2, axis=0))
-    column = int(np.argmax(np.abs(expected).max(axis=0)))
+    errors, sizes, column = values - expected, np.linalg.norm(expected, axis=0), largest_component(expected)
+    across = [k for k, size in enumerate(sizes) if k != column and size >= SMALL * np.hypot.reduce(sizes)]
     of_twin = monitor.endswith(FREE_FIELD)  # columns beside different boxes begin elsewhere, only heights count
     places = [each.position * [not of_twin, 1.0] for each in (history, reference)]
     return Difference(
         run=run,
         monitor=monitor,
-        rms=rms,
-        peak=peak,
-        along={
-            COMPONENTS[k]: relative_errors(values[:, k], expected[:, k])[0]
-            for k in range(expected.shape[1])
-            if sizes[k] >= SMALL * np.hypot.reduce(sizes)
-        },
         component=COMPONENTS[column],
+        rms=relative_error(errors[:, column], expected[:, column]),
+        peak=peak_error(errors[:, column], expected[:, column]),
+        across=relative_error(errors[:, across[0]], expected[:, across[0]]) if across else None,
         last=float(values[-1, column]),
         reference_last=float(expected[-1, column]),
         unit=UNITS[quantity][column],
@@ -136,15 +132,6 @@ def on_common_clock(
     """
     shared = expected_time <= min(time[-1], expected_time[-1])
     return at_times(time, values, expected_time[shared]), expected[shared]
-
-
-def relative_errors(values: np.ndarray, expected: np.ndarray) -> tuple[float, float]:
-    """RMS of the difference over RMS of the expected values, and largest difference over their peak.
-
-    values, expected : (m,), or vectors (m, c), whose lengths are used.
-    """
-    error, size = (np.hypot.reduce(each.reshape(len(each), -1), axis=1) for each in (values - expected, expected))
-    return float(np.sqrt(np.sum(error**2) / np.sum(size**2))), float(error.max() / size.max())
 
 
 def distance(place: Sequence[float] | np.ndarray, other: Sequence[float] | np.ndarray) -> float:

@@ -9,7 +9,7 @@ from dembound.disks.reports.beside_wave import taken_from_waves
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
-from dembound.results.compare import relative_errors
+from dembound.results.relative_error import relative_error
 
 POINTS = 0.03
 """Largest difference of shares.
@@ -63,7 +63,7 @@ def test_the_share_that_sides_take_is_foreseen(motion: str, side: dict) -> None:
     held_back = case(motion, side)
     component = 0 if motion == "s" else 1
     beside, whole = (velocities(of, component) for of in (held_back, case(motion, {"type": "free_field"})))
-    measured = [relative_errors(*each)[0] for each in zip(beside.T, whole.T, strict=True)]
+    measured = [relative_error(own - far, far) for own, far in zip(beside.T, whole.T, strict=True)]
     (found,) = taken_from_waves(build(held_back))
 
     assert found.sides == ["left", "right"]

@@ -23,7 +23,7 @@ from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import kind_of
 from dembound.results.histories import Quantity
 from dembound.table import Box
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 LEVELS = (0.01, 0.001)
 """Errors within which the cheapest choice is named."""
@@ -103,8 +103,9 @@ class Charted:
         missing = [name for name in expected if name not in found]
         parts = [f"no {', '.join(missing)}"] if missing else []
         for name, (value, unit) in found.items():
-            number = f"{value:.5g}" if name not in expected else f"{value - expected[name]:+.2g}"
-            parts.append(f"{name} {number}{'' if unit == '1' else f' {unit}'}")
+            change = value - expected[name] if name in expected else value
+            number = f"{change:.3g}" if unit == "1" else with_unit(change, unit)
+            parts.append(f"{name} {'+' if name in expected and change >= 0.0 else ''}{number}")
         return ", ".join(parts)
 
     @property
@@ -129,7 +130,8 @@ class Charted:
         parts = [f"cheapest {' and '.join(levels)}: {name}" for name, levels in within.items()]
         best = self.lines[self.front[0]]
         if best.point.error > LEVELS[-1]:
-            parts.append(f"most accurate: {self._described(best)}")
+            but = " but the reference" if self.reference.own else ""
+            parts.append(f"most accurate of all choices{but}: {self._described(best)}")
         own = [f"{line.choice.name} ({line.point.cost:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
         parts += [f"the reference itself: {', '.join(own)}"] if own else []
         return f"errors {TITLES[self.reference.of]}; {'; '.join(parts)}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dembound.accuracy.cause import QUANTITIES
-from dembound.accuracy.history import QUIET, History, Motions
+from dembound.accuracy.history import LEAST, History, Motions
 from dembound.accuracy.of_bars.motions import FINER, BarMotions, places_of
 from dembound.accuracy.of_bars.options import FACTORS
 from dembound.accuracy.of_bars.window import Window
@@ -68,7 +68,9 @@ class ExactMotion:
         for quantity in QUANTITIES:
             peaks = {name: float(np.abs(each.values[quantity]).max()) for name, each in motion.items()}
             for name, peak in peaks.items():
-                if peak > CLEARLY * QUIET * max(peaks.values()) and (quantity != "stress" or self._inside(name)):
+                if peak > CLEARLY * LEAST[quantity] * max(peaks.values()) and (
+                    quantity != "stress" or self._inside(name)
+                ):
                     found[name].add(quantity)
         return found
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.cause import SIDES, STEP, USUAL, Cause, Causes
+from dembound.accuracy.cause import MOTIONS, SIDES, STEP, USUAL, Cause, Causes
 from dembound.accuracy.history import Motions
-from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.companions import Companions, is_moved
 from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.kinks import causes_of_kinks
@@ -28,6 +28,8 @@ LEAST_LATE = 1e-4
 PLACES = "places"
 """Cause of errors: monitors and loads at other places than those given."""
 
+MOVED, AT_PLACES = "by the motion between the disks of companions", "monitors and loads are at the places given"
+"""How these errors are found, and why there are none."""
 
 HELD = "how much earlier waves come back from disks that are held at their centres: {}"
 """Text on the unknown error of sides that hold disks, with the reason."""
@@ -83,13 +85,19 @@ def _of_ground_of_run(
 ) -> tuple[list[Cause], float]:
     """All causes but artificial sides, at the recorded times, and the work (particle-steps) of their companions.
 
-    Companions are needed for sides that hold disks, and for contacts that open or slide.
+    Companions are needed for monitors and loads that are not at their places, for sides that hold disks, and for
+    contacts that open or slide. The causes are those of `of_ground` but for kinks, which a recorded motion contains.
     """
     known = Formulas(scene, time_step).causes(recorded)
     sides = HeldSides(scene).among_others
-    if not case.monitor or not (sides or scene.has_history):
+    if not case.monitor:
         return known, 0.0
-    reason, companions = "", Companions(case, scene, time_step, most)
+    companions = Companions(case, scene, time_step, most)
+    at = {name: own.time for name, own in recorded.items()}
+    places = _places(companions, scene, at)
+    if not (sides or scene.has_history):
+        return [*known, places], float(companions.runner.work)
+    reason = ""
     if case.ground.size is not None or case.incident is not None:
         reason = "beside a continuum no companions are run"
     else:
@@ -100,14 +108,28 @@ def _of_ground_of_run(
             reason = "; ".join(str(error).splitlines())
     if reason:
         unknown = [Cause.unknown(f"{side} side", HELD.format(reason), True) for side in sides]
-        return [*known, *unknown], float(companions.runner.work)
-    at = {name: own.time for name, own in recorded.items()}
+        return [*known, places, *unknown], float(companions.runner.work)
     known = _with_steps_of_contacts(known, companions, scene, time_step)
     causes = [
         _at_times(cause, time, at) if cause.how == "companion" else cause
         for cause in (*known, *_held(companions, scene))
     ]
-    return causes, float(companions.runner.work)
+    return [*causes, places], float(companions.runner.work)
+
+
+def _places(companions: Companions, scene: DiskScene, at: Mapping[str, np.ndarray]) -> Cause:
+    """Errors by monitors and loads at other places than those given, at the times (k,) s of each monitor.
+
+    No companion is run where all are at their places.
+    """
+    if not is_moved(scene):
+        return Cause(PLACES, AT_PLACES, {name: dict.fromkeys(MOTIONS, 0.0) for name in at}, of_disks=True)
+    try:
+        companions.require_affordable()
+        found, time = companions.moved(scene), next(iter(companions.far.values())).time
+    except DemboundError as error:
+        return Cause.unknown(PLACES, "; ".join(str(error).splitlines()), of_disks=True)
+    return _at_times(Cause(PLACES, MOVED, found, of_disks=True, factor=USUAL), time, at)
 
 
 def _at_times(cause: Cause, time: np.ndarray, at: Mapping[str, np.ndarray]) -> Cause:
@@ -161,8 +183,7 @@ def of_ground(companions: Companions, scene: DiskScene, time_step: float, *, tol
     told : whether the receiver is informed of those by formula as soon as they are known.
     """
     motions = companions.recorded(scene)
-    words = "by the motion between the disks of companions"
-    places = Cause(PLACES, words, companions.moved(scene), of_disks=True, factor=USUAL)
+    places = Cause(PLACES, MOVED, companions.moved(scene), of_disks=True, factor=USUAL)
     formulas = Formulas(scene, time_step)
     kinks = causes_of_kinks(formulas, motions, companions.diameter)
     known = formulas.causes(motions)

@@ -175,9 +175,7 @@ class Companions:
         with the largest error counts. A load at another place also has other distances from surfaces, from which its
         waves return earlier or later.
         """
-        there = self._places(scene)
-        asked = {monitor.name: monitor.position - scene.monitored[monitor.name] for monitor in self.case.monitor}
-        loads = [each.middle - each.asked for each in places_of_loads(scene)] or [np.zeros(2)]
+        there, asked, loads = self._places(scene), _asked(scene), _shifts_of_loads(scene)
         own = self._motion(self.far, there)
         each = [self._unmoved({name: there[name] + asked[name] + load for name in there}, load) for load in loads]
         return {
@@ -347,6 +345,22 @@ class Companions:
         number = self.runner.count + 1
         of = f" of about {self.expected}" if number <= self.expected else ""
         return f"companion {number}{of}, {what}"
+
+
+def is_moved(scene: DiskScene) -> bool:
+    """Whether a monitor or a load that starts waves is at another place than the requested one, but for rounding."""
+    shifts = [*_asked(scene).values(), *_shifts_of_loads(scene)]
+    return bool(np.abs(shifts).max() > LEAST_SHIFT * scene.ground.brick.mean_diameter)
+
+
+def _asked(scene: DiskScene) -> dict[str, np.ndarray]:
+    """By monitor, the way (2,) m from its disk to its requested place."""
+    return {each.name: np.subtract(each.position, scene.monitored[each.name]) for each in scene.case.monitor}
+
+
+def _shifts_of_loads(scene: DiskScene) -> list[np.ndarray]:
+    """The ways (2,) m from requested to real places of the loads that start waves; one of 0 without such loads."""
+    return [each.middle - each.asked for each in places_of_loads(scene)] or [np.zeros(2)]
 
 
 def _stays(case: DiskCase, side: str) -> bool:
