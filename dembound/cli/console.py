@@ -20,6 +20,10 @@ INTERVAL = 10.0
 """Seconds between two lines of progress where there is no terminal."""
 
 
+NARROWEST = 24
+"""Characters in a line of names that are broken between words, at least."""
+
+
 class PlainConsole(Console):
     """Prints texts of users: nothing in them is markup, an emoji code or a command to the terminal."""
 
@@ -63,7 +67,7 @@ def print_rows(title: str, rows: Sequence[Sequence[str]], left: int = 1) -> None
 
 def _broken(row: Sequence[str], width: int) -> list[Sequence[str]]:
     """The rows of which a row consists after its first cell is broken between words to be at most so wide."""
-    first, *more = textwrap.wrap(row[0], max(width, 1), break_long_words=False, break_on_hyphens=False) or [""]
+    first, *more = textwrap.wrap(row[0], max(width, NARROWEST), break_long_words=False, break_on_hyphens=False) or [""]
     return [[first, *row[1:]], *([f"  {part}", *[""] * (len(row) - 1)] for part in more)]
 
 

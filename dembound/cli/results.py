@@ -23,6 +23,9 @@ from dembound.cli.plotted import (
 from dembound.errors import CaseError, RecordError
 from dembound.words import in_one_unit
 
+ROUNDING = 1e-6
+"""Relative error below which two runs differ by rounding only."""
+
 
 class Field(StrEnum):
     """Fields of the motion that colour the disks."""
@@ -192,8 +195,7 @@ def compare_histories(
     rows = [("run", "monitor", "along", *heads)]
     for k, line in enumerate(found):
         errors = (line.rms, line.peak, *([line.across] if has_across else []))
-        shares = ("–" if error is None else f"{100.0 * error:.3g}" for error in errors)
-        rows.append((line.run, line.monitor, line.component, *shares, *ends[2 * k : 2 * k + 2]))
+        rows.append((line.run, line.monitor, line.component, *map(_in_percent, errors), *ends[2 * k : 2 * k + 2]))
     print_rows(f"{quantity.value} beside {reference}", rows, left=3)
     for run, shift in {line.run: line.shift for line in found if line.shift}.items():
         how = "later" if shift > 0.0 else "earlier"
@@ -202,6 +204,13 @@ def compare_histories(
         if line.apart > 0.0:
             places = f"{line.place} in {line.run}, {line.reference_place} in the reference"
             out.print(f"{line.monitor}: the places compared are {line.apart:.4g} m apart: {places}")
+
+
+def _in_percent(error: float | None) -> str:
+    """An error in per cent without the sign; a dash for none, and only a bound for one by rounding."""
+    if error is None:
+        return "–"
+    return f"< {100.0 * ROUNDING:.4f}" if 0.0 < error < ROUNDING else f"{100.0 * error:.3g}"
 
 
 def results_file(path: Path) -> Path:

@@ -334,9 +334,9 @@ def test_cases_are_run_one_after_the_other_and_differences_told(dembound, writte
     answer = dembound("compare", "kept/one", "kept/two", "kept/other")
 
     assert answer.code == 0
-    for head in ("RMS (%)", "largest (%)", "end (m/s)", "reference"):
+    for head in ("along", "RMS (%)", "largest (%)", "end (mm/s)", "reference"):
         assert head in answer.out
-    assert [cells(line)[:2] for line in answer.out.splitlines()[4:6]] == [["two", "middle"], ["other", "middle"]]
+    assert [cells(line)[:2] for line in answer.out.splitlines()[3:5]] == [["two", "middle"], ["other", "middle"]]
     places = "(5.75, 0.25) m in other, (4.75, 0.25) m in the reference"
     assert answer.out.replace("\n", " ").endswith(f"middle: the places compared are 1 m apart: {places} ")
     assert "in two" not in answer.out
@@ -822,7 +822,7 @@ def test_a_chart_is_printed_drawn_resumed_and_replaced(dembound, rod, tmp_path) 
     assert "rod: spacing 0.03 m, courant 0.9: left out, bar.spacing: is 0.03, must divide" in done.err
     assert "rod: spacing 0.05 m, courant 3: failed, run.courant: is 3" in done.err
     assert "rod: velocity beside exact (d'Alembert), up to the first spall at 1.267 ms" in done.out
-    assert "cheapest within 1 % and within 0.1 %: none; most accurate: spacing 0.025 m, courant 0.9 (" in done.out
+    assert "cheapest within 1 % and within 0.1 %: none; smallest error (equal within 5 %): spacing 0.025 m, courant 0.9 (" in done.out
     assert {path.name for path in folder.iterdir()} == {"chart.h5", "chart.csv", "chart.png"}
 
     before = (folder / "chart.csv").read_text(encoding="utf-8")

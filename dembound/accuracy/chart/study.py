@@ -9,7 +9,7 @@ import numpy as np
 
 from dembound.accuracy.cause import TITLES, Truth
 from dembound.accuracy.chart.choices import defaults, from_table
-from dembound.accuracy.chart.front import NONE, Point, cheapest_within, front, points_of
+from dembound.accuracy.chart.front import EQUAL, NONE, Point, cheapest_within, front, points_of
 from dembound.accuracy.chart.record import Record, record_in
 from dembound.accuracy.chart.references import exact_of, reference_of
 from dembound.accuracy.choice import Choice, choices_of, digest
@@ -103,8 +103,8 @@ class Charted:
         missing = [name for name in expected if name not in found]
         parts = [f"no {', '.join(missing)}"] if missing else []
         for name, (value, unit) in found.items():
-            change = value - expected[name] if name in expected else value
-            number = f"{change:.3g}" if unit == "1" else with_unit(change, unit)
+            change, digits = (value - expected[name], 2) if name in expected else (value, 3)
+            number = f"{change:.{digits}g}" if unit == "1" else with_unit(change, unit, digits)
             parts.append(f"{name} {'+' if name in expected and change >= 0.0 else ''}{number}")
         return ", ".join(parts)
 
@@ -130,8 +130,8 @@ class Charted:
         parts = [f"cheapest {' and '.join(levels)}: {name}" for name, levels in within.items()]
         best = self.lines[self.front[0]]
         if best.point.error > LEVELS[-1]:
-            but = " but the reference" if self.reference.own else ""
-            parts.append(f"most accurate of all choices{but}: {self._described(best)}")
+            but = ", without the reference" if self.reference.own else ""
+            parts.append(f"smallest error (equal within {percent(EQUAL - 1.0)}{but}): {self._described(best)}")
         own = [f"{line.choice.name} ({line.point.cost:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
         parts += [f"the reference itself: {', '.join(own)}"] if own else []
         return f"errors {TITLES[self.reference.of]}; {'; '.join(parts)}"

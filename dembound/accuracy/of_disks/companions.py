@@ -175,7 +175,7 @@ class Companions:
         with the largest error counts. A load at another place also has other distances from surfaces, from which its
         waves return earlier or later.
         """
-        there, asked, loads = self._places(scene), _asked(scene), _shifts_of_loads(scene)
+        there, asked, loads = self._places(scene), _asked(self.case, scene), _shifts_of_loads(scene)
         own = self._motion(self.far, there)
         each = [self._unmoved({name: there[name] + asked[name] + load for name in there}, load) for load in loads]
         return {
@@ -349,13 +349,13 @@ class Companions:
 
 def is_moved(scene: DiskScene) -> bool:
     """Whether a monitor or a load that starts waves is at another place than the requested one, but for rounding."""
-    shifts = [*_asked(scene).values(), *_shifts_of_loads(scene)]
+    shifts = [*_asked(scene.case, scene).values(), *_shifts_of_loads(scene)]
     return bool(np.abs(shifts).max() > LEAST_SHIFT * scene.ground.brick.mean_diameter)
 
 
-def _asked(scene: DiskScene) -> dict[str, np.ndarray]:
-    """By monitor, the way (2,) m from its disk to its requested place."""
-    return {each.name: np.subtract(each.position, scene.monitored[each.name]) for each in scene.case.monitor}
+def _asked(case: DiskCase, scene: DiskScene) -> dict[str, np.ndarray]:
+    """By monitor, the way (2,) m from its disk in a scene to its place in the case that the scene stands for."""
+    return {each.name: np.subtract(each.position, scene.monitored[each.name]) for each in case.monitor}
 
 
 def _shifts_of_loads(scene: DiskScene) -> list[np.ndarray]:

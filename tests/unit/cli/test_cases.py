@@ -9,8 +9,8 @@ def test_a_run_ends_with_peaks_files_and_the_next_command(dembound, written, tmp
     answer = dembound("run", written())
     found = json.loads((tmp_path / "results" / "bar" / "summary.json").read_text())["monitors"]["middle"]
     assert answer.out.splitlines()[1:] == [
-        "  monitor  peak |v| (mm/s)  along  at (ms)",
-        f"  middle   {1e3 * found['peak_velocity']:>15.3g}      x  {1e3 * found['peak_time']:>7.3g}",
+        "  monitor  component  peak (mm/s)  at (ms)",
+        f"  middle         v_x  {1e3 * found['peak_velocity']:>11.3g}  {1e3 * found['peak_time']:>7.3g}",
         "bar: results in results/bar",
         "  run.h5, summary.json, paraview/",
         "  next: dembound report results/bar",
@@ -23,10 +23,10 @@ def test_of_many_monitors_the_first_are_printed_in_one_unit() -> None:
     rest = {"component": "x", "peak_velocity": 0.0, "peak_time": None}
     assert peaks({}) == []
     assert peaks({"P": each | {"peak_velocity": 2.0}, "rest": rest, **{f"P{k}": each for k in range(10)}})[:4] == [
-        "monitor  peak |v| (m/s)  along  at (ms)",
-        "P                     2      y      250",
-        "rest                  0      -        -",
-        "P0                  0.5      y      250",
+        "monitor  component  peak (m/s)  at (ms)",
+        "P              v_y           2      250",
+        "rest             -           0        -",
+        "P0             v_y         0.5      250",
     ]
     assert peaks({f"P{k}": each for k in range(12)})[-1] == "… and 2 more in summary.json"
 

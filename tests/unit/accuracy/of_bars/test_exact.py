@@ -33,7 +33,7 @@ def test_it_is_known_at_the_steps_of_every_choice() -> None:
 @pytest.mark.parametrize(
     ("place", "rise", "quantities"),
     [
-        (0.99, 6e-5, {"velocity", "displacement", "stress"}),
+        (0.97, 6e-5, {"velocity", "displacement", "stress"}),
         # with spacings of 16 mm it may be that of the end, whose stress is half a spacing inside
         (0.995, 6e-5, {"velocity", "displacement"}),
         # a push that hardly changes while waves run along the bar: its stress falls to 0 at the end, 0.01/0.8 = 1.25 %
