@@ -822,7 +822,10 @@ def test_a_chart_is_printed_drawn_resumed_and_replaced(dembound, rod, tmp_path) 
     assert "rod: spacing 0.03 m, courant 0.9: left out, bar.spacing: is 0.03, must divide" in done.err
     assert "rod: spacing 0.05 m, courant 3: failed, run.courant: is 3" in done.err
     assert "rod: velocity beside exact (d'Alembert), up to the first spall at 1.267 ms" in done.out
-    assert "cheapest within 1 % and within 0.1 %: none; smallest error (equal within 5 %): spacing 0.025 m, courant 0.9 (" in done.out
+    assert (
+        "cheapest within 1 % and within 0.1 %: none; smallest error (equal within 5 %): spacing 0.025 m, courant 0.9 ("
+        in done.out
+    )
     assert {path.name for path in folder.iterdir()} == {"chart.h5", "chart.csv", "chart.png"}
 
     before = (folder / "chart.csv").read_text(encoding="utf-8")
