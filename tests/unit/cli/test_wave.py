@@ -17,7 +17,7 @@ def recorded(tmp_path) -> Path:
     motion = 0.2 * np.exp(-(((time - 20.0) / 2.0) ** 2)) * np.sin(2.0 * np.pi * 2.0 * (time - 20.0))
     path = tmp_path / "record.csv"
     columns = np.column_stack([time, motion + 0.01, 0.5 * motion - 0.02])
-    np.savetxt(path, columns, "%.9g", ",", header="time_s,acc_NS_g,acc_EW_g", comments="# ")
+    np.savetxt(path, columns, "%.9g", ",", header="time (s),NS (g),EW (g)", comments="")
     return path
 
 
