@@ -16,7 +16,7 @@ from dembound.waves.record_doubts import doubts_of_header, doubts_of_samples
 from dembound.waves.sampling import FEWEST, is_even, is_record, usual_step
 from dembound.waves.spectrum import amplitude_spectrum, faded_frequency
 from dembound.waves.wave import NonZero, Wave
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 NO_COLUMNS = "is not two columns of numbers, separated by blanks or semicolons, in a .csv file by commas"
 
@@ -156,10 +156,10 @@ class FileWave(Wave):
             )
 
     def joined(self) -> str:
-        """The number of samples per second, and what joins them, in words."""
-        count = len(self._samples.times)
-        rate = f"{count} points" if count < FEWEST else f"{1.0 / usual_step(self._samples.times):.4g} samples/s"
-        return f"{rate} joined by {JOINED[self.joined_by]}"
+        """The sampling rate, or the number of points, and what joins them, in words."""
+        times = self._samples.times
+        sampled = f"sampled at {with_unit(1.0 / usual_step(times), 'Hz')}"
+        return f"{sampled if len(times) >= FEWEST else f'{len(times)} points'}, joined by {JOINED[self.joined_by]}"
 
     def describe(self) -> dict[str, str | float]:
         """What joins the samples, and their number per second."""

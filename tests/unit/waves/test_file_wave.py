@@ -196,7 +196,7 @@ PULSE = np.sin(np.pi * ROWS / ROWS[-1]) ** 2
 @pytest.mark.parametrize(
     ("times", "values", "joined"),
     [
-        (ROWS, burst(0.2, ROWS), "400 samples/s"),
+        (ROWS, burst(0.2, ROWS), "band"),
         (np.round(ROWS * 25.0 / 32.0, 3), burst(0.2, ROWS), "band"),  # 128 samples/s, written with three digits
         (np.delete(ROWS, 200), np.delete(burst(0.2, ROWS), 200), "lines"),  # a lost sample
         (ROWS, PULSE, "lines"),  # one-sided
