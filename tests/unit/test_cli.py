@@ -518,7 +518,7 @@ def test_runs_are_drawn_and_compared(dembound, small_run, other_run, spalled_run
         assert (tmp_path / f"{name}.PNG").read_bytes().startswith(PNG)
     answer = dembound("compare", spalled_run, spalled_run, "--quantity", "stress")
     assert answer.code == 0
-    assert "0.000" in answer.out
+    assert answer.out.split()[-5:-2] == ["x", "0", "0"]
 
     answer = dembound("plot", small_run, "-o", "plot.png", "--table", "plot.csv", "--monitor", "back")
     assert (answer.code, answer.out) == (0, "wrote plot.png\nwrote plot.csv\n")
