@@ -140,6 +140,12 @@ def wave(
     picture: Annotated[
         Path | None, typer.Option(help="Picture to write (PNG); by default that of the wave.", callback=png)
     ] = None,
+    deconvolve: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CASE", help="Take the record as the surface of this case: write the incident wave below."
+        ),
+    ] = None,
     *,
     processing: ProcessingOptions,
 ) -> None:
@@ -165,6 +171,8 @@ def wave(
     for remark in record.remarks:
         err.print(f"warning: {remark}")
     motions = [processed(channel, processing.of(channel)) for channel in channels]
+    if deconvolve is not None:
+        motions = _below(deconvolve, motions)
     for line in _lines(motions):
         out.print(f"  {line}")
     out.print(_table(channels, motions, processing))
@@ -191,6 +199,16 @@ def _chosen(record: Record, names: Sequence[str] | None) -> list[Channel]:
     if unknown := [name for name in names or () if name.casefold() not in {each.casefold() for each in known}]:
         raise CaseError([f"--component: is {name}, must be one of {', '.join(known)}" for name in unknown])
     return [channel for channel in record.channels if channel.component.casefold() in folded]
+
+
+def _below(path: Path, motions: Sequence[Motion]) -> list[Motion]:
+    """The incident motions below the ground of a case whose surface moves so."""
+    from dembound.studies.deconvolution import below, ground_of_file
+
+    if not path.is_file():
+        raise CaseError([f"--deconvolve: no file {path}"])
+    case = ground_of_file(path)
+    return [below(case, motion) for motion in motions]
 
 
 def _lines(motions: Sequence[Motion]) -> Iterator[str]:

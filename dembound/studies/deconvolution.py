@@ -6,16 +6,23 @@ is uniform and undamped, so this only delays and adds, and is computed for all f
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
+import tomli_w
 
 from dembound.boundaries import Motion
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.motions_of_waves import not_level
+from dembound.casefile.model import as_kind
+from dembound.casefile.toml import parsed
 from dembound.disks.scene import build
 from dembound.disks.within import Level
 from dembound.errors import CaseError
+from dembound.kinds import loads
+from dembound.records.processing import Motion as Recorded
+from dembound.records.processing import integrated
 from dembound.waves.spectrum import amplitude_spectrum, faded_frequency
 
 SIDE = "bottom"
@@ -50,12 +57,14 @@ def deconvolve(case: DiskCase, surface: np.ndarray, time_step: float, motion: Mo
 
     motion : S or P; by default that of the wave of the bottom side. The record is zero beyond its ends.
 
-    Raises CaseError where the ground is not level under a free surface, or no such wave enters at the bottom.
+    Raises CaseError where the ground is not level under a free surface, or not one such wave enters at the bottom.
     """
     table = case.side(SIDE)
     if problems := [f"deconvolution: needs {reason}" for reason in not_level(SIDE, table, case.tables)]:
         raise CaseError(problems, case.name)
     waves = case.driving.get(SIDE, {})
+    if motion is None and len(waves) > 1:
+        raise CaseError([f"boundary.{SIDE}: names wave_p and wave_s; must name that of the record alone"], case.name)
     motion = motion or next(iter(waves), None)
     if motion not in waves or {0, 1} & {*table.prescribed(1)}:
         kind = "wave_p or wave_s" if motion is None else f"wave_{motion}"
@@ -77,3 +86,27 @@ def incident_below(ground: Level, surface: np.ndarray, time_step: float) -> Deco
     band = faded_frequency(*amplitude_spectrum(surface, time_step))
     magnification = float(np.abs(below[frequencies <= max(band, frequencies[1])]).max())
     return Deconvolved(velocity, early, magnification, band)
+
+
+def ground_of_file(path: Path) -> DiskCase:
+    """The case of a file with other waves in place of its own, whose files need not exist yet; errors as of a case."""
+    data = parsed(path.read_text(encoding="utf-8-sig"))
+    data["wave"] = {name: {"type": "cosine", "amplitude": 1.0, "period": 1.0} for name in data.get("wave", {})}
+    case = loads(tomli_w.dumps(data), path.parent, path.stem)
+    return as_kind(case, DiskCase, "is the case of a bar, deconvolution is for disks", str(path))
+
+
+def below(case: DiskCase, surface: Recorded) -> Recorded:
+    """The incident motion at the bottom of a case whose surface moves as a component of a record."""
+    step = surface.time_step
+    found, rates = (deconvolve(case, each, step) for each in (surface.velocity, surface.acceleration))
+    early = surface.time[0] - step * np.arange(found.early, 0, -1)
+    done = f"deconvolution: the surface of {case.name} taken down to its {SIDE}; {found.sentence}"
+    return replace(
+        surface,
+        time=np.concatenate([early, surface.time]),
+        acceleration=rates.velocity,
+        velocity=found.velocity,
+        displacement=integrated(found.velocity, step),
+        steps=(*surface.steps, done),
+    )

@@ -77,3 +77,40 @@ def test_what_does_not_fit_is_refused_and_nothing_written(dembound, recorded, tm
         assert answer.code == 2
         assert answer.err.startswith(problem)
     assert [path.name for path in tmp_path.iterdir()] == ["record.csv"]
+
+
+def test_a_surface_record_is_taken_down_through_the_ground_of_a_case(dembound, recorded, tmp_path) -> None:
+    """The case may name the wave that is still to be written; the incident wave begins before the record."""
+    (tmp_path / "soil.toml").write_text(
+        """
+[packing]
+pattern = "A"
+size = [2.0, 20.0]
+radius = 0.5
+[material]
+density = 1900.0
+p_wave_speed = 300.0
+fric = 0.5
+[boundary.left]
+type = "periodic"
+[boundary.right]
+type = "periodic"
+[boundary.bottom]
+type = "viscous_input"
+rock = {density = 2400.0, p_wave_speed = 1100.0, s_wave_speed = 672.0}
+wave_s = "below"
+[wave.below]
+type = "file"
+path = "below.csv"
+[run]
+duration = 10.0
+""",
+        encoding="utf-8",
+    )
+    answer = dembound("wave", recorded, "--component", "NS", "-o", "below.csv", "--deconvolve", "soil.toml")
+    assert answer.code == 0, answer.err
+    assert "the surface of soil taken down to its bottom; the incident wave has up to" in answer.out
+    times, velocities = FileWave(type="file", path=str(tmp_path / "below.csv")).ends()[1][1:]
+    assert times == pytest.approx(40.0 + STEP * np.ceil(20.0 / 212.1 / STEP))
+    assert abs(velocities) < 1e-6
+    assert dembound("wave", recorded, "--deconvolve", "none.toml").err == "--deconvolve: no file none.toml\n"
