@@ -105,8 +105,8 @@ def surface_displacement(
     halving changed the displacements by less than `tolerance` times the largest of them. The remaining error is
     smaller: every halving divides it by 4 if the load has kinks, by more if it has none.
 
-    A model of disks differs in two ways, both of the order of a disk's diameter: its receiver is the centre of a disk,
-    half a diameter below the surface, and its load acts on one or two disks instead of a line.
+    A model of disks differs in two ways: its receiver is the centre of a disk, half a diameter below the surface, where
+    `buried_displacement` gives the motion, and its load acts on one or two disks instead of a line.
 
     Raises ValueError for a distance or density that is not positive and unless 0 < s_wave_speed < p_wave_speed;
     RuntimeError if the tolerance is not reached, for example with a load that jumps after its start.
