@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dembound.boundaries.sides import Motion
-from dembound.words import with_unit
+from dembound.words import percent, with_unit
 
 FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
 """Keys of the factors of dashpots -> their symbols."""
@@ -60,7 +60,7 @@ def _rock_in_words(side: Mapping[str, Any]) -> str:
     ratios = {motion.upper(): side.get(f"rock_{motion}") for motion in ("p", "s")}
     each = [
         f"{ratio:.3g} times the ground's impedance for {kind} waves, returns "
-        f"{100.0 * reflected(ratio, 1.0).real:.3g} % of their amplitude"
+        f"{percent(reflected(ratio, 1.0).real, 3)} of their amplitude"
         for kind, ratio in ratios.items()
         if ratio is not None
     ]

@@ -154,7 +154,7 @@ def _sentences(found: Measured) -> list[str]:
             "; ".join([line, *(f"{name} {_percent(arrival.sent_back(each))}" for name, each in beside.items())])
         )
     if found.rock:
-        each = " and ".join(f"{100.0 * share:.3g} % for {kind.upper()} waves" for kind, share in found.rock.items())
+        each = " and ".join(f"{_percent(share)} for {kind.upper()} waves" for kind, share in found.rock.items())
         lines.append(
             f"the rock itself returns of the amplitude along the normal {each}; dashpots stand for it there alone, and "
             "what rock returns at other angles is not predicted"

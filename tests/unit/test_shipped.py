@@ -16,7 +16,7 @@ def test_all_cases_of_the_repository_are_listed_with_their_titles() -> None:
 
     assert set(shipped.names()) == set(shipped.titles()) == here
     assert all(shipped.titles().values())
-    assert shipped.groups() == ["charts", "cracks", "gallery", "lu2016", "zhou2018"]
+    assert shipped.groups() == ["charts", "cracks", "gallery", "lu2016", "records", "zhou2018"]
 
 
 def test_a_copy_of_a_case_can_be_read_where_it_is(tmp_path) -> None:
@@ -54,7 +54,8 @@ def test_an_unknown_name_is_refused(tmp_path) -> None:
     assert first == 'NAME: is "zhou218", must be one of these (did you mean zhou2018?):'
     # groups, cases of no group, and a line of each group's
     firsts = ["charts", "bench"]
-    firsts += ["charts/blast", "cracks/concrete", "gallery/beta_sweep", "lu2016/fig7", "zhou2018/external_source"]
+    firsts += ["charts/blast", "cracks/concrete", "gallery/beta_sweep", "lu2016/fig7"]
+    firsts += ["records/tunnel_clc", "zhou2018/external_source"]
     assert [line.split(", ")[0] for line in lines] == firsts
     assert ", ".join(lines).split(", ") == [*shipped.groups(), *shipped.names()]
 
