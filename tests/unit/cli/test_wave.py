@@ -79,8 +79,11 @@ def test_what_does_not_fit_is_refused_and_nothing_written(dembound, recorded, tm
     assert [path.name for path in tmp_path.iterdir()] == ["record.csv"]
 
 
-def test_a_surface_record_is_taken_down_through_the_ground_of_a_case(dembound, recorded, tmp_path) -> None:
+def test_a_surface_record_is_taken_down_through_the_ground_of_a_case(dembound, tmp_path) -> None:
     """The case may name the wave that is still to be written; the incident wave begins before the record."""
+    time = STEP * np.arange(4001)
+    motion = np.exp(-(((time - 20.0) / 2.0) ** 2)) * np.sin(2.0 * np.pi * 2.0 * (time - 20.0))
+    np.savetxt(tmp_path / "top.csv", np.column_stack([time, motion]), "%.9g", ",", header="time (s),a (m/s²)")
     (tmp_path / "soil.toml").write_text(
         """
 [packing]
@@ -107,10 +110,10 @@ duration = 10.0
 """,
         encoding="utf-8",
     )
-    answer = dembound("wave", recorded, "--component", "NS", "-o", "below.csv", "--deconvolve", "soil.toml")
+    answer = dembound("wave", "top.csv", "-o", "below.csv", "--deconvolve", "soil.toml")
     assert answer.code == 0, answer.err
     assert "the surface of soil taken down to its bottom; the incident wave has up to" in answer.out
     times, velocities = FileWave(type="file", path=str(tmp_path / "below.csv")).ends()[1][1:]
     assert times == pytest.approx(40.0 + STEP * np.ceil(20.0 / 212.1 / STEP))
     assert abs(velocities) < 1e-6
-    assert dembound("wave", recorded, "--deconvolve", "none.toml").err == "--deconvolve: no file none.toml\n"
+    assert dembound("wave", "top.csv", "--deconvolve", "none.toml").err == "--deconvolve: no file none.toml\n"

@@ -15,14 +15,18 @@ SPACING = 1e-3
 
 HEAVY = GRAINS | {
     "boundary": {"bottom": {"type": "viscous_input", "wave_p": "up", "wave_s": "shake"}},
-    "wave": {name: GRAINS["wave"]["pulse"] for name in ("up", "shake", "push")},
+    "wave": {
+        "up": GRAINS["wave"]["pulse"] | {"motion": "within"},
+        "shake": GRAINS["wave"]["pulse"] | {"motion": "outcrop"},
+        "push": GRAINS["wave"]["pulse"],
+    },
     "load": [
         {"name": "weight", "acceleration": [0.0, -9.81]},
         {"name": "push", "force": [2e5, 1e5], "position": [5.0, 3.0], "wave": "push"},
     ],
     "static": {"boundary": {"bottom": {"type": "fixed"}}},
 }
-"""Random disks under their weight, with waves of two directions from below and a load."""
+"""Random disks under their weight, with motion of two directions given below, of two kinds, and a load."""
 
 
 @pytest.fixture(scope="module")
