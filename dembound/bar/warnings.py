@@ -205,7 +205,7 @@ def _unmatched_dashpots(scene: BarScene) -> Iterator[str]:
         table = scene.case.side(side)
         beta = table.factors_at(edge, bar_medium(scene.case, side)).get("p", 1.0)
         if (share := abs(reflected(beta, 1.0))) > TOO_MUCH:
-            yield f"boundary.{side}: {poor_factor('p', share, beta, 1.0, table.waves.get('p'))}"
+            yield f"boundary.{side}: {poor_factor(['p'], [share], beta, [1.0], table.waves.get('p'))}"
 
 
 def stress_beside_strength(case: BarCase) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """A side's table in words, for reports."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from dembound.boundaries.sides import Motion
@@ -38,13 +38,45 @@ def reflected(impedance: complex, matched: complex) -> complex:
     return (matched - impedance) / (matched + impedance)
 
 
-def poor_factor(motion: Motion, share: float, beta: float, matched: float, wave: str | None) -> str:
-    """A warning that a factor β reflects a share of the amplitude; wave : name of the wave that enters, or None."""
-    enters = f" and lets in {2.0 * beta / (matched + beta):.2g} times wave {wave}" if wave else ""
+LIKE_A_WALL = 0.9
+"""Share of the amplitude from which on a side is called a free surface, or a rigid wall."""
+
+
+def too_much(motions: Sequence[Motion], shares: Sequence[float], sides: int = 1) -> str:
+    """The beginning of a warning that sides send back such shares of the amplitude of waves of these motions."""
+    kinds = " and ".join(motion.upper() for motion in motions)
+    verb, whose = ("sends", "its normal") if sides == 1 else ("send", "their normals")
+    share = _range([100.0 * each for each in shares], ".0f")
+    return f"{verb} back {share} % of the amplitude of {kinds} waves along {whose}"
+
+
+def poor_factor(
+    motions: Sequence[Motion],
+    shares: Sequence[float],
+    beta: float,
+    matched: Sequence[float],
+    wave: str | None,
+    sides: int = 1,
+) -> str:
+    """A warning that a factor β of some sides sends back shares of the amplitude.
+
+    motions : those with this factor. shares, matched : of all sides and motions. wave : name of the one entering there,
+    or None.
+    """
+    enters = f" and lets in {_range([2.0 * beta / (each + beta) for each in matched], '.2g')} times wave {wave}"
+    like = f", as a {'free surface' if beta < min(matched) else 'rigid wall'} does"
+    keys = " and ".join(f"beta_{motion}" for motion in motions)
+    verb, them = ("is", "it") if len(motions) * sides == 1 else ("are", "them")
     return (
-        f"sends back {100.0 * share:.0f} % of the amplitude of {motion.upper()} waves along its normal{enters}: "
-        f'beta_{motion} is {beta:g}, matched would be {matched:.3g}; leave it out or give "matched"'
+        f"{too_much(motions, shares, sides)}{enters if wave else ''}{like if min(shares) > LIKE_A_WALL else ''}: "
+        f'{keys} {verb} {beta:g}, matched would be {_range(matched, ".3g")}; leave {them} out or give "matched"'
     )
+
+
+def _range(values: Sequence[float], digits: str) -> str:
+    """The smallest and the largest number, or one where both have the same digits."""
+    least, most = f"{min(values):{digits}}", f"{max(values):{digits}}"
+    return least if least == most else f"{least} to {most}"
 
 
 def side_in_words(side: Mapping[str, Any]) -> str:

@@ -132,11 +132,14 @@ class Disks(Kind[DiskCase, DiskScene]):
         return disk_facts(scene)
 
     def not_estimated(self, case: DiskCase) -> list[str]:
-        """Work that the estimated time leaves out: the static stage, and a law that replaces the elastic one later."""
-        later = ["the static stage"] * (case.static is not None)
+        """Work that the estimated time leaves out: a law that replaces the elastic one later."""
         if LAWS[case.material.law].has_history and case.material.elastic_start:
-            later.append(f"the additional time of {case.material.law} once it begins")
-        return later
+            return [f"the additional time of {case.material.law} once it begins"]
+        return []
+
+    def settles(self, case: DiskCase) -> bool:
+        """Whether the case has a static stage of its own."""
+        return case.static is not None and case.static.from_ is None
 
     def warnings_before(self, scene: DiskScene, time_step: float) -> list[str]:
         """Warnings that are known before the run."""

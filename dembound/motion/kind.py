@@ -213,6 +213,10 @@ class Kind(ABC, Generic[C, S]):
         """Work of a run that a time estimate from its first steps does not include, in words."""
         return []
 
+    def settles(self, case: C) -> bool:
+        """Whether a static stage precedes the motion, of a number of steps that is not known in advance."""
+        return False
+
     @abstractmethod
     def warnings_before(self, scene: S, time_step: float) -> list[str]:
         """Warnings that are known before the run, one line each."""

@@ -52,12 +52,13 @@ def test_a_bar_is_reported_as_a_bar(spalling) -> None:
 def test_the_estimate_says_what_it_is_without(bar) -> None:
     law = {"material.law": "linearpbond"}
     for changes, without in (
-        ({"static": {"stress": [-1e6, -2e6, 0.0]}}, " the static stage,"),
         (law, " the additional time of linearpbond once it begins,"),
         ({**law, "material.elastic_start": False}, ""),
     ):
         reported = check(bar(changes))[0]["estimated time"]
         assert reported.endswith(f" with 1 thread, without building,{without} pictures")
+    reported = check(bar({"static": {"stress": [-1e6, -2e6, 0.0]}}))[0]["estimated time"]
+    assert ", without building, pictures; the static stage comes on top: " in reported
 
 
 def test_times_are_reported_as_one_would_say_them() -> None:

@@ -297,17 +297,20 @@ def test_off_a_terminal_a_run_says_every_ten_seconds_how_far_it_is(bar, capsys) 
     # the first step only starts the clock; 20 steps of 40 disks in 12 s, 2 of them spent on compiling, then 5 in 10 s
     assert capsys.readouterr().err.splitlines() == [
         "bar: warning: wave.pulse: is odd",
-        f"bar: 21 of 1,234 steps, {21 * planned.time_step:.4g} s simulated, 8e-05 M particle-steps/s",
-        f"bar: 26 of 1,234 steps, {26 * planned.time_step:.4g} s simulated, 2e-05 M particle-steps/s",
+        *(
+            f"bar: {done} of 1,234 steps, {done * planned.time_step:.4g} s simulated, {rate} M particle-steps/s, "
+            f"about {left} s left"
+            for done, rate, left in ((21, "8e-05", 610), (26, "2e-05", 2400))
+        ),
     ]
     clock[0] = 0.0
     lines = Lines("bar", lambda: clock[0])
     for now, steps in ((9.0, 100), (10.0, 1200), (11.0, 1300), (21.0, 2400)):
         clock[0] = now
-        lines.settling(steps, 1e-3 / now)
+        lines.settling(steps, 1e-3 / now, "the static stage")
     assert capsys.readouterr().err.splitlines() == [
-        "bar: static stage, 10 s, 1,200 steps, unbalanced force ratio 1.0e-04",
-        "bar: static stage, 21 s, 2,400 steps, unbalanced force ratio 4.8e-05",
+        "bar: the static stage, 10 s, 1,200 steps, unbalanced force ratio 1.0e-04",
+        "bar: the static stage, 21 s, 2,400 steps, unbalanced force ratio 4.8e-05",
     ]
 
 
@@ -316,7 +319,7 @@ def test_on_a_terminal_warnings_stand_above_the_bar(bar, monkeypatch, capsys) ->
     simulation = Simulation(planned.scene, planned.time_step)
     monkeypatch.setattr(cli.progress.err, "_force_terminal", True)
     with progress_of("bar") as shown:
-        shown.settling(100, 1e-3)
+        shown.settling(100, 1e-3, "the static stage")
         shown.warned("wave.pulse: is odd")
         shown.running(simulation, 10)
     assert "bar: warning: wave.pulse: is odd\n" in capsys.readouterr().err

@@ -75,9 +75,9 @@ def _tell(causes: Sequence[Cause], scene: DiskScene, motions: Motions) -> None:
     """Inform the receiver of the causes found by formula, before companions are run; motions : by monitor."""
     missing = [SIDES] if sides_of_pair(scene.case) else []
     missing += [f"{side} side" for side in HeldSides(scene).among_others]
-    missing += [f"{STEP} as contacts open or slide"] if scene.has_history else []
+    missing += [f"{STEP} where contacts open or slide"] if scene.has_history else []
     if missing:
-        current().knows(causes, motions, f"errors by {', '.join(missing)}, from companions")
+        current().knows(causes, motions, f"errors from companions: {', '.join(missing)}")
 
 
 def _of_ground_of_run(

@@ -231,7 +231,7 @@ class Companions:
         """
         is_own = OFTEN * self.scene.count * self.case.run.duration / self.time_step <= self.most
         case, step = (self.case, self.time_step) if is_own else (self._own, self.step)
-        run = self.runner.run(at_step(case, step), self._named("as contacts open or slide"))
+        run = self.runner.run(at_step(case, step), self._named("where contacts open or slide"))
         if not any(LAWS[name].has_history for name in run.laws):
             return {}
         shorter = self.runner.run(at_step(case, 0.5 * step), self._named("with half the step"))

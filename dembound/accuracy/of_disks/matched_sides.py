@@ -95,7 +95,9 @@ def _measured(end: DiskScene, side: str, step: float, frequencies: np.ndarray) -
     """Mean shares of reflected energy; empty where the side cannot be measured."""
     try:
         meter = Meter.of(side, step, end)
-        found = meter.measure(frequencies, [0.0], report=lambda each: begins(f"{side} side, {each:.3g} Hz"))[0]
+        found = meter.measure(
+            frequencies, [0.0], report=lambda each: begins(f"waves of {each:.3g} Hz at the {side} side")
+        )[0]
     except CaseError:
         return {}
     means = {kind: float(np.nanmean(found.total(kind))) for kind in found.kinds if np.isfinite(found.total(kind)).any()}

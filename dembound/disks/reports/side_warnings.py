@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from dembound.boundaries import Motion, normal_axis
-from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
+from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected, too_much
 from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.matching import Held, factors_in, homogenised_beta, sent_back
 from dembound.disks.material.mirrored import continues
@@ -24,33 +25,56 @@ TAKEN = 0.1
 """Error, over a wave's velocity, by sides along it up to which there is no warning; known to within that."""
 
 
+class _Poor(NamedTuple):
+    """Why a side sends back much: a factor β, where a wave of this name may enter, or else its springs or its disks."""
+
+    beta: float | None = None
+    wave: str | None = None
+    springs: bool = False
+
+
 def _send_back(scene: DiskScene) -> Iterator[str]:
-    """Warnings about dashpots and springs that reflect much of plane waves along the side's normal."""
+    """Warnings about dashpots and springs that reflect much of plane waves along the side's normal.
+
+    Sides that do so for the same reason share a line.
+    """
     tables = {side: scene.case.side(side) for side in scene.edges}
     sides = [side for side, table in tables.items() if table.factors and not table.is_interface]
     frequency = mean_frequency(scene.case) if sides else math.nan
+    alike: dict[tuple[_Poor, tuple[Motion, ...]], dict[str, list[float]]] = {}
     for side in sides:
+        found: dict[_Poor, dict[Motion, float]] = {}
         for motion, beta in factors_in(scene, side).items():
             share = sent_back(scene, side, motion, frequency)
             if share > TOO_MUCH:  # nan where the motion is held
-                yield f"boundary.{side}: {_reason(scene, side, motion, beta, share, frequency)}"
+                found.setdefault(_reason(scene, side, motion, beta), {})[motion] = share
+        for poor, own in found.items():
+            alike.setdefault((poor, tuple(own)), {})[side] = list(own.values())
+    for (poor, motions), by_side in alike.items():
+        names = " and ".join(f"boundary.{side}" for side in by_side)
+        shares = [share for each in by_side.values() for share in each]
+        if poor.beta is None:
+            yield f"{names}: {too_much(motions, shares, len(by_side))} {_cause(poor, len(by_side), frequency)}"
+            continue
+        matched = [homogenised_beta(scene, side, motion) for side in by_side for motion in motions]
+        yield f"{names}: {poor_factor(motions, shares, poor.beta, matched, poor.wave, len(by_side))}"
 
 
-def _reason(scene: DiskScene, side: str, motion: Motion, beta: float, share: float, frequency: float) -> str:
-    """The reflection of a side, and its cause: its factor, or else its springs or disks."""
-    matched = homogenised_beta(scene, side, motion)
-    if abs(reflected(beta, matched)) > TOO_MUCH:
-        return poor_factor(motion, share, beta, matched, scene.case.side(side).waves.get(motion))
-    springs = Held.of(scene, side).stiffness.any()
+def _reason(scene: DiskScene, side: str, motion: Motion, beta: float) -> _Poor:
+    """The cause of the reflection of a side: its factor, or else its springs or disks."""
+    if abs(reflected(beta, homogenised_beta(scene, side, motion))) > TOO_MUCH:
+        return _Poor(beta, scene.case.side(side).waves.get(motion))
+    return _Poor(springs=bool(Held.of(scene, side).stiffness.any()))
+
+
+def _cause(poor: _Poor, sides: int, frequency: float) -> str:
+    """The end of a warning about springs, or about disks."""
     why = (
-        'as its springs hold; take springs of a larger distance, or "outside"'
-        if springs
-        else "as its disks are whole cells, large beside such waves; take smaller ones, or half_mass on regular sides"
+        'springs hold; take springs of a larger distance, or "outside"'
+        if poor.springs
+        else "disks are whole cells, large beside such waves; take smaller ones, or half_mass on regular sides"
     )
-    return (
-        f"sends back {100.0 * share:.0f} % of the amplitude of {motion.upper()} waves along its normal at their mean "
-        f"frequency, {frequency:.3g} Hz, {why}"
-    )
+    return f"at their mean frequency, {frequency:.3g} Hz, as {'its' if sides == 1 else 'their'} {why}"
 
 
 def _take_from_waves(scene: DiskScene) -> Iterator[str]:

@@ -1,12 +1,16 @@
 """The command advise, and the options --error and --keep of run."""
 
 import json
+import signal
 
 import pytest
 from unit.accuracy.test_advise import BAR, small
 
+from dembound.accuracy.of_disks import advice
+from dembound.accuracy.runner import Runner
 from dembound.cli.advise import bound_of, name_within
 from dembound.errors import CaseError
+from dembound.interrupts import Stopped
 
 
 @pytest.fixture
@@ -79,3 +83,27 @@ def test_a_bound_that_nothing_holds_ends_with_the_best(dembound, case, tmp_path)
         assert "bar: no choice keeps 1 %; the best of" in answer.err.replace("bar_1pct", "bar")
     assert not (tmp_path / "results").exists()
     assert not case.with_name("bar_1pct.toml").exists()
+
+
+def _stop(*arguments, **more):
+    raise Stopped(signal.SIGINT)
+
+
+def test_what_is_known_remains_of_advice_that_is_interrupted(dembound, case, monkeypatch) -> None:
+    answers = iter([advice._best])
+    monkeypatch.setattr(advice, "_best", lambda *given: next(answers, _stop)(*given))
+    answer = dembound("advise", case)
+    assert answer.code == 130
+    assert "errors: RMS over RMS" in answer.out
+    assert [line[:12] for line in answer.out.splitlines() if line[:12].endswith(" %")] == [f"{'10 %':>12}"]
+    assert answer.err.endswith("bar: stopped; missing: the cheapest choices within 3 %, 1 %, 0.3 %\n")
+
+
+def test_errors_by_formula_remain_of_an_estimate_that_is_interrupted(dembound, case, monkeypatch) -> None:
+    assert dembound("run", case, "--set", "output.pictures=false").code == 0
+    monkeypatch.setattr(Runner, "run", _stop)
+    answer = dembound("estimate", "results/bar")
+    assert answer.code == 130
+    known, stopped = answer.err.splitlines()
+    assert "largest errors by formula: " in known
+    assert stopped == "bar: stopped; missing: errors from companions: sides"

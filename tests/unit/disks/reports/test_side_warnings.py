@@ -53,6 +53,20 @@ def test_springs_hold_long_waves_back(bar) -> None:
             assert "as its springs hold" in found[0]
 
 
+def test_sides_that_send_back_for_one_reason_share_a_line(bar) -> None:
+    dead = {"type": "viscous", "beta_p": 0.0, "beta_s": 0.0}
+    sides = {"boundary.right": dead, "boundary.top": dead, "boundary.bottom": {**dead, "beta_p": 1e6, "beta_s": 1e6}}
+    found = [
+        line for line in warned(bar({**SLOW, **TWO_WAYS, "packing.size": [20.0, 10.0], **sides})) if "back" in line
+    ]
+    assert [line.split(", matched")[0] for line in found] == [
+        "boundary.right and boundary.top: send back 100 % of the amplitude of P and S waves along their normals, as a "
+        "free surface does: beta_p and beta_s are 0",
+        "boundary.bottom: sends back 100 % of the amplitude of P and S waves along its normal, as a rigid wall does: "
+        "beta_p and beta_s are 1e+06",
+    ]
+
+
 def test_sides_along_a_wave_are_warned_of(bar) -> None:
     plate = {
         "packing.size": [20.0, 10.0],
