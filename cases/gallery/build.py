@@ -14,6 +14,7 @@ import argparse
 import json
 import os
 import shlex
+import shutil
 import sys
 import tempfile
 import tomllib
@@ -33,7 +34,7 @@ from PIL import Image
 import dembound
 from dembound import shipped
 from dembound.cli import app
-from dembound.plot import chart, scene, style
+from dembound.plot import chart, moving_scene, scene, style
 from dembound.words import percent
 
 HERE = Path(__file__).parent
@@ -114,6 +115,11 @@ class Example:
         """Title of the case."""
         return str(tomllib.loads(self.tables)["title"])
 
+    @property
+    def has_movie(self) -> bool:
+        """Whether one of its commands writes a movie, to NAME.gif."""
+        return any(command.startswith("dembound movie ") for command in self.commands)
+
     def python(self) -> str:
         """The case, its run and its estimate from Python."""
         arguments = ["", f'    "{self.name}",']
@@ -130,10 +136,11 @@ class Example:
             "Python": ("python", self.python()),
             "Command line": ("sh", "\n".join((copied, *self.commands))),
         }
+        moving = f"![{self.title}: velocity at all snapshots, moving](../pictures/gallery_{self.name}.gif)\n\n"
         shown = "\n".join(f":::{{tab-item}} {tab}\n```{of}\n{code}\n```\n:::" for tab, (of, code) in tabs.items())
         return (
             f"# {self.title}\n\n{self.text}\n\n![{measured.drawn}](../pictures/gallery_{self.name}.png)\n\n"
-            f"| computed | run time | predicted error |\n|---|---|---|\n"
+            f"{moving if self.has_movie else ''}| computed | run time | predicted error |\n|---|---|---|\n"
             f"| {measured.size} | {measured.seconds:.2g} s | {measured.error} |\n\n::::{{tab-set}}\n{shown}\n::::\n"
         )
 
@@ -206,6 +213,8 @@ def measure(example: Example) -> Measured:
         shipped.copy(f"gallery/{example.name}", Path())
         for command in example.commands[:-1]:
             execute(command, figures)
+        if example.has_movie:
+            shutil.copy(f"{example.name}.gif", DOCS / "pictures" / f"gallery_{example.name}.gif")
         results = Path(example.commands[-1].removeprefix("dembound estimate "))
         error, summary = predicted(results), dembound.Results(results).summary
     pixels = np.rint(np.vstack([fitted(figure) for figure in figures]) / SHADES) * SHADES
@@ -263,5 +272,6 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    scene.DRAWING, chart.PAGE = SCENE, CHART
+    scene.DRAWING = moving_scene.DRAWING = SCENE
+    chart.PAGE = CHART
     main(sys.argv[1:])
