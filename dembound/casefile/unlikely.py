@@ -91,6 +91,8 @@ def _tables_in(path: str, table: Table) -> Iterator[tuple[str, Table]]:
             for inner, each in value.items():
                 if isinstance(each, Table):
                     yield from _tables_in(f"{place}.{inner}", each)
+        elif isinstance(value, Table):
+            yield from _tables_in(place, value)
 
 
 def _numbers(value: Any) -> tuple[float, ...]:

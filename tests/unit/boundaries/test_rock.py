@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.boundaries import Viscoelastic, ViscoelasticInput, ViscousInput
+from dembound.casefile.unlikely import unlikely
 from dembound.disks.matching import supports_of
 from dembound.disks.scene import build
 from dembound.studies.calibration import calibrate
@@ -84,3 +85,9 @@ rock = {density = 2700.0, p_wave_speed = 3000.0, s_wave_speed = 1700.0}
     case = small(PUSHED, changes={"boundary.right": {"type": "viscous", "rock": ROCK}})
     with pytest.raises(Exception, match=r"boundary.right.rock: .* needs no calibration"):
         calibrate(case, "right")
+
+
+def test_units_of_its_numbers_are_doubted() -> None:
+    case = small(PUSHED, changes={"boundary.right": {"type": "viscous", "rock": ROCK | {"density": 2.7}}})
+    (doubt,) = [each for each in unlikely(case) if "rock" in each]
+    assert doubt.startswith("boundary.right.rock.density: ")
