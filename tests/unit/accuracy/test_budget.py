@@ -60,6 +60,17 @@ def test_the_worst_is_at_a_monitor_that_moves():
     assert (loud.worst().monitor, loud.worst().quantity) == ("a", "velocity")
 
 
+def test_a_stress_that_vanishes_at_a_free_end_is_not_named() -> None:
+    def motion(velocity: float, stress: float) -> History:
+        along = np.sin(TIME)[:, None]
+        return History(np.zeros(2), TIME, {"velocity": velocity * along, "stress": stress * along})
+
+    errors = {"middle": {"velocity": 0.01, "stress": 0.01}, "end": {"velocity": 0.02, "stress": 0.5}}
+    found = Budget({"middle": motion(1.0, 1e6), "end": motion(2.0, 0.09e6)}, Causes([Cause("grid", "", errors)]))
+    assert found.largest("end")[0] == "velocity"
+    assert str(found.worst()) == "2 %, at most 2 % of the velocity at end (grid 2 %)"
+
+
 def test_a_monitor_at_rest_has_no_error():
     recorded = {"a": History(np.zeros(2), TIME, {"velocity": np.zeros((5, 2))})}
     cause = Cause(SIDES, "from companions", {"a": {"velocity": np.zeros((5, 2))}})

@@ -116,6 +116,10 @@ def test_each_mistake_gets_one_plain_line(old: str, new: str, line: str) -> None
 def test_choices_and_near_keys_are_named() -> None:
     assert problem('pattern = "A"', 'pattern = "D"') == f'packing.pattern: is "D", must be one of {PATTERNS}'
     assert problem('pattern = "A"\n', "") == f"packing.pattern: is missing, must be one of {PATTERNS}"
+    mistyped, missing = problems_of(GOOD.replace('pattern = "A"', 'patern = "A"'))
+    assert mistyped.startswith("packing.patern: unknown key; ")
+    assert mistyped.endswith("(did you mean pattern?)")
+    assert missing == f"packing.pattern: is missing, must be one of {PATTERNS}"
     assert problem("duration = 0.1", "duration = 0.1\ntimstep = 1").endswith("(did you mean time_step?)")
 
 

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 from rich.table import Table
 
-from dembound.cli.console import PlainConsole, prepare_streams
+from dembound.cli import console
+from dembound.cli.console import PlainConsole, prepare_streams, print_rows
 from dembound.errors import HIDDEN, visible
 
 
@@ -33,6 +34,18 @@ def test_texts_cells_and_titles_appear_as_they_are() -> None:
         table.add_row(text)
         assert printed(text) == shown
         assert printed(table).count(shown) == 2
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_names_in_tables_stay_whole(monkeypatch: pytest.MonkeyPatch, is_terminal: bool) -> None:
+    narrow = PlainConsole(file=io.StringIO(), width=60, force_terminal=is_terminal)
+    monkeypatch.setattr(console, "out", narrow)
+    names = [f"a-monitor-with-a-long-name-{k}" for k in range(3)]
+    print_rows("title", [("choice", "error (%)"), (" ".join(names), "1")])
+    assert isinstance(narrow.file, io.StringIO)
+    shown = narrow.file.getvalue()
+    assert [name for name in names if name in shown] == names
+    assert any(" ".join(names) in line for line in shown.splitlines()) is not is_terminal
 
 
 def test_what_an_encoding_lacks_is_escaped(monkeypatch) -> None:

@@ -72,6 +72,26 @@ def test_the_given_scene_has_no_other_places(given: Companions) -> None:
         np.testing.assert_allclose(np.asarray(errors["velocity"]), 0.0, atol=1e-12)
 
 
+def test_a_run_without_artificial_sides_has_the_errors_of_places_too() -> None:
+    case = small(BAR, changes={"monitor.back.position": [24.9, 0.75]})
+    assert isinstance(case, DiskCase)
+    planned = plan(case)
+    run = measure(case, Progress())[0]
+    recorded = {
+        name: replace(own, values={q: v[:, :2] for q, v in own.values.items()}) for name, own in run.motions.items()
+    }
+    scene = planned.scene
+    assert isinstance(scene, DiskScene)
+
+    causes = causes_of_run(case, recorded, planned.time_step, run.work, 1e7).found
+    (found,) = [cause for cause in causes if cause.name == "places"]
+
+    time = recorded["back"].time
+    true = exact(scene, 24.75, time) - exact(scene, 24.9, time)
+    part = np.asarray(found.parts["back"]["velocity"])[:, 0]
+    assert np.linalg.norm(part - true) < 0.2 * np.linalg.norm(true)
+
+
 def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_more() -> None:
     """Disks of 1 m in place of 0.5 m: the left force is 0.25 m to the right, the right one as far to the left.
 
