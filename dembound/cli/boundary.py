@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.table import Table
@@ -14,13 +14,15 @@ from rich.table import Table
 from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing, writable
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import INTERVAL, compact_table, err, out
+from dembound.errors import CaseError
 from dembound.machine import one_thread_for_matrices
 from dembound.words import percent
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.figure import Figure
 
-    from dembound.disks.reflection import Measured, Reflections
+    from dembound.disks.reflection import Arrival, Measured, Reflections
     from dembound.plot.reflection import Curves
 
 PRINTED = 15.0
@@ -28,6 +30,9 @@ PRINTED = 15.0
 
 LEAST = 1e-8
 """Share of energy below which numbers are rounding errors."""
+
+COMPARED = (0.0, 30.0)
+"""Angles (degrees) at which types of a side are compared by default."""
 
 NEAR_GAP = 1.25
 """Frequency of a gap of the packing over the highest measured one below which the gap is reported."""
@@ -53,6 +58,15 @@ def boundary(
         list[float] | None,
         typer.Option("--frequency", help="Hz; by default 12 of the case's own waves. May be repeated."),
     ] = None,
+    types: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--type",
+            metavar="TYPE",
+            help="Type of side to compare, or its table, e.g. '{type = \"viscoelastic\", distance = 100}'; draws the "
+            "energy against frequency at 0° and 30°. May be repeated.",
+        ),
+    ] = None,
     output: Annotated[Path, PICTURE] = Path("boundary.png"),
     title: PictureTitle = None,
     quick: Annotated[
@@ -66,28 +80,37 @@ def boundary(
     Nothing is run. With several sides, pictures and tables have their names.
     """
     one_thread_for_matrices()  # before numpy is imported
-    from dembound.disks.reflection import ANGLES, FREQUENCIES, measure_side, measured_sides
+    from dembound.disks.reflection import ANGLES, FREQUENCIES, compare_types, measure_side, measured_sides
     from dembound.plot.reflection import plot_reflection
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
 
     prepare_computing(None)
+    if types and quick:
+        raise CaseError(["--quick: is not possible with --type; leave it out"])
     loaded = load_disks(case, changes)
     chosen = [side.value for side in sides] if sides else measured_sides(loaded)
     for side in chosen:
-        found = measure_side(
-            loaded,
-            side,
-            sorted(set(angles)) if angles else ANGLES,
-            sorted(set(frequencies)) if frequencies else FREQUENCIES,
-            report=_report(side),
-            quick=quick,
-        )
-        out.print(_overview(found, f"{loaded.name}: {side}, {found.type}"))
-        for line in _sentences(found):
-            out.print(line)
-        words = f"Energy that the {side} side ({found.type}) of {loaded.name} sends back"
-        figure = plot_reflection(found.found.angles, found.found.frequencies, _curves(found), words)
+        if types:
+            asked = sorted(set(angles)) if angles else COMPARED
+            of_types = compare_types(
+                loaded, side, [_table(text) for text in types], asked, frequencies or (), _report(side)
+            )
+            figure = _compared(*of_types, f"Energy that types of the {side} side of {loaded.name} send back")
+        else:
+            found = measure_side(
+                loaded,
+                side,
+                sorted(set(angles)) if angles else ANGLES,
+                sorted(set(frequencies)) if frequencies else FREQUENCIES,
+                report=_report(side),
+                quick=quick,
+            )
+            out.print(_overview(found, f"{loaded.name}: {side}, {found.type}"))
+            for line in _sentences(found):
+                out.print(line)
+            words = f"Energy that the {side} side ({found.type}) of {loaded.name} sends back"
+            figure = plot_reflection(found.found.angles, found.found.frequencies, _curves(found), words)
         picture = output if len(chosen) == 1 else output.with_stem(f"{output.stem}_{side}")
         save(figure, picture, title)
         out.print(f"wrote {picture}")
@@ -95,6 +118,42 @@ def boundary(
             lines = table if len(chosen) == 1 else table.with_stem(f"{table.stem}_{side}")
             write_lines(figure, lines)
             out.print(f"wrote {lines}")
+
+
+def _table(text: str) -> dict[str, Any]:
+    """The table of ``--type``: TOML, or the word of a type."""
+    from dembound.casefile.toml import value_of
+
+    value = value_of(text, "--type")
+    return value if isinstance(value, dict) and "type" in value else {"type": text}
+
+
+def _compared(found: dict[str, Reflections], arrivals: list[Arrival], title: str) -> Figure:
+    """Print what types of a side return of waves at the first angle, and draw it against frequency."""
+    from dembound.disks.reflection.arrivals import over_spectrum
+    from dembound.disks.reflection.compared import amplitudes, returned_range, signal_for
+    from dembound.plot.reflection import plot_types
+
+    any_of = next(iter(found.values()))
+    low, high = any_of.frequencies[[0, -1]]
+    overview = compact_table(
+        "type",
+        "waves",
+        "energy",
+        "amplitude",
+        "amplitude above 1 %",
+        title=f"{title}, at {any_of.angles[0]:g}° and {low:.3g} to {high:.3g} Hz, weighted with the waves' spectra",
+    )
+    signals = {kind: signal for kind in any_of.kinds if (signal := signal_for(kind, arrivals)) is not None}
+    for kind in any_of.kinds:
+        for name, each in found.items():
+            shares = each.total(kind)[:, :1]
+            mean = float(over_spectrum(shares, each.frequencies, signals.get(kind))[0])
+            where = returned_range(each.frequencies, shares[:, 0])
+            overview.add_row(name, kind.upper(), _percent(mean), _percent(math.sqrt(mean)), where)
+    out.print(overview)
+    spectra: dict[str, np.ndarray] = {kind: amplitudes(signal, any_of.frequencies) for kind, signal in signals.items()}
+    return plot_types(found, spectra, title)
 
 
 def _report(side: str) -> Callable[[float], None]:
@@ -149,9 +208,10 @@ def _sentences(found: Measured) -> list[str]:
         share = arrival.sent_back(found.found)
         if not math.isfinite(share):
             continue
-        line = f"{arrival.name}: returns {_percent(share)} of the energy, {_percent(math.sqrt(share))} of the amplitude"
+        name = arrival.name if arrival.signal is None else f"{arrival.name}, weighted with its spectrum"
+        line = f"{name}: returns {_percent(share)} of the energy, {_percent(math.sqrt(share))} of the amplitude"
         lines.append(
-            "; ".join([line, *(f"{name} {_percent(arrival.sent_back(each))}" for name, each in beside.items())])
+            "; ".join([line, *(f"{other} {_percent(arrival.sent_back(each))}" for other, each in beside.items())])
         )
     if found.rock:
         each = " and ".join(f"{_percent(share)} for {kind.upper()} waves" for kind, share in found.rock.items())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,6 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from dembound.plot.style import COLOURS, DASHES, line_style, new_figure, outside_legend, styled
+
+if TYPE_CHECKING:
+    from dembound.disks.reflection import Reflections
 
 LEAST = 1e-6
 """Smallest share of energy drawn: 0.1 % of the amplitude."""
@@ -58,6 +61,47 @@ def plot_reflection(angles: np.ndarray, frequencies: np.ndarray, waves: Sequence
         panel.set_ylabel("energy sent back / incident (–)")
     figure.suptitle(title, fontsize=11)
     outside_legend(figure, list(panels.ravel()), columns=3)
+    return figure
+
+
+@styled
+def plot_types(found: Mapping[str, Reflections], spectra: Mapping[str, np.ndarray], title: str) -> Figure:
+    """What types of a side return against frequency, a column for each type of incident waves.
+
+    Parameters
+    ----------
+    found
+        name of the type -> its reflections, all at the same frequencies.
+    spectra
+        type of waves -> (f,) velocity amplitudes of the waves over the largest, drawn as areas.
+    title
+        of the figure.
+    """
+    kinds = next(iter(found.values())).kinds
+    figure = new_figure(5.6 * len(kinds), 4.8)
+    panels = figure.subplots(1, len(kinds), squeeze=False, sharey=True)[0]
+    for panel, kind in zip(panels, kinds, strict=True):
+        for number, (name, each) in enumerate(found.items()):
+            for index, angle in enumerate(each.angles):
+                look: dict[str, Any] = {
+                    "color": COLOURS[number % len(COLOURS)],
+                    "linestyle": DASHES[index % len(DASHES)],
+                }
+                line, values = f"{name}, {angle:g}°", each.total(kind)[:, index]
+                panel.plot(each.frequencies, _drawn(values), label=line, gid=f"{kind.upper()}, {line}", **look)
+        panel.set(title=f"incident {kind.upper()} waves", xlabel="frequency (Hz)", xscale="log")
+        _log(panel)
+        if kind in spectra:
+            behind = panel.twinx()
+            behind.fill_between(each.frequencies, spectra[kind], color="#E8E8E8", linewidth=0.0)
+            behind.set(ylabel="amplitude of the wave / largest (–), grey", yscale="log", ylim=(1e-3, 1.3))
+            behind.yaxis.set_minor_locator(NullLocator())
+            behind.grid(visible=False)
+            panel.set_zorder(behind.get_zorder() + 1)
+            panel.patch.set_visible(False)
+    panels[0].set_ylabel("energy sent back / incident (–)")
+    figure.suptitle(title, fontsize=11)
+    outside_legend(figure, list(panels), columns=2)
     return figure
 
 

@@ -679,6 +679,14 @@ def test_what_sides_send_back_is_printed_drawn_and_written(dembound, written, tm
     assert "copies of the brick" not in answer.out
     quick = dembound("boundary", path, *top, "--angle", 0, "--frequency", 5, "--quick")
     assert "returns 11.1 % of the energy, 33.3 % of the amplitude; with matched β 0 %" in quick.out
+    springs = '{type = "viscoelastic", distance = 100}'
+    several = ["--type", "viscous", "--type", springs, "--frequency", 5, "--frequency", 50, "--table", "types.csv"]
+    compared = dembound("boundary", path, "--side", "right", *several)
+    assert compared.code == 0
+    rows = [cells(line)[0] for line in compared.out.splitlines() if " P " in line]
+    assert rows == ["viscous", "viscoelastic, distance 100"]
+    assert compared.out.splitlines()[-2:] == ["wrote boundary.png", "wrote types.csv"]
+    assert "--quick: is not possible with --type" in dembound("boundary", path, *several, "--quick").err
     short = dembound("boundary", path, "--side", "right", "--angle", 0, "--frequency", 990)
     assert "copies of the brick reflect" in short.out
     assert dembound("boundary", path, "--side", "left", "--set", 'boundary.left={type="periodic"}').code == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,15 +16,23 @@ from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.reflection.arrivals import Arrival, arrivals_of
 from dembound.disks.reflection.bricks import BrickInRow, end_of, end_scene
+from dembound.disks.reflection.compared import wide_frequencies, words_of
 from dembound.disks.reflection.continuum_end import ContinuumEnd, beside_elements, copies_beside
 from dembound.disks.reflection.meter import End, Meter, Reflections
 from dembound.disks.reflection.smeared import by_smeared_supports
-from dembound.disks.scene import DiskScene, build, with_boundaries
+from dembound.disks.scene import DiskScene, build, ground_of, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.schemas import with_changes
 
-__all__ = ["Arrival", "Measured", "Reflections", "measure_side", "measured_sides"]
+__all__ = [
+    "Arrival",
+    "Measured",
+    "Reflections",
+    "compare_types",
+    "measure_side",
+    "measured_sides",
+]
 
 Report = Callable[[float], None]
 
@@ -93,7 +102,7 @@ def measure_side(
     linear_law(case.material.law)
     whole = build(case)
     ground, table = whole.ground, case.side(side)
-    chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.array(frequencies)
+    chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.sort(frequencies)
     arrivals = arrivals_of(case, side, ground)
     if table.is_outside and quick:
         raise CaseError([f"--quick: is not possible for side {side}, of type outside; leave it out"])
@@ -130,6 +139,34 @@ def measure_side(
         others += _of_continuum(other, side, step, chosen, angles, report)
     continuum = None if other is None else (other.continua[0].count, others[-1])
     return Measured(side, table.type, found, others[0] if unmatched else None, continuum, arrivals, gaps, rock)
+
+
+def compare_types(
+    case: DiskCase,
+    side: str,
+    tables: Sequence[Mapping[str, Any]],
+    angles: Sequence[float],
+    frequencies: Sequence[float] = (),
+    report: Report | None = None,
+) -> tuple[dict[str, Reflections], list[Arrival]]:
+    """Reflections of a side with other tables in its place, by table in words, and the arrivals of the case itself.
+
+    angles, frequencies, report : as of `measure_side`; by default frequencies of the whole spectrum. Raises CaseError
+    for tables that the side cannot have, and for a law of no linear medium.
+    """
+    ground, found = ground_of(case), {}
+    chosen = np.sort(frequencies) if len(frequencies) else wide_frequencies(case, ground)
+    for table in tables:
+        changed = with_changes(case, {f"boundary.{side}": dict(table)})
+        linear_law(changed.material.law)
+        whole = build(changed)
+        step = choose_step(whole)[0]
+        if changed.side(side).is_outside:
+            (one,) = _of_continuum(whole, side, step, chosen, angles, report)
+        else:
+            (one,) = Meter.of(side, step, end_scene(changed, side)).measure(chosen, angles, report=report)
+        found[words_of(table)] = one
+    return found, arrivals_of(case, side, ground)
 
 
 def _of_continuum(

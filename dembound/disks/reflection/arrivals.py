@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import get_args
 
 import numpy as np
@@ -15,6 +16,9 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reflection.bricks import is_outwards
 from dembound.disks.reflection.meter import Kind, Reflections
 from dembound.disks.sources import place_of
+from dembound.outside import sizing
+from dembound.outside.sizing import Signal
+from dembound.table import Box
 
 PLACES = 200
 """Places along a side at which waves of a source arrive."""
@@ -27,24 +31,52 @@ FLATTEST = 85.0
 class Arrival:
     """Waves that reach a side.
 
-    name : in words. kinds : their types. angles : (k,) degrees, shares : (k,) of their energy, 1 in all.
+    name : in words. kinds : their types. angles : (k,) degrees, shares : (k,) of their energy, 1 in all. signal : whose
+    spectrum they have; None if it is unknown, or without finite energy.
     """
 
     name: str
     kinds: tuple[Kind, ...]
     angles: np.ndarray
     shares: np.ndarray
+    signal: Signal | None = None
 
     def sent_back(self, found: Reflections) -> float:
-        """Share of the energy that the side reflects: mean over types and frequencies; nan if nothing is known."""
+        """Share of the energy that the side reflects: mean over types, angles and the spectrum; nan if unknown."""
         each = []
         for kind in self.kinds:
             if kind not in found.kinds or not np.isfinite(found.total(kind)).any():
                 continue
-            by_angle = np.nanmean(found.total(kind), axis=0)
+            by_angle = over_spectrum(found.total(kind), found.frequencies, self.signal)
             known = np.isfinite(by_angle)
             each.append(float(self.shares @ np.interp(self.angles, found.angles[known], by_angle[known])))
         return float(np.mean(each)) if each else math.nan
+
+
+def over_spectrum(shares: np.ndarray, frequencies: np.ndarray, signal: Signal | None) -> np.ndarray:
+    """Means (a,) of shares (f, a) of energy at ascending frequencies (f,), Hz, weighted with the energy of a signal.
+
+    ∫R|V|²df/∫|V|²df, with R straight over log f between the frequencies, and constant below and above them. Plain means
+    without a signal. Frequencies without a known share are left out; nan where none is known.
+    """
+    weights = np.ones(len(frequencies)) if signal is None else _weights(signal, tuple(frequencies.tolist()))
+    known = np.where(np.isfinite(shares), weights[:, None], 0.0)
+    total = known.sum(axis=0)
+    return np.divide(
+        (known * np.nan_to_num(shares)).sum(axis=0), total, out=np.full(len(total), np.nan), where=total > 0
+    )
+
+
+@lru_cache(maxsize=64)
+def _weights(signal: Signal, frequencies: tuple[float, ...]) -> np.ndarray:
+    """The energy (f,) of a signal, each part of it shared by the frequencies (Hz, ascending) below and above."""
+    each, energy = sizing.energies(signal)
+    place = np.interp(np.log(each), np.log(frequencies), np.arange(len(frequencies)))
+    below = place.astype(int)
+    count = len(frequencies) + 1
+    upper = np.bincount(below + 1, (place - below) * energy, count)
+    weights: np.ndarray = (np.bincount(below, (1.0 - place + below) * energy, count) + upper)[:-1]
+    return weights
 
 
 def arrivals_of(case: DiskCase, side: str, ground: PackedMaterial) -> list[Arrival]:
@@ -60,6 +92,12 @@ def arrivals_of(case: DiskCase, side: str, ground: PackedMaterial) -> list[Arriv
     return found
 
 
+def _signal(case: DiskCase, wave: str | None, *, is_force: bool = False) -> Signal | None:
+    """The signal of a wave of the case; None for a steady force, and for a wave that jumps."""
+    signal = None if wave is None else Signal(case.wave[wave], is_force)
+    return None if signal is None or sizing.jumps(signal) else signal
+
+
 def _plane(case: DiskCase, side: str) -> Iterator[Arrival]:
     """Plane waves: of driven sides along its normal, and an oblique incident wave."""
     for driven, waves in case.driving.items():
@@ -67,19 +105,25 @@ def _plane(case: DiskCase, side: str) -> Iterator[Arrival]:
             continue
         for motion, name in waves.items():
             if "xy"[axis_of_motion(driven, motion)] not in case.motion.held:
-                yield Arrival(f"wave {name} along the normal", (motion,), np.zeros(1), np.ones(1))
+                one = np.zeros(1), np.ones(1), _signal(case, name)
+                yield Arrival(f"wave {name} along the normal", (motion,), *one)
     if case.incident is not None:
         angle = abs(case.incident.angle) if normal_axis(side) == 1 else 90.0 - abs(case.incident.angle)
         kind: Kind = "p" if case.incident.type == "p" else "s"
         name = f"wave {case.incident.wave} at {angle:g}°"
-        yield Arrival(name, (kind,), np.array([min(angle, FLATTEST)]), np.ones(1))
+        signal = _signal(case, case.incident.wave)
+        yield Arrival(name, (kind,), np.array([min(angle, FLATTEST)]), np.ones(1), signal)
 
 
 def _spreading(case: DiskCase, side: str) -> Iterator[Arrival]:
     """Waves that spread from loads and holes, by the angles at which they reach places along the side."""
-    boxes = {f"load {load.name}": place_of(case, load) for load in case.load if not load.is_everywhere}
-    boxes |= {f"hole {number}": hole.box for number, hole in enumerate(case.hole, start=1)}
-    for name, box in boxes.items():
+    boxes: dict[str, tuple[Box, Signal | None]] = {
+        f"load {load.name}": (place_of(case, load), _signal(case, load.wave, is_force=True))
+        for load in case.load
+        if not load.is_everywhere
+    }
+    boxes |= {f"hole {number}": (hole.box, None) for number, hole in enumerate(case.hole, start=1)}
+    for name, (box, signal) in boxes.items():
         axis = normal_axis(side)
         centre = np.array([0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])])
         away = is_outwards(side) * (plane_of(side, case.box) - centre[axis])
@@ -91,4 +135,4 @@ def _spreading(case: DiskCase, side: str) -> Iterator[Arrival]:
         near = angles <= FLATTEST
         if near.any():
             kinds: tuple[Kind, ...] = get_args(Motion)
-            yield Arrival(f"waves from {name}", kinds, angles[near], shares[near] / shares[near].sum())
+            yield Arrival(f"waves from {name}", kinds, angles[near], shares[near] / shares[near].sum(), signal)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from dembound.plot.reflection import LEAST, Curves, plot_reflection
+from dembound.disks.reflection import Reflections
+from dembound.plot.reflection import LEAST, Curves, plot_reflection, plot_types
 
 ANGLES, FREQUENCIES = np.array([0.0, 30.0, 60.0]), np.array([1.0, 3.0])
 
@@ -31,3 +32,17 @@ def test_means_and_their_range_are_drawn_against_angle_and_single_angles_against
     np.testing.assert_allclose(below["in all at 60°"], [0.3, 0.6])
     np.testing.assert_allclose(below["in all at 0°"], [LEAST, 0.3])
     assert of_p.get_yscale() == "log"
+
+
+def test_types_are_drawn_against_frequency_before_the_spectrum_of_the_wave() -> None:
+    same = {"s": np.array([[0.1, 0.2, 0.0], [0.2, np.nan, 0.4]])}
+    found = Reflections("top", ANGLES, FREQUENCIES, same, {"s": np.zeros((2, 3))})
+    figure = plot_types({"viscous": found, "outside": found}, {"s": np.array([1.0, 0.1])}, "title")
+    panel, behind = figure.axes
+    assert (panel.get_title(), panel.get_xlabel()) == ("incident S waves", "frequency (Hz)")
+    assert (panel.get_xscale(), panel.get_yscale(), behind.get_yscale()) == ("log", "log", "log")
+    assert behind.get_ylabel() == "amplitude of the wave / largest (–), grey"
+    lines = {line.get_label(): line for line in panel.get_lines()}
+    np.testing.assert_allclose(lines["outside, 60°"].get_ydata(), [LEAST, 0.4])
+    assert lines["outside, 0°"].get_color() == lines["outside, 60°"].get_color() != lines["viscous, 0°"].get_color()
+    assert panel.get_zorder() > behind.get_zorder()

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, small
 
-from dembound.disks.reflection.arrivals import Arrival, arrivals_of
+from dembound.disks.reflection.arrivals import Arrival, arrivals_of, over_spectrum
 from dembound.disks.reflection.meter import Reflections
 from dembound.disks.scene import ground_of
+from dembound.outside.sizing import Signal
+from dembound.waves import FileWave
 
 POINT = {"name": "blow", "position": [2.0, 4.0], "force": [0.0, -1e3], "wave": "pulse"}
 
@@ -51,3 +53,25 @@ def test_shares_are_means_over_kinds_frequencies_and_angles_of_what_is_known() -
     # p: 0.2 at 0°, 0.3 at 60°, 0.25 between; s: 0.4 and 0.5
     assert half.sent_back(found) == pytest.approx(0.5 * (0.225 + 0.45))
     assert math.isnan(Arrival("none", ("s",), np.zeros(1), np.ones(1)).sent_back(reflections(p=np.ones((2, 2)))))
+
+
+def test_shares_are_weighted_with_the_spectrum_of_the_wave() -> None:
+    """Two tones of amplitudes 2 and 1 have 4/5 and 1/5 of the energy; of a force √f times as large amplitudes.
+
+    The tones last 100 and 1000 periods, so that 1/(2π²·100) = 5e-4 or somewhat more of the energy is far from them.
+    """
+    times = np.arange(20_001) * 0.005
+    values = 2.0 * np.sin(2.0 * np.pi * times) + np.sin(20.0 * np.pi * times)
+    text = "\n".join(f"{time:.3f} {value!r}" for time, value in zip(times, values.tolist(), strict=True))
+    tones = FileWave.model_validate({"type": "file", "path": "tones.txt"}, context={"files": {"tones.txt": text}})
+    shares = np.array([[0.1, 0.3, 0.2], [0.6, 0.3, np.nan]])
+    found = over_spectrum(shares, np.array([1.0, 10.0]), Signal(tones, is_force=False))
+    np.testing.assert_allclose(found, [0.2, 0.3, 0.2], rtol=5e-3)
+    of_force = over_spectrum(shares, np.array([1.0, 10.0]), Signal(tones, is_force=True))
+    np.testing.assert_allclose(of_force, [(4.0 * 0.1 + 10.0 * 0.6) / 14.0, 0.3, 0.2], rtol=5e-3)
+    # halfway between two frequencies in log f the mean of both shares, beyond them that of the nearer one
+    np.testing.assert_allclose(
+        over_spectrum(np.array([[0.0], [1.0]]), np.array([0.1, 10.0]), Signal(tones, is_force=False)), 0.6, rtol=1e-2
+    )
+    np.testing.assert_allclose(over_spectrum(shares, np.array([1.0, 10.0]), None), [0.35, 0.3, 0.2])
+    assert np.isnan(over_spectrum(np.full((2, 1), np.nan), np.array([1.0, 10.0]), None)).all()
