@@ -32,7 +32,7 @@ BROKEN_OFF = 3
 
 
 class TextColumns(Format):
-    """Of any separator; each column of values is a channel, called as in the header."""
+    """Of any separator; each column of values is a channel, called as in the header, without a unit behind "_"."""
 
     name = "columns of text"
 
@@ -88,7 +88,8 @@ def _of_columns(source: Source, columns: Columns) -> list[Channel]:
             spelled = _unit(units[column], MOTIONS) or _only_unit(header)
             even, numbers = source.evenly(time, values[column])
             between = float(f"{(even[-1] - even[0]) / (len(even) - 1):.12g}")
-            found.append(source.channel(names[column], source.measured(spelled), numbers, between, float(even[0])))
+            name = names[column].removesuffix(f"_{spelled}")
+            found.append(source.channel(name, source.measured(spelled), numbers, between, float(even[0])))
     return found
 
 
