@@ -7,6 +7,7 @@ half-space (dembound/exact/column.py) between the planes where the mass of the h
     python benchmarks/soil_on_rock.py
 """
 
+import argparse
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -68,9 +69,17 @@ def errors(diameter: float, folder: Path) -> tuple[float, float]:
     return rms, float(np.abs(spectra[0] / spectra[1] - 1.0).max())
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Print the table."""
+    argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, prog="benchmarks/soil_on_rock.py"
+    ).parse_args()
     print("disks (m)  velocity, RMS (%)  response spectrum from 0.1 s on, largest (%)")
     with TemporaryDirectory() as folder:
         for diameter in (1.0, 0.5, 0.25):
             rms, largest = errors(diameter, Path(folder))
             print(f"{diameter:9g}  {100.0 * rms:17.3g}  {100.0 * largest:.3g}")
+
+
+if __name__ == "__main__":
+    main()

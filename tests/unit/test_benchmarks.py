@@ -28,6 +28,7 @@ COMMANDS = (
     "golden",
     "single_edits",
     "record_interpolation",
+    "soil_on_rock",
 )
 
 
