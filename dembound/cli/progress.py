@@ -80,9 +80,9 @@ class Watching(Watch):
         yield self.shown
 
     def knows(self, causes: Sequence[Cause], motions: Motions, missing: str) -> None:
-        """Print the causes in one line, which remains if the rest is interrupted."""
-        self.missing = missing
-        if known := in_one_line(causes, motions):
+        """Print the causes in one line, once, which remains if the rest is interrupted."""
+        before, self.missing = self.missing, missing
+        if missing != before and (known := in_one_line(causes, motions)):
             err.print(f"{self.name}: largest errors by formula: {known}; still to be found: {missing}")
 
 

@@ -54,11 +54,10 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
     scene = build(case)
     moved = " and ".join(sides_of_pair(case)) if case.monitor else ""
     reason = ""
-    if moved or scene.has_history:
-        _tell(Formulas(scene, time_step).causes(recorded), scene, recorded)
     if moved and (case.ground.size is not None or case.incident is not None):
         reason = f"of {moved}: beside a continuum no companions are run"
     elif moved:
+        _tell(Formulas(scene, time_step).causes(recorded), scene, recorded)
         companions = Companions(case, scene, time_step, most)
         try:
             companions.require_affordable()
@@ -77,7 +76,7 @@ def _tell(causes: Sequence[Cause], scene: DiskScene, motions: Motions) -> None:
     missing += [f"{side} side" for side in HeldSides(scene).among_others]
     missing += [f"{STEP} where contacts open or slide"] if scene.has_history else []
     if missing:
-        current().knows(causes, motions, f"errors from companions: {', '.join(missing)}")
+        current().knows(causes, motions, f"errors from companions ({', '.join(missing)})")
 
 
 def _of_ground_of_run(
@@ -101,6 +100,7 @@ def _of_ground_of_run(
     if case.ground.size is not None or case.incident is not None:
         reason = "beside a continuum no companions are run"
     else:
+        _tell(known, scene, recorded)
         try:
             companions.require_affordable()
             time = next(iter(companions.far.values())).time

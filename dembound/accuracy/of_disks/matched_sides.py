@@ -96,7 +96,7 @@ def _measured(end: DiskScene, side: str, step: float, frequencies: np.ndarray) -
     try:
         meter = Meter.of(side, step, end)
         found = meter.measure(
-            frequencies, [0.0], report=lambda each: begins(f"waves of {each:.3g} Hz at the {side} side")
+            frequencies, [0.0], report=lambda each: begins(f"reflection at the {side} side, {each:.3g} Hz")
         )[0]
     except CaseError:
         return {}

@@ -106,4 +106,4 @@ def test_errors_by_formula_remain_of_an_estimate_that_is_interrupted(dembound, c
     assert answer.code == 130
     known, stopped = answer.err.splitlines()
     assert "largest errors by formula: " in known
-    assert stopped == "bar: stopped; missing: errors from companions: sides"
+    assert stopped == "bar: stopped; missing: errors from companions (sides)"
