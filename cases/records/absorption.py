@@ -17,9 +17,9 @@ from dembound.disks.reflection import Reflections, compare_types
 from dembound.spectra.fourier import fourier_spectrum, smoothed
 
 HERE = Path(__file__).parent
-FREQUENCIES = np.geomspace(0.1, 25.0, 49)
-SPACING, LEAST = 0.5, 1e-3
-"""Distance of the monitors, m; least amplitude of the incident wave over its largest that is compared."""
+FREQUENCIES, COMPUTED = np.geomspace(0.1, 25.0, 49), np.geomspace(0.08, 31.0, 61)
+LEAST = 1e-3
+"""Least amplitude of the incident wave over its largest that is compared."""
 
 KINDS = {
     "viscous": {"type": "viscous"},
@@ -44,73 +44,77 @@ def histories(case: dembound.Case, number: int, table: dict) -> np.ndarray:
     step = float(np.diff(found.histories["lower"]["time"][:2])[0])
     spectra = [fourier_spectrum(column, step) for column in columns]
     frequency = spectra[0][0]
-    used = (frequency > 0.5 * FREQUENCIES[0]) & (frequency < 1.5 * FREQUENCIES[-1])
+    used = (frequency > COMPUTED[0]) & (frequency < COMPUTED[-1])
     values = np.array([values[used] for _, values in spectra]).T.reshape(-1, 3, 2)
     return np.concatenate([values, np.repeat(frequency[used], 3).reshape(-1, 3, 1)], axis=2)
 
 
 def phases(spectra: np.ndarray, component: int) -> np.ndarray:
-    """q·SPACING (f,) of the lattice: 2 − 2 cos of it is aω² + bω⁴, by least squares of (U₁ + U₃)/U₂ = 2 cos."""
+    """Phase (f,) of the waves of the lattice from a monitor to the next.
+
+    2 − 2 cos of it is aω² + bω⁴, by least squares of (U₁ + U₃)/U₂ = 2 cos.
+    """
     lower, middle, upper = spectra[:, :, component].T
     square = (2.0 * np.pi * spectra[:, 0, 2].real) ** 2
     terms = np.stack([square, square**2]).T
     weights = np.abs(middle) / square  # of relative errors
-    found, *_ = np.linalg.lstsq(
-        terms * weights[:, None] * 1.0, ((2.0 * middle - lower - upper) / middle).real * weights, rcond=None
-    )
+    change = ((2.0 * middle - lower - upper) / middle).real
+    found, *_ = np.linalg.lstsq(terms * weights[:, None], change * weights, rcond=None)
     return np.arccos(1.0 - 0.5 * (terms @ found))
 
 
-def returned(spectra: np.ndarray, phase: np.ndarray, component: int) -> tuple[np.ndarray, float, np.ndarray]:
-    """Returned over incident amplitude at `FREQUENCIES`, share of the energy, and the incident amplitude."""
+def separated(spectra: np.ndarray, phase: np.ndarray, component: int) -> tuple[np.ndarray, np.ndarray]:
+    """Energies (f,) of the upward and the downward wave."""
     lower, _, upper = spectra[:, :, component].T
     turn = np.exp(2j * phase)  # two spacings from lower to upper
     up = (upper - lower * turn) / (1.0 / turn - turn)
-    down = lower - up
-    every = spectra[:, 0, 2].real
-    power = [smoothed(every, np.abs(wave) ** 2, FREQUENCIES) for wave in (up, down)]
-    share = float(np.sum(np.abs(down) ** 2) / np.sum(np.abs(up) ** 2))
-    incident = np.sqrt(power[0] / power[0].max())
-    return np.where(incident > LEAST, np.sqrt(power[1] / power[0]), np.nan), share, incident
+    return np.abs(up) ** 2, np.abs(lower - up) ** 2
 
 
 def main() -> None:
     """Run all kinds, print the table and draw the picture."""
     case = dembound.load(HERE / "strip_clc.toml")
     runs = {name: histories(case, number, table) for number, (name, table) in enumerate(KINDS.items())}
-    predicted: dict[str, Reflections] = {}
+    computed: dict[str, Reflections] = {}
     for name, table in KINDS.items():
         if name != "fixed":  # one disk is a brick: the last one must move
-            (predicted[name],) = compare_types(case, "top", [table], [0.0], FREQUENCIES.tolist())[0].values()
-    figure = Figure(figsize=(11.0, 5.4), layout="constrained", dpi=130)
+            (computed[name],) = compare_types(case, "top", [table], [0.0], COMPUTED.tolist())[0].values()
+    figure = Figure(figsize=(11.0, 5.2), layout="constrained", dpi=130)
     panels = figure.subplots(1, 2, sharey=True)
     for panel, kind, component in zip(panels, "sp", (0, 1), strict=True):
         phase = phases(runs[LEAST_RETURN], component)
-        print(
-            f"{kind.upper()} waves: returned amplitude (%), run / prediction, at {SHOWN} Hz; energy of the record (%)"
-        )
+        print(f"{kind.upper()}: % of the amplitude at {SHOWN} Hz, run / computed; % of the energy, run / computed")
         for colour, (name, spectra) in zip(COLOURS, runs.items(), strict=True):
-            amplitude, share, incident = returned(spectra, phase, component)
-            panel.plot(FREQUENCIES, amplitude, "o", color=colour, markersize=3.5, label=f"{name}, run")
-            row = np.interp(SHOWN, FREQUENCIES, amplitude)
-            known = np.sqrt(predicted[name].total(kind)[:, 0]) if name in predicted else np.ones(len(FREQUENCIES))
-            panel.plot(FREQUENCIES, np.maximum(known, 1e-6), color=colour, linewidth=1.2, label=f"{name}, computed")
-            beside = np.interp(SHOWN, FREQUENCIES, known)
-            cells = " | ".join(f"{100 * a:.3g} / {100 * b:.3g}" for a, b in zip(row, beside, strict=True))
-            worst = np.nanmax(np.abs(amplitude - known))
-            print(f"| {name} | {cells} | {100 * share:.3g} |  largest difference {worst:.2g}")
+            every = spectra[:, 0, 2].real
+            up, down = separated(spectra, phase, component)
+            known = computed[name].total(kind)[:, 0] if name in computed else np.ones(len(COMPUTED))
+            again = up * np.exp(np.interp(np.log(every), np.log(COMPUTED), np.log(known)))
+            power, measured, expected = (smoothed(every, each, FREQUENCIES) for each in (up, down, again))
+            incident = np.sqrt(power / power.max())
+            has_energy = incident > LEAST
+            of_run, of_both = (np.where(has_energy, np.sqrt(each / power), np.nan) for each in (measured, expected))
+            panel.plot(COMPUTED, np.sqrt(known), color=colour, linewidth=1.2, label=name)
+            panel.plot(FREQUENCIES, of_run, "o", color=colour, markersize=3.5)
+            cells = [
+                f"{100.0 * np.interp(f, FREQUENCIES, of_run):.3g} / {100.0 * np.interp(f, FREQUENCIES, of_both):.3g}"
+                for f in SHOWN
+            ]
+            energies = f"{100.0 * down.sum() / up.sum():.3g} / {100.0 * again.sum() / up.sum():.3g}"
+            difference = np.nanmax(np.abs(of_run - of_both))
+            print(f"| {name} | {' | '.join(cells)} | {energies} | largest difference {100.0 * difference:.2g}")
         behind = panel.twinx()
-        behind.fill_between(FREQUENCIES, incident, color="black", alpha=0.12, linewidth=0.0)
+        behind.fill_between(FREQUENCIES, incident, color="#E8E8E8", linewidth=0.0)
         behind.set(yscale="log", ylim=(1e-3, 1.5))
         if kind == "p":
             behind.set_ylabel("incident velocity amplitude / largest (–), grey")
-        panel.set(xscale="log", yscale="log", ylim=(1e-5, 1.5), xlabel="frequency (Hz)", title=f"{kind.upper()} waves")
-        panel.grid(color="#E5E5E5")
+        panel.set(xscale="log", yscale="log", xlim=(0.09, 28.0), ylim=(1e-5, 1.5), xlabel="frequency (Hz)")
+        panel.set_title(f"{kind.upper()} waves along the normal: runs (points), computed (lines)", fontsize=10)
+        panel.grid(color="#E0E0E0", linewidth=0.6)
         panel.set_zorder(behind.get_zorder() + 1)
         panel.patch.set_visible(False)
     panels[0].set_ylabel("returned / incident velocity amplitude (–)")
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=8.5)
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     figure.savefig("absorption.png")
     print("wrote absorption.png")
 
