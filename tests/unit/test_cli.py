@@ -866,7 +866,7 @@ def test_a_chart_is_printed_drawn_resumed_and_replaced(dembound, rod, tmp_path) 
 def test_rounding_errors_are_printed_as_none(dembound, rod) -> None:
     rod({"method": {"type": "finite_difference"}, "load.1.nodes": 1, "bar.strength": 1e9})
     done = dembound("chart", "rod.toml", "--vary", "run.courant=1.0,0.9", "--repeats", 1)
-    assert re.search(r"\n courant 1 +0 +0 ", done.out)
+    assert re.search(r"\ncourant 1 +0 +0 ", done.out)
     assert "cheapest within 1 % and within 0.1 %: courant 1 (0 %, " in done.out
 
 
