@@ -55,7 +55,7 @@ def test_an_unknown_name_is_refused(tmp_path) -> None:
     # groups, cases of no group, and a line of each group's
     firsts = ["charts", "bench"]
     firsts += ["charts/blast", "cracks/concrete", "gallery/beta_sweep", "lu2016/fig7"]
-    firsts += ["records/tunnel_clc", "zhou2018/external_source"]
+    firsts += ["records/strip_clc", "zhou2018/external_source"]
     assert [line.split(", ")[0] for line in lines] == firsts
     assert ", ".join(lines).split(", ") == [*shipped.groups(), *shipped.names()]
 
