@@ -129,31 +129,29 @@ def _table(text: str) -> dict[str, Any]:
 
 
 def _compared(found: dict[str, Reflections], arrivals: list[Arrival], title: str) -> Figure:
-    """Print what types of a side return of waves at the first angle, and draw it against frequency."""
+    """Print what types of a side return by waves and angle, and draw it against frequency."""
     from dembound.disks.reflection.arrivals import over_spectrum
     from dembound.disks.reflection.compared import amplitudes, returned_range, signal_for
     from dembound.plot.reflection import plot_types
 
     any_of = next(iter(found.values()))
-    low, high = any_of.frequencies[[0, -1]]
-    overview = compact_table(
-        "type",
-        "waves",
-        "energy",
-        "amplitude",
-        "amplitude above 1 %",
-        title=f"{title}, at {any_of.angles[0]:g}° and {low:.3g} to {high:.3g} Hz, weighted with the waves' spectra",
-    )
+    frequencies = any_of.frequencies
+    words = f"{title}, {frequencies[0]:.3g} to {frequencies[-1]:.3g} Hz, weighted with the waves' spectra"
+    overview = compact_table("type", "waves", "energy", "amplitude", "amplitude above 1 %", title=words)
     signals = {kind: signal for kind in any_of.kinds if (signal := signal_for(kind, arrivals)) is not None}
     for kind in any_of.kinds:
         for name, each in found.items():
-            shares = each.total(kind)[:, :1]
-            mean = float(over_spectrum(shares, each.frequencies, signals.get(kind))[0])
-            where = returned_range(each.frequencies, shares[:, 0])
-            overview.add_row(name, kind.upper(), _percent(mean), _percent(math.sqrt(mean)), where)
+            means = over_spectrum(each.total(kind), frequencies, signals.get(kind))
+            for angle, mean, shares in zip(each.angles, means, each.total(kind).T, strict=True):
+                if math.isfinite(mean):
+                    row = _percent(mean), _percent(math.sqrt(mean)), returned_range(frequencies, shares)
+                    overview.add_row(name, f"{kind.upper()} {angle:g}°", *row)
     out.print(overview)
-    spectra: dict[str, np.ndarray] = {kind: amplitudes(signal, any_of.frequencies) for kind, signal in signals.items()}
-    return plot_types(found, spectra, title)
+    drawn = {
+        kind.upper(): {name: (each.angles, each.total(kind)) for name, each in found.items()} for kind in any_of.kinds
+    }
+    spectra = {kind.upper(): amplitudes(signal, frequencies) for kind, signal in signals.items()}
+    return plot_types(frequencies, drawn, spectra, title)
 
 
 def _report(side: str) -> Callable[[float], None]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,9 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from dembound.plot.style import COLOURS, DASHES, line_style, new_figure, outside_legend, styled
-
-if TYPE_CHECKING:
-    from dembound.disks.reflection import Reflections
 
 LEAST = 1e-6
 """Smallest share of energy drawn: 0.1 % of the amplitude."""
@@ -65,35 +62,39 @@ def plot_reflection(angles: np.ndarray, frequencies: np.ndarray, waves: Sequence
 
 
 @styled
-def plot_types(found: Mapping[str, Reflections], spectra: Mapping[str, np.ndarray], title: str) -> Figure:
+def plot_types(
+    frequencies: np.ndarray,
+    waves: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]],
+    spectra: Mapping[str, np.ndarray],
+    title: str,
+) -> Figure:
     """What types of a side return against frequency, a column for each type of incident waves.
 
     Parameters
     ----------
-    found
-        name of the type -> its reflections, all at the same frequencies.
+    frequencies
+        (f,) Hz.
+    waves
+        type of waves -> name of the side's type -> angles (a,), degrees, and shares (f, a) of energy.
     spectra
         type of waves -> (f,) velocity amplitudes of the waves over the largest, drawn as areas.
     title
         of the figure.
     """
-    kinds = next(iter(found.values())).kinds
-    figure = new_figure(5.6 * len(kinds), 4.8)
-    panels = figure.subplots(1, len(kinds), squeeze=False, sharey=True)[0]
-    for panel, kind in zip(panels, kinds, strict=True):
-        for number, (name, each) in enumerate(found.items()):
-            for index, angle in enumerate(each.angles):
-                look: dict[str, Any] = {
-                    "color": COLOURS[number % len(COLOURS)],
-                    "linestyle": DASHES[index % len(DASHES)],
-                }
-                line, values = f"{name}, {angle:g}°", each.total(kind)[:, index]
-                panel.plot(each.frequencies, _drawn(values), label=line, gid=f"{kind.upper()}, {line}", **look)
-        panel.set(title=f"incident {kind.upper()} waves", xlabel="frequency (Hz)", xscale="log")
+    figure = new_figure(5.6 * len(waves), 4.8)
+    panels = figure.subplots(1, len(waves), squeeze=False, sharey=True)[0]
+    for panel, (kind, types) in zip(panels, waves.items(), strict=True):
+        for number, (name, (angles, shares)) in enumerate(types.items()):
+            for index, angle in enumerate(angles):
+                colour, dash = COLOURS[number % len(COLOURS)], DASHES[index % len(DASHES)]
+                line = f"{name}, {angle:g}°"
+                look: dict[str, Any] = {"color": colour, "linestyle": dash, "label": line, "gid": f"{kind}, {line}"}
+                panel.plot(frequencies, _drawn(shares[:, index]), **look)
+        panel.set(title=f"incident {kind} waves", xlabel="frequency (Hz)", xscale="log")
         _log(panel)
         if kind in spectra:
             behind = panel.twinx()
-            behind.fill_between(each.frequencies, spectra[kind], color="#E8E8E8", linewidth=0.0)
+            behind.fill_between(frequencies, spectra[kind], color="#E8E8E8", linewidth=0.0)
             behind.set(ylabel="amplitude of the wave / largest (–), grey", yscale="log", ylim=(1e-3, 1.3))
             behind.yaxis.set_minor_locator(NullLocator())
             behind.grid(visible=False)

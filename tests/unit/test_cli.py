@@ -683,7 +683,7 @@ def test_what_sides_send_back_is_printed_drawn_and_written(dembound, written, tm
     several = ["--type", "viscous", "--type", springs, "--frequency", 5, "--frequency", 50, "--table", "types.csv"]
     compared = dembound("boundary", path, "--side", "right", *several)
     assert compared.code == 0
-    rows = [cells(line)[0] for line in compared.out.splitlines() if " P " in line]
+    rows = [cells(line)[0] for line in compared.out.splitlines() if " P 0°" in line]
     assert rows == ["viscous", "viscoelastic, distance 100"]
     assert compared.out.splitlines()[-2:] == ["wrote boundary.png", "wrote types.csv"]
     assert "--quick: is not possible with --type" in dembound("boundary", path, *several, "--quick").err

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from dembound.disks.reflection import Reflections
 from dembound.plot.reflection import LEAST, Curves, plot_reflection, plot_types
 
 ANGLES, FREQUENCIES = np.array([0.0, 30.0, 60.0]), np.array([1.0, 3.0])
@@ -35,9 +34,9 @@ def test_means_and_their_range_are_drawn_against_angle_and_single_angles_against
 
 
 def test_types_are_drawn_against_frequency_before_the_spectrum_of_the_wave() -> None:
-    same = {"s": np.array([[0.1, 0.2, 0.0], [0.2, np.nan, 0.4]])}
-    found = Reflections("top", ANGLES, FREQUENCIES, same, {"s": np.zeros((2, 3))})
-    figure = plot_types({"viscous": found, "outside": found}, {"s": np.array([1.0, 0.1])}, "title")
+    shares = np.array([[0.1, 0.2, 0.0], [0.2, np.nan, 0.4]])
+    types = {"viscous": (ANGLES, shares), "outside": (ANGLES[::2], shares[:, ::2])}
+    figure = plot_types(FREQUENCIES, {"S": types}, {"S": np.array([1.0, 0.1])}, "title")
     panel, behind = figure.axes
     assert (panel.get_title(), panel.get_xlabel()) == ("incident S waves", "frequency (Hz)")
     assert (panel.get_xscale(), panel.get_yscale(), behind.get_yscale()) == ("log", "log", "log")
