@@ -42,6 +42,13 @@ class Outside(Drivable):
         elif self.waves and not (sideways or wrong):
             must = f'boundary.left and right are both "{self.type}" or periodic'
             yield f"boundary.{side}.type: waves enter through it only where {must}"
+        top = boundary.get("top")
+        if self.waves and top and top.is_outside and not _goes_on("top", tables):
+            yield (
+                f'boundary.top.type: is "{top.type}" at the surface of the ground, from which waves of boundary.{side} '
+                "would come back as from a free one; leave it out, or let them enter by [incident], which has no surface "
+                "there"
+            )
         for other, table in across.items():
             if table and table.is_free and side in ("bottom", "top") and _has_column(tables):
                 yield (

@@ -67,3 +67,10 @@ def test_the_opposite_side_may_be_anything_but_a_free_field(kind: str) -> None:
     side = loads(f"{CASE}[boundary.right]\ntype = {kind}\n").side("left")
     assert side.is_artificial
     assert side.is_outside
+
+
+def test_no_surface_is_where_waves_of_the_bottom_would_come_back_from_it() -> None:
+    """The column of the ground that waves enter by has a free surface."""
+    top = '[boundary.top]\ntype = "outside"\n'
+    assert "boundary.top.type" in problems(BELOW + PERIODIC + top)
+    loads(WAVES + PERIODIC + top)

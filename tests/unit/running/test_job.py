@@ -107,7 +107,7 @@ def test_histories_alone_are_written_without_snapshots(bar, spalling, tmp_path) 
 
 KEYS = """name title version particles contacts loose_disks_left_out time_step step_limit steps duration ended wall_time
 seconds has_history threads particle_steps_per_second memory_bytes packing load_factor boundaries monitors laws static
-cracks energy keys reduced not_reduced resumed sides warnings"""
+cracks energy keys reduced not_reduced resumed sides warnings waves"""
 
 
 def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> None:
@@ -245,7 +245,7 @@ def test_what_is_missed_in_results_is_warned_of(bar) -> None:
         assert warned({"monitor": two}, "records the same") == names
     for snapshots, names in ((0, ["output.stress and output.contacts"]), (1, [])):
         output = {"stress": True, "contacts": True, "snapshots": snapshots}
-        assert warned({"output": output}, "output.stress and output.contacts: requests") == names
+        assert warned({"output": output}, "output.stress and output.contacts: is about snapshots") == names
 
 
 def test_energies_are_entered_a_hundred_times_or_as_often_as_asked_and_snapshots_evenly(bar, tmp_path) -> None:

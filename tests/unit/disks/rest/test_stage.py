@@ -20,7 +20,7 @@ K = 2500.0 * 1000.0**2
 def test_a_lattice_sinks_under_its_weight_as_its_columns_say(bar, law: str) -> None:
     looks: list[tuple[int, float]] = []
     body = scene(bar, **{**STANDING, "material.law": law})
-    settled = settle(body, lambda steps, ratio: looks.append((steps, ratio)))
+    settled = settle(body, lambda steps, ratio, _: looks.append((steps, ratio)))
     # disk by disk from below: the contacts carry the weight of three, two and one disks
     sunk = np.cumsum([0.0, 3.0, 2.0, 1.0]) * MASS * G / K
     found = np.sort(settled.start.displacement[1])[::-1].reshape(4, 2)
@@ -53,7 +53,7 @@ LAWS = {"elastic": {}, "linearpbond": TOUGH, "with a history": {**TOUGH, "materi
 def test_an_excavated_body_settles_before_and_after(bar, law: dict) -> None:
     body = scene(bar, **{**TOWER, **law, "hole": [SHAFT]})
     looks: list[tuple[int, float]] = []
-    settled = settle(body, lambda steps, ratio: looks.append((steps, ratio)))
+    settled = settle(body, lambda steps, ratio, _: looks.append((steps, ratio)))
     whole = settle(scene(bar, **{**TOWER, **law}))
 
     assert settled.before is not None
@@ -135,7 +135,7 @@ def test_what_is_carried_is_the_base_s_and_not_the_dashpots(bar) -> None:
 def test_beside_a_free_field_the_column_settles_first_and_alone(bar) -> None:
     ground = packed_ground(bar, None, **NICHE)
     looks: list[tuple[int, float]] = []
-    settled = settle(ground, lambda steps, ratio: looks.append((steps, ratio)))
+    settled = settle(ground, lambda steps, ratio, _: looks.append((steps, ratio)))
     alone = settle(column_alone(ground))
 
     assert settled.column is not None

@@ -22,7 +22,7 @@ def test_a_body_that_slides_without_end_stalls(bar, monkeypatch) -> None:
     monkeypatch.setattr(until_at_rest, "PATIENCE", PATIENCE)
     looks: list[float] = []
     with pytest.raises(RunError, match=r"stalls at an unbalanced force ratio of (?s:.*)is the body held") as caught:
-        settle(scene(bar, **{**changes, **loose}), lambda _, ratio: looks.append(ratio))
+        settle(scene(bar, **{**changes, **loose}), lambda _, ratio, stage: looks.append(ratio))
 
     assert f"an unbalanced force ratio of {looks[-1]:.3g} after {len(looks) * LOOK:,} steps" in str(caught.value)
     assert PATIENCE <= len(looks) * LOOK < 2 * PATIENCE
@@ -85,7 +85,7 @@ def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to_over_the_pair
     with pytest.raises(
         StalledError, match=r"in 100 steps, static\.ratio requests 1e-08; (?s:.*)static\.max_steps"
     ) as caught:
-        settle(body, lambda _, ratio: ratios.append(ratio))
+        settle(body, lambda _, ratio, stage: ratios.append(ratio))
     contacts, total = caught.value.run.system.contacts["body"], body.steady_load.copy()
     for i, j, (fx, fy, *_) in zip(*contacts.pairs, contacts.force, strict=True):
         total[:2, i] += [fx, fy]
