@@ -47,7 +47,7 @@ class Dashpots(Boundary):
     half_mass: bool = quantity(
         False,
         unit="1",
-        help="whether the particles are half cells, on sides of disks in one row; not beside a free field",
+        help="whether the particles are half cells, on sides of disks in one row; not on a free_field side",
     )
 
     @model_validator(mode="after")

@@ -32,6 +32,13 @@ HEADS = (
 """Heads of the table."""
 
 
+class Kind(StrEnum):
+    """Kinds of waves."""
+
+    s = "s"
+    p = "p"
+
+
 class Baseline(StrEnum):
     """What is removed as the baseline."""
 
@@ -146,6 +153,17 @@ def wave(
             metavar="CASE", help="Take the record as the surface of this case: write the incident wave below."
         ),
     ] = None,
+    kinds: Annotated[
+        list[Kind] | None,
+        typer.Option(
+            "--as",
+            help="Kind of wave that a component becomes by --deconvolve, once for each in their order; by default that "
+            "of the case's only wave.",
+        ),
+    ] = None,
+    table: Annotated[
+        Path | None, typer.Option(metavar="NAME.csv", help="Curves of the picture to write (CSV).", callback=_csv)
+    ] = None,
     *,
     processing: ProcessingOptions,
 ) -> None:
@@ -157,6 +175,7 @@ def wave(
     """
     from dembound.plot.record import plot_motions
     from dembound.plot.style import save
+    from dembound.plot.table import write_lines
     from dembound.records.formats import read_record
     from dembound.records.processing import processed
     from dembound.records.wave_file import write_wave
@@ -167,12 +186,15 @@ def wave(
     paths = _paths(target, channels)
     if same := next((path for path in paths if path.exists() and path.samefile(file)), None):
         raise CaseError([f"--output: {same} is the record"])
+    if kinds and (deconvolve is None or len(kinds) != len(channels)):
+        names = ", ".join(channel.component or "-" for channel in channels)
+        raise CaseError([f"--as: must be given with --deconvolve once for each component, in their order: {names}"])
     out.print(f"{file}: {record.format}, {record.title or 'no title'}")
     for remark in record.remarks:
         err.print(f"warning: {remark}")
     motions = [processed(channel, processing.of(channel)) for channel in channels]
     if deconvolve is not None:
-        motions = _below(deconvolve, motions)
+        motions = _below(deconvolve, motions, kinds)
     for line in _lines(motions):
         out.print(f"  {line}")
     out.print(_table(channels, motions, processing))
@@ -188,27 +210,35 @@ def wave(
         write_wave(path, motion, [line for line in origin if line])
         out.print(f"wrote {path}")
     drawn = picture or target.with_suffix(".png")
-    save(plot_motions(motions, record.title or file.name), drawn)
+    figure = plot_motions(motions, record.title or file.name)
+    save(figure, drawn)
     out.print(f"wrote {drawn}")
+    if table is not None:
+        write_lines(figure, table)
+        out.print(f"wrote {table}")
 
 
 def _chosen(record: Record, names: Sequence[str] | None) -> list[Channel]:
-    """The channels of components, in any case of letters; all without names. Raises CaseError for unknown ones."""
+    """The channels of components, in the order of names in any case of letters; all without names.
+
+    Raises CaseError for unknown ones.
+    """
     known = [channel.component for channel in record.channels]
-    folded = {name.casefold() for name in names or known}
     if unknown := [name for name in names or () if name.casefold() not in {each.casefold() for each in known}]:
         raise CaseError([f"--component: is {name}, must be one of {', '.join(known)}" for name in unknown])
-    return [channel for channel in record.channels if channel.component.casefold() in folded]
+    if not names:
+        return list(record.channels)
+    chosen = dict.fromkeys(name.casefold() for name in names)
+    return [channel for name in chosen for channel in record.channels if channel.component.casefold() == name]
 
 
-def _below(path: Path, motions: Sequence[Motion]) -> list[Motion]:
-    """The incident motions below the ground of a case whose surface moves so."""
+def _below(path: Path, motions: Sequence[Motion], kinds: Sequence[Kind] | None) -> list[Motion]:
+    """The incident motions of these kinds below the ground of a case whose surface moves so."""
     from dembound.studies.deconvolution import below, ground_of_file
 
     if not path.is_file():
         raise CaseError([f"--deconvolve: no file {path}"])
-    case = ground_of_file(path)
-    return [below(case, motion) for motion in motions]
+    return below(ground_of_file(path), motions, [kind.value for kind in kinds] if kinds else [None] * len(motions))
 
 
 def _lines(motions: Sequence[Motion]) -> Iterator[str]:

@@ -26,7 +26,10 @@ HISTORIES = 3
 def plot_motions(motions: Sequence[Motion], title: str) -> Figure:
     """Acceleration, velocity, displacement, Fourier and response spectrum of components, with common axes in a row."""
     figure = new_figure(2.5 + 4.0 * len(motions), 9.5)
-    panels = figure.subplots(len(LABELS), len(motions), sharex="row", sharey="row", squeeze=False)
+    panels = figure.subplots(len(LABELS), len(motions), sharey="row", squeeze=False)
+    for first, *others in (panels[:HISTORIES].flat, *panels[HISTORIES:]):
+        for panel in others:
+            panel.sharex(first)
     for column, motion in zip(panels.T, motions, strict=True):
         name, look = motion.component or "motion", line_style(0)
         for panel, values in zip(column, (motion.acceleration, motion.velocity, motion.displacement), strict=False):

@@ -81,7 +81,9 @@ def _lines(figure: Figure) -> Iterator[tuple[Axes, Line2D]]:
 
 def _head(figure: Figure, panel: Axes, line: Line2D) -> str:
     """A line's name, its run, and the quantity of its axis with the unit."""
-    axis = ", ".join(filter(None, (figure.get_supylabel(), panel.get_ylabel())))
+    sharing = [panel, *panel.get_shared_y_axes().get_siblings(panel)]
+    own = next(filter(None, (each.get_ylabel() for each in sharing)), "")
+    axis = ", ".join(filter(None, (figure.get_supylabel(), own))).replace("\n", " ")
     return f"{', '.join(filter(None, _name_and_run(line)))}: {axis}"
 
 

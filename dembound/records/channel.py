@@ -22,6 +22,7 @@ class Channel:
     begin : time of the first sample, s.
     stated_peak : largest |value| as the file's header states it, in the unit of the values; None without one. That of
     K-NET and KiK-net is of the values without their mean, that of digitised film is of the points, before resampling.
+    unit : in which the file has the values, as it is spelled there.
     """
 
     component: str
@@ -30,6 +31,7 @@ class Channel:
     time_step: float
     begin: float = 0.0
     stated_peak: float | None = None
+    unit: str = ""
 
 
 @dataclass(frozen=True)

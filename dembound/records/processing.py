@@ -93,7 +93,8 @@ def processed(channel: Channel, settings: Processing) -> Motion:
     step, count = channel.time_step, len(channel.values)
     time = channel.begin + step * np.arange(count)
     weights, slopes = tapers(count, step, settings.taper)
-    steps = [f"samples: {count} of {channel.quantity}, from {time[0]:g} to {time[-1]:g} s"]
+    of = f"{channel.quantity} in {channel.unit}" if channel.unit else channel.quantity
+    steps = [f"samples: {count} of {of}, from {time[0]:g} to {time[-1]:g} s"]
     unit = UNITS[channel.quantity][0]
     offset, words = baseline(channel.values, settings.baseline, step, unit)
     values = weights * (channel.values - offset)

@@ -6,6 +6,7 @@ is uniform and undamped, so this only delays and adds, and is computed for all f
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,23 +24,26 @@ from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.records.processing import Motion as Recorded
 from dembound.records.processing import integrated
-from dembound.waves.spectrum import amplitude_spectrum, faded_frequency
+from dembound.waves.spectrum import FADED, amplitude_spectrum, faded_frequency
 
 SIDE = "bottom"
 """The side at which the wave enters."""
+
+ROUNDING = 1e-6
+"""Steps by which a whole number of them may be missed."""
 
 
 @dataclass(frozen=True)
 class Deconvolved:
     """An incident wave.
 
-    velocity : (n + k,) m/s at the time step of the record. early : by how many steps k it begins before the record, so
-    that the surface moves k steps later than recorded if the wave begins at t = 0. magnification : largest amplitude
-    over that of the record, which noise has too; band : highest frequency that counts, Hz.
+    velocity : (n + k,) m/s at the time step of the record. early : by how long (s) it begins before the record: if the
+    wave begins at t = 0, the surface moves so much later than recorded. magnification : largest amplitude over that of
+    the record, which noise has too; band : highest frequency that counts, Hz.
     """
 
     velocity: np.ndarray
-    early: int
+    early: float
     magnification: float
     band: float
 
@@ -47,8 +51,9 @@ class Deconvolved:
     def sentence(self) -> str:
         """The magnification in words."""
         return (
-            f"the incident wave has up to {self.magnification:.3g} times the amplitude of the surface at frequencies "
-            f"to {self.band:.3g} Hz, and so has the noise of the record"
+            f"the incident wave, and in it the noise of the record, has up to {self.magnification:.3g} times the "
+            f"amplitude of the surface at frequencies to {self.band:.3g} Hz, above which the record's velocity has "
+            f"less than {100.0 * FADED:g} % of its largest amplitude"
         )
 
 
@@ -57,56 +62,91 @@ def deconvolve(case: DiskCase, surface: np.ndarray, time_step: float, motion: Mo
 
     motion : S or P; by default that of the wave of the bottom side. The record is zero beyond its ends.
 
-    Raises CaseError where the ground is not level under a free surface, or not one such wave enters at the bottom.
+    Raises CaseError where the ground is not level under a free surface, or no such wave enters at the bottom.
     """
+    return incident_below(level_ground(case, motion), surface, time_step)
+
+
+def level_ground(case: DiskCase, motion: Motion | None = None) -> Level:
+    """The ground above the bottom of a case as waves of a kind see it; arguments and errors as of `deconvolve`."""
     table = case.side(SIDE)
     if problems := [f"deconvolution: needs {reason}" for reason in not_level(SIDE, table, case.tables)]:
         raise CaseError(problems, case.name)
     waves = case.driving.get(SIDE, {})
     if motion is None and len(waves) > 1:
-        raise CaseError([f"boundary.{SIDE}: names wave_p and wave_s; must name that of the record alone"], case.name)
+        recipe = "give for each component, in their order, which it becomes, as in --as s --as p"
+        raise CaseError([f"boundary.{SIDE}: names wave_p and wave_s; {recipe}"], case.name)
     motion = motion or next(iter(waves), None)
     if motion not in waves or {0, 1} & {*table.prescribed(1)}:
         kind = "wave_p or wave_s" if motion is None else f"wave_{motion}"
         raise CaseError([f"boundary.{SIDE}: must absorb and name a {kind}, whose ground and rock are taken"], case.name)
-    return incident_below(Level.of(build(case), SIDE, motion), surface, time_step)
+    return Level.of(build(case), SIDE, motion)
 
 
-def incident_below(ground: Level, surface: np.ndarray, time_step: float) -> Deconvolved:
-    """The incident wave below level ground whose free surface has a velocity (n,) m/s, sampled at a step (s)."""
+def incident_below(ground: Level, surface: np.ndarray, time_step: float, early: float | None = None) -> Deconvolved:
+    """The incident wave below level ground whose free surface has a velocity (n,) m/s, sampled at a step (s).
+
+    early : by how long (s) it begins before the record; by default in whole steps as early as it must.
+    """
     way = ground.height / ground.speed
-    early = math.ceil((way + max(0.0, -ground.mass, -ground.stiffness) / ground.speed) / time_step)
-    count = len(surface) + early
+    early = earliest(ground, time_step) if early is None else early
+    count = len(surface) + math.ceil(early / time_step - ROUNDING)
     window = 2 ** math.ceil(math.log2(2 * count))
     frequencies = np.fft.rfftfreq(window, time_step)
     turn = 2j * math.pi * frequencies
     below = 0.5 * sum(factor * np.exp(-turn * (late - way)) for late, factor in ground.echoes)
-    spectrum = np.fft.rfft(surface, window) * below * np.exp(-turn * early * time_step)
+    spectrum = np.fft.rfft(surface, window) * below * np.exp(-turn * early)
     velocity = np.fft.irfft(spectrum, window)[:count]
     band = faded_frequency(*amplitude_spectrum(surface, time_step))
     magnification = float(np.abs(below[frequencies <= max(band, frequencies[1])]).max())
     return Deconvolved(velocity, early, magnification, band)
 
 
+def earliest(ground: Level, time_step: float) -> float:
+    """The time (s) by which the incident wave must begin before the record, in whole time steps (s)."""
+    needed = (ground.height + max(0.0, -ground.mass, -ground.stiffness)) / ground.speed
+    return time_step * math.ceil(needed / time_step)
+
+
 def ground_of_file(path: Path) -> DiskCase:
-    """The case of a file with other waves in place of its own, whose files need not exist yet; errors as of a case."""
+    """The case of a file without loads, static stage and holes; its name says that it had holes.
+
+    Other waves take the place of its own, whose files need not exist yet. Errors as of a case.
+    """
     data = parsed(path.read_text(encoding="utf-8-sig"))
+    holes = data.pop("hole", [])
+    for name in ("load", "static"):
+        data.pop(name, None)
     data["wave"] = {name: {"type": "cosine", "amplitude": 1.0, "period": 1.0} for name in data.get("wave", {})}
-    case = loads(tomli_w.dumps(data), path.parent, path.stem)
+    name = path.stem if not holes else f"{path.stem} without its hole{'s' if len(holes) > 1 else ''}"
+    case = loads(tomli_w.dumps(data), path.parent, name)
     return as_kind(case, DiskCase, "is the case of a bar, deconvolution is for disks", str(path))
 
 
-def below(case: DiskCase, surface: Recorded) -> Recorded:
-    """The incident motion at the bottom of a case whose surface moves as a component of a record."""
-    step = surface.time_step
-    found, rates = (deconvolve(case, each, step) for each in (surface.velocity, surface.acceleration))
-    early = surface.time[0] - step * np.arange(found.early, 0, -1)
-    done = f"deconvolution: the surface of {case.name} taken down to its {SIDE}; {found.sentence}"
-    return replace(
-        surface,
-        time=np.concatenate([early, surface.time]),
-        acceleration=rates.velocity,
-        velocity=found.velocity,
-        displacement=integrated(found.velocity, step),
-        steps=(*surface.steps, done),
-    )
+def below(case: DiskCase, surfaces: Sequence[Recorded], kinds: Sequence[Motion | None]) -> list[Recorded]:
+    """The incident motions at the bottom of a case whose surface moves as components of a record, in step.
+
+    kinds : of wave that each component becomes; None for that of the bottom side. All motions begin at one time.
+    Raises CaseError as `deconvolve`.
+    """
+    grounds = {kind: level_ground(case, kind) for kind in dict.fromkeys(kinds)}
+    ways = [grounds[kind] for kind in kinds]
+    first = min(float(each.time[0]) for each in surfaces)
+    lead = max(earliest(ground, each.time_step) for ground, each in zip(ways, surfaces, strict=True))
+    shift = f"waves begin {lead:.4g} s before the record: the surface moves {lead:.4g} s later than recorded"
+    motions = []
+    for surface, ground in zip(surfaces, ways, strict=True):
+        step, early = surface.time_step, lead + float(surface.time[0]) - first
+        found, rates = (incident_below(ground, each, step, early) for each in (surface.velocity, surface.acceleration))
+        done = f"deconvolution: ground of {case.name}, from its surface down to its {SIDE}; {found.sentence}"
+        motions.append(
+            replace(
+                surface,
+                time=first - lead + step * np.arange(len(found.velocity)),
+                acceleration=rates.velocity,
+                velocity=found.velocity,
+                displacement=integrated(found.velocity, step),
+                steps=(*surface.steps, done, shift),
+            )
+        )
+    return motions

@@ -76,7 +76,7 @@ def test_the_deconvolved_surface_comes_back(lab, tmp_path, below: dict, half_mas
     time = step * np.arange(1600)
     record = column({}, PULSE).wave["w"].velocity(time)
     found = deconvolve(column(below, PULSE, half_mass=half_mass), record, step)
-    delayed = np.concatenate([np.zeros(found.early), record])
+    delayed = np.concatenate([np.zeros(round(found.early / step)), record])
     path = tmp_path / "below.txt"
     np.savetxt(path, np.column_stack([step * np.arange(len(found.velocity)), found.velocity]))
     times, moved = surface(lab, column(below, {"type": "file", "path": str(path)}, half_mass=half_mass))

@@ -14,7 +14,7 @@ from dembound.gauge.estimates import FEWEST
 from dembound.gauge.reading.signal import evenly
 from dembound.records.channel import Channel, Quantity
 from dembound.table import LARGEST, SMALLEST
-from dembound.waves.unit_names import unit_named
+from dembound.waves.unit_names import Named, unit_named
 
 MOTIONS: dict[str, Quantity] = {
     "accelerations": "acceleration",
@@ -121,8 +121,8 @@ class Source:
             self.remarks.append(f"{len(found) - count} numbers behind the {count} that the header states are left out")
         return _sound(np.array(found[:count]))
 
-    def measured(self, text: str) -> tuple[Quantity, float]:
-        """Quantity and size in SI of a unit in the header, or of the unit that is given instead.
+    def measured(self, text: str) -> Named:
+        """The unit of a text in the header, or that which is given instead.
 
         Raises Flaw if none of both is one of a motion.
         """
@@ -140,7 +140,7 @@ class Source:
             raise Flaw(f"states {said}; give it by --unit: {USUAL}")
         if stated.quantity not in MOTIONS:
             raise Flaw(f"has {stated.quantity} ({text.strip()}), must have {' or '.join(MOTIONS)}")
-        return MOTIONS[stated.quantity], stated.size
+        return stated
 
     def evenly(self, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Times (k,) s and values at even times; raises Flaw for times that do not increase or have gaps."""
@@ -170,7 +170,7 @@ class Source:
     def channel(
         self,
         component: str,
-        unit: tuple[Quantity, float],
+        unit: Named,
         numbers: np.ndarray,
         time_step: float,
         begin: float = 0.0,
@@ -186,7 +186,7 @@ class Source:
 
         Raises Flaw for too few samples, samples that are not finite, and a time step that is not positive.
         """
-        quantity, size = unit
+        quantity, size, spelled = MOTIONS[unit.quantity], unit.size, unit.spelled.strip()
         if len(numbers) < FEWEST:
             raise Flaw(f"has {len(numbers)} samples, must have {FEWEST} or more")
         if not SMALLEST <= time_step <= LARGEST:
@@ -194,13 +194,13 @@ class Source:
         values = size * _sound(numbers)
         stated, rounding = _with_rounding(peak)
         if stated is None:
-            return Channel(component, quantity, values, time_step, begin)
+            return Channel(component, quantity, values, time_step, begin, unit=spelled)
         found = float(np.abs(numbers).max()) if found is None else found
         if abs(found - stated) > PEAK_TOLERANCE * stated + rounding:
             states, have = (f"{size * each:.4g} {SI[quantity]}" for each in (stated, found))
             name = component or quantity
             self.remarks.append(f"{name}: the header states a peak of {states}, the samples have {have}")
-        return Channel(component, quantity, values, time_step, begin, size * stated)
+        return Channel(component, quantity, values, time_step, begin, size * stated, spelled)
 
 
 def _sound(numbers: np.ndarray) -> np.ndarray:

@@ -1,6 +1,7 @@
 """Columns of numbers in text files with a header, as spreadsheets and programs write them.
 
-A column of times and one or more of values, or values alone and the time step in the header, as "dt = 0.01 s".
+A column of times and one or more of values, or values alone and the time step or the sampling rate in the header, as
+"dt = 0.01 s" or "100 samples/s".
 """
 
 import re
@@ -23,6 +24,13 @@ STEP = re.compile(
     re.IGNORECASE,
 )
 """The time step in a header, its unit before or behind it."""
+
+RATE = re.compile(
+    r"\b(?:sampl(?:ing|e)(?: rate| frequency)?|fs)\b\s*"
+    rf"(?:[\[(]hz[\])]\s*[=:,]?\s*({DECIMAL})|[=:,]?\s*({DECIMAL})\s*hz\b)|({DECIMAL})\s*(?:samples\s*(?:/|per)\s*s(?:ec(?:ond)?)?\b|sps\b)",
+    re.IGNORECASE,
+)
+"""The sampling rate in a header, Hz or samples/s."""
 
 MOST_UNNAMED = 4
 """Columns that a file without their names may have; more of them are rather one series in lines."""
@@ -60,7 +68,10 @@ def _of_one_column(source: Source) -> Channel:
     header = "\n".join(source.lines[:first])
     values = np.array([float(source.lines[index].strip()) for index in numbers if index >= first])
     if (step := _step(header)) is None:
-        raise Flaw('has one column and states no time step, must have a line such as "dt = 0.01 s" above the values')
+        raise Flaw(
+            "has one column and states no time step, must have a line above the values such as "
+            '"dt = 0.01 s" or "sampling: 100 Hz"'
+        )
     return source.channel("", source.measured(_only_unit(header)), values, step)
 
 
@@ -112,11 +123,14 @@ def _only_unit(header: str) -> str:
 
 def _step(header: str) -> float | None:
     """The time step in a header, s; None without one. Raises Flaw for one that is not positive."""
-    found = STEP.search(header)
-    if found is None:
+    if found := STEP.search(header):
+        unit = (found[1] or found[3] or "s").lower()
+        step = float(found[2]) * (1e-3 if unit.startswith("m") else 1.0)
+    elif found := RATE.search(header):
+        rate = float(next(filter(None, found.groups())))
+        step = 1.0 / rate if rate else 0.0
+    else:
         return None
-    unit = (found[1] or found[3] or "s").lower()
-    step = float(found[2]) * (1e-3 if unit.startswith("m") else 1.0)
     if not SMALLEST <= step <= LARGEST:
         raise Flaw(f"has a time step of {step:g} s, must be positive")
     return step

@@ -5,6 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dembound.exact.column import Column, Layer
+from dembound.records.formats import read_record
+from dembound.records.processing import processed, usual
+from dembound.studies.deconvolution import ground_of_file, level_ground
 from dembound.waves.file_wave import FileWave
 
 STEP = 0.01
@@ -79,41 +83,64 @@ def test_what_does_not_fit_is_refused_and_nothing_written(dembound, recorded, tm
     assert [path.name for path in tmp_path.iterdir()] == ["record.csv"]
 
 
-def test_a_surface_record_is_taken_down_through_the_ground_of_a_case(dembound, tmp_path) -> None:
-    """The case may name the wave that is still to be written; the incident wave begins before the record."""
-    time = STEP * np.arange(4001)
-    motion = np.exp(-(((time - 20.0) / 2.0) ** 2)) * np.sin(2.0 * np.pi * 2.0 * (time - 20.0))
-    np.savetxt(tmp_path / "top.csv", np.column_stack([time, motion]), "%.9g", ",", header="time (s),a (m/s²)")
-    (tmp_path / "soil.toml").write_text(
-        """
+SOIL = """
 [packing]
 pattern = "A"
-size = [2.0, 20.0]
+size = [20.0, 20.0]
 radius = 0.5
 [material]
 density = 1900.0
 p_wave_speed = 300.0
 fric = 0.5
+[[hole]]
+name = "tunnel"
+type = "circle"
+centre = [10.0, 10.0]
+radius = 3.0
+[[load]]
+name = "inside"
+hole = "tunnel"
+pressure = 1e3
+wave = "across"
 [boundary.left]
-type = "periodic"
+type = "free_field"
 [boundary.right]
-type = "periodic"
+type = "free_field"
 [boundary.bottom]
 type = "viscous_input"
+half_mass = true
 rock = {density = 2400.0, p_wave_speed = 1100.0, s_wave_speed = 672.0}
-wave_s = "below"
-[wave.below]
+wave_s = "across"
+wave_p = "up"
+[wave.across]
 type = "file"
-path = "below.csv"
+path = "rock_NS.csv"
+[wave.up]
+type = "file"
+path = "rock_EW.csv"
 [run]
 duration = 10.0
-""",
-        encoding="utf-8",
-    )
-    answer = dembound("wave", "top.csv", "-o", "below.csv", "--deconvolve", "soil.toml")
+"""
+
+
+def test_a_surface_record_is_taken_down_in_step(dembound, recorded, tmp_path) -> None:
+    """Both waves begin together: S waves in an earlier time than P waves need would come out of step."""
+    (tmp_path / "soil.toml").write_text(SOIL, encoding="utf-8")
+    options = ("-o", "rock.csv", "--deconvolve", "soil.toml")
+    answer = dembound("wave", recorded, *options)
+    assert (answer.code, answer.err.count("--as s --as p")) == (2, 1)
+    answer = dembound("wave", recorded, *options, "--as", "s", "--as", "p")
     assert answer.code == 0, answer.err
-    assert "the surface of soil taken down to its bottom; the incident wave has up to" in answer.out
-    times, velocities = FileWave(type="file", path=str(tmp_path / "below.csv")).ends()[1][1:]
-    assert times == pytest.approx(40.0 + STEP * np.ceil(20.0 / 212.1 / STEP))
-    assert abs(velocities) < 1e-6
-    assert dembound("wave", "top.csv", "--deconvolve", "none.toml").err == "--deconvolve: no file none.toml\n"
+    assert "ground of soil without its hole, from" in answer.out
+    assert "waves begin 0.1 s before the record: the surface moves 0.1 s later than recorded" in answer.out
+    times = STEP * np.arange(4011)
+    for channel, kind in zip(read_record(recorded).channels, ("s", "p"), strict=True):
+        surface = processed(channel, usual(40.0)).velocity
+        wave = FileWave(type="file", path=str(tmp_path / f"rock_{channel.component}.csv"), interpolation="lines")
+        ground = level_ground(ground_of_file(tmp_path / "soil.toml"), kind)
+        column = Column([Layer(ground.height, 1900.0, ground.speed), Layer(1.0, 1900.0, ground.alpha * ground.speed)])
+        moved = column.history(wave.velocity(times), STEP)[10:]
+        assert np.abs(moved - surface).max() < 1e-3 * np.abs(surface).max()
+    for wrong in (("--as", "s"), ("--as", "s", "--as", "p", "--component", "NS")):
+        assert "--as: must be given" in dembound("wave", recorded, *options, *wrong).err
+    assert dembound("wave", recorded, "--deconvolve", "none.toml").err == "--deconvolve: no file none.toml\n"

@@ -19,7 +19,7 @@ def test_it_moves_the_surface_as_given(alpha: float) -> None:
     """Of stiffer rock at most half of the surface's amplitude comes in, of softer one up to half over α."""
     found = incident_below(Level(29.0, 210.0, alpha), SURFACE, STEP)
     column = Column([Layer(29.0, 1900.0, 210.0), Layer(1.0, 1900.0, alpha * 210.0)])
-    delayed = np.concatenate([np.zeros(found.early), SURFACE])
+    delayed = np.concatenate([np.zeros(round(found.early / STEP)), SURFACE])
     assert np.abs(column.history(found.velocity, STEP) - delayed).max() < 1e-6
     assert found.magnification == pytest.approx(0.5 * max(1.0, 1.0 / alpha), rel=1e-2)
     assert f"up to {found.magnification:.3g} times" in found.sentence

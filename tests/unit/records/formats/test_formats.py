@@ -131,6 +131,12 @@ def test_a_wrong_peak_in_the_header_is_remarked_on(tmp_path):
     assert read_record(changed(tmp_path, "sample.v1", ("-1.2345670", "    -1.235"))).remarks == ()  # rounded
 
 
+@pytest.mark.parametrize("stated", ["sampling: 200 Hz", "200 samples/s", "Sampling rate (Hz): 200", "fs = 200 Hz"])
+def test_a_sampling_rate_takes_the_place_of_the_time_step(tmp_path, stated):
+    (channel,) = read_record(changed(tmp_path, "sample_step.txt", ("dt = 5 ms", f"corner 25 Hz, {stated}"))).channels
+    assert (channel.time_step, channel.unit) == (0.005, "cm/s²")
+
+
 def test_a_given_unit_replaces_one_of_the_same_quantity(tmp_path):
     without = changed(tmp_path, "sample_step.txt", ("[cm/s²]", ""))
     assert refusal(without) == (
