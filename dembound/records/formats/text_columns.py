@@ -27,7 +27,8 @@ STEP = re.compile(
 
 RATE = re.compile(
     r"\b(?:sampl(?:ing|e)(?: rate| frequency)?|fs)\b\s*"
-    rf"(?:[\[(]hz[\])]\s*[=:,]?\s*({DECIMAL})|[=:,]?\s*({DECIMAL})\s*hz\b)|({DECIMAL})\s*(?:samples\s*(?:/|per)\s*s(?:ec(?:ond)?)?\b|sps\b)",
+    rf"(?:[\[(]hz[\])]\s*[=:,]?\s*({DECIMAL})|[=:,]?\s*({DECIMAL})\s*hz\b)"
+    rf"|({DECIMAL})\s*(?:samples\s*(?:/|per)\s*s(?:ec(?:ond)?)?\b|sps\b)",
     re.IGNORECASE,
 )
 """The sampling rate in a header, Hz or samples/s."""
