@@ -114,12 +114,17 @@ def _name_axes(figure: Figure, panels: np.ndarray, quantity: Quantity, columns: 
     """Write quantity, component and unit on the axes of the panels (rows, columns)."""
     sense, unit = SENSES.get(quantity, ""), UNITS[quantity][columns[0]]
     shown = f"{quantity} {' and '.join(map(direction, columns))}"
+    name_columns(panels, columns)
+    figure.supylabel(f"{shown if len(columns) == 1 else quantity}{sense} ({unit})", fontsize=10)
+    figure.suptitle(f"{shown.capitalize()} at the monitors", fontsize=11)
+
+
+def name_columns(panels: np.ndarray, columns: Sequence[int]) -> None:
+    """Write its direction beside each of the panels (rows, columns) where they show several."""
     if len(columns) > 1:
         for row in panels:
             for panel, column in zip(row, columns, strict=True):
                 panel.set_ylabel(direction(column), fontsize=9)
-    figure.supylabel(f"{shown if len(columns) == 1 else quantity}{sense} ({unit})", fontsize=10)
-    figure.suptitle(f"{shown.capitalize()} at the monitors", fontsize=11)
 
 
 def twin_of(monitor: str) -> str:

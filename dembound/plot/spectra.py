@@ -17,6 +17,7 @@ from dembound.plot.histories import (
     chosen_monitors,
     direction,
     monitor_title,
+    name_columns,
     shown_columns,
     twin_of,
 )
@@ -96,7 +97,7 @@ def plot_fourier(
     return _figure(
         runs, quantity, monitors, component, curve, f"Fourier spectra of the {quantity} at the monitors",
         "frequency (Hz)",
-        lambda column: f"Fourier amplitude of the {quantity}{_along(quantity, column)} ({UNITS[quantity][column]}·s)",
+        lambda along, unit: f"Fourier amplitude of the {quantity}{along} ({unit}·s)",
     )  # fmt: skip
 
 
@@ -142,7 +143,7 @@ def plot_transfer(
     return _figure(
         runs, quantity, shown, component, curve, f"Transfer functions of the {quantity} to the monitors",
         "frequency (Hz)",
-        lambda column: f"amplitude over that of {below}, {quantity}{_along(quantity, column)} (–)",
+        lambda along, _: f"amplitude over that of {below}, {quantity}{along} (–)",
     )  # fmt: skip
 
 
@@ -171,7 +172,7 @@ def plot_response(
 
     figure = _figure(
         runs, "velocity", monitors, component, curve, "", "period (s)",
-        lambda column: f"pseudo-acceleration {direction(column)}, 5 % damping (m/s²)",
+        lambda along, _: f"pseudo-acceleration{along}, 5 % damping (m/s²)",
     )  # fmt: skip
     begin = with_unit(max(begins), "s", digits=2)
     figure.suptitle(f"Response spectra of the monitors, from {begin} on: eight samples in a period", fontsize=11)
@@ -186,9 +187,12 @@ def _figure(
     curve: CurveOf,
     title: str,
     along: str,
-    label: Callable[[int], str],
+    label: Callable[[str, str], str],
 ) -> Figure:
-    """A panel for each monitor and component with the lines of all runs, on logarithmic axes."""
+    """A panel for each monitor and component with the lines of all runs, on logarithmic axes.
+
+    label : text beside the panels, from the direction after a blank, empty where panels have one each, and the unit.
+    """
     histories = [read_histories(path, quantity) for path in runs]
     shown = chosen_monitors(runs, histories, monitors)
     columns = [0] if quantity == "stress" else shown_columns(_those(histories, shown), component)
@@ -204,12 +208,11 @@ def _figure(
     for row, name in zip(panels, shown, strict=True):
         place = monitor_title(name, [run[name] for run in histories if name in run])
         row[0].set_title(place, loc="left", fontsize=9, pad=3)
-    for panel, column in zip(panels[-1], columns, strict=True):
+    for panel in panels[-1]:
         panel.set_xlabel(along)
-        if len(columns) > 1:
-            panel.set_title(label(column), loc="right", fontsize=8)
-    if len(columns) == 1:
-        figure.supylabel(label(columns[0]), fontsize=10)
+    has_one = len(columns) == 1 and quantity != "stress"  # which is along the bar
+    figure.supylabel(label(f" {direction(columns[0])}" if has_one else "", UNITS[quantity][columns[0]]), fontsize=10)
+    name_columns(panels, columns)
     figure.suptitle(title, fontsize=11)
     outside_legend(figure, panels.flat, columns=3)
     return figure
@@ -259,11 +262,6 @@ def on_logarithmic_axes(panels: np.ndarray) -> None:
 def _those(histories: Sequence[Histories], names: Sequence[str]) -> list[Histories]:
     """For each run the histories of the named monitors that it has."""
     return [{name: run[name] for name in names if name in run} for run in histories]
-
-
-def _along(quantity: Quantity, column: int) -> str:
-    """The direction of a component after a blank; empty for a stress, which is along the bar."""
-    return "" if quantity == "stress" else f" {direction(column)}"
 
 
 def _time_step(name: str, history: MonitorRecord) -> float:

@@ -22,6 +22,9 @@ where central ones lose 10 %, and finer samples miss at most 1 − cos(π/80) = 
 FEWEST_PER_PERIOD = 2
 """The same of a measured acceleration, which contains nothing of shorter periods."""
 
+LONGEST, WIDEST = 10.0, 10.0
+"""Longest period shown, s, or over the shortest if that is more: those of structures end before."""
+
 DIFFERENCES = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)
 """Weights of x(t + kh) − x(t − kh), k = 1, 2, 3, 4, over h in the slope of eighth order."""
 
@@ -40,8 +43,12 @@ class Response(NamedTuple):
 
 
 def usual_periods(samples: int, time_step: float, shortest: int = SAMPLES_PER_PERIOD) -> np.ndarray:
-    """Periods (p,) in s at equal ratios, from so many samples of a record in the shortest to its length."""
-    return np.geomspace(shortest * time_step, samples * time_step, PERIODS)
+    """Periods (p,) in s at equal ratios, from so many samples of a record in the shortest to its length, at most 10 s.
+
+    Where the shortest is above 1 s they reach to ten times it.
+    """
+    begin = shortest * time_step
+    return np.geomspace(begin, min(samples * time_step, max(LONGEST, WIDEST * begin)), PERIODS)
 
 
 def slope(values: np.ndarray, time_step: float) -> np.ndarray:

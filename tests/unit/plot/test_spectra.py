@@ -6,6 +6,7 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.plot.spectra import plot_fourier, plot_response, plot_transfer
+from dembound.plot.table import columns_of
 from dembound.results.histories import read_histories
 from dembound.spectra.fourier import fourier_spectrum, smoothed
 from dembound.spectra.response import response_spectrum, slope
@@ -52,9 +53,21 @@ def test_fourier_spectra_are_those_of_the_histories(known_run):
     assert (front.get_xscale(), front.get_yscale()) == ("log", "log")
     (legend,) = front.figure.legends
     assert legend.get_texts()[-1].get_text() == "thin: not smoothed"
-    both = plot_fourier([known_run], "both", monitors=["front"]).axes
-    labels = [f"Fourier amplitude of the velocity along {axis} (m/s·s)" for axis in "xy"]
-    assert [panel.get_title("right") for panel in both] == labels
+
+
+@pytest.mark.parametrize(
+    ("draw", "what"),
+    [
+        (plot_fourier, "Fourier amplitude of the velocity (m/s·s)"),
+        (plot_transfer, "amplitude over that of their free-field twins, velocity (–)"),
+        (plot_response, "pseudo-acceleration, 5 % damping (m/s²)"),
+    ],
+)
+def test_both_components_are_named_beside_their_panels_and_in_the_table(known_run, draw, what):
+    figure = draw([known_run], "both", monitors=["back"])
+    assert [panel.get_ylabel() for panel in figure.axes] == ["along x", "along y"]
+    heads = [head for head, _ in columns_of(figure) if head.startswith("back, ")]
+    assert heads == [f"back, small: {what}, along {axis}" for axis in "xy"]
 
 
 def test_transfer_functions_are_ratios_to_a_monitor_or_a_twin(known_run):
