@@ -1,5 +1,7 @@
 """Facts about a case of disks, in words."""
 
+import math
+
 import numpy as np
 
 from dembound.boundaries.words import side_in_words
@@ -12,7 +14,7 @@ from dembound.disks.loads import forces_of
 from dembound.disks.reports.continuum_facts import continuum_facts
 from dembound.disks.reports.incident_facts import incident_facts
 from dembound.disks.reports.summary import describe_packing, describe_side
-from dembound.disks.reports.wave_warnings import particles_per_wavelength, strong_waves
+from dembound.disks.reports.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
@@ -40,10 +42,20 @@ def disk_facts(scene: DiskScene) -> Entries:
     yield from _load_facts(scene)
     yield from _monitor_facts(scene)
     yield from _tension_facts(scene)
+    yield from _wave_facts(scene)
+
+
+def _wave_facts(scene: DiskScene) -> Entries:
+    """For each wave in use its shortest wavelength, up to which frequency disks carry it, and its joined samples."""
+    carried = highest_carried(scene)
     for name, count in particles_per_wavelength(scene).items():
         few = f"{count:.0f} particles per" if count >= 1.0 else "less than one particle per"
-        joined = case.wave[name].joined()
-        yield f"wave {name}", f"{few} shortest wavelength" + (f"; {joined}" if joined else "")
+        highest, joined = scene.case.wave[name].highest_frequency(), scene.case.wave[name].joined()
+        at = f", at {with_unit(highest, 'Hz')}" if math.isfinite(highest) else ""
+        parts = [f"{few} shortest wavelength{at}"]
+        if math.isfinite(carried):
+            parts.append(f"disks carry waves up to {with_unit(carried, 'Hz')}")
+        yield f"wave {name}", "; ".join([*parts, *([joined] if joined else [])])
 
 
 def _monitor_facts(scene: DiskScene) -> Entries:

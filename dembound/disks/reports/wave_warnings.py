@@ -113,9 +113,14 @@ def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
     }
 
 
+def highest_carried(scene: DiskScene) -> float:
+    """Frequency (Hz) up to which the disks carry waves: 20 particles in the slowest's wavelength; nan if none runs."""
+    return slowest_speed(scene.ground) / (FEWEST_PER_WAVELENGTH * scene.ground.brick.mean_diameter)
+
+
 def _too_short(scene: DiskScene, wave: Wave, count: float) -> str:
     """The problem of a wave with `count` particles in its shortest wavelength, and the share of its energy."""
-    carried = slowest_speed(scene.ground) / (FEWEST_PER_WAVELENGTH * scene.ground.brick.mean_diameter)
+    carried = highest_carried(scene)
     if count < 1.0:
         few = "has a shortest wavelength below the diameter of a particle"
     else:

@@ -34,6 +34,8 @@ def test_facts_are_those_of_the_scene(bar) -> None:
     assert facts["monitor middle"].split(" at ")[1] in {
         f"({x}, {y}) m" for x in ("4.750", "5.250") for y in ("0.250", "0.750")
     }
+    # 20 disks of 0.5 m in the slowest wave, of 500 m/s
+    assert facts["wave pulse"].endswith(" shortest wavelength, at 327 Hz; disks carry waves up to 50 Hz")
     sides = facts_of(
         bar({"boundary.right": far, **{f"boundary.{side}.type": "periodic" for side in ("bottom", "top")}})
     )
