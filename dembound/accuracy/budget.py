@@ -14,6 +14,7 @@ from dembound.accuracy.cause import QUANTITIES, SIDES, Cause, Causes, Truth, sha
 from dembound.accuracy.history import Motions, loud
 from dembound.accuracy.repeat import Repeat
 from dembound.results.estimates import in_words, split_in_words
+from dembound.words import percent
 
 
 @dataclass(frozen=True)
@@ -33,11 +34,22 @@ class Share:
         """Whether the expected error or an upper value is known."""
         return math.isfinite(self.upper)
 
+    @property
+    def expected(self) -> str:
+        """The expected error as text, with >= where a cause is unknown, and ? where nothing but that is known."""
+        if not self.at_least:
+            return in_words(self.value)
+        return f">= {percent(self.value)}" if self.value > 0.0 else "?"
+
+    @property
+    def most(self) -> str:
+        """The largest possible error as text, ? where a cause is unknown."""
+        return "?" if self.at_least else in_words(self.upper)
+
     def __str__(self) -> str:
         if not self.is_known:
             return "unknown"
-        least = "at least " if self.at_least else ""
-        return f"{least}{in_words(self.value)}, {'of known causes ' if least else ''}at most {in_words(self.upper)}"
+        return f"{self.expected}, at most {self.most}"
 
 
 @dataclass(frozen=True, repr=False)

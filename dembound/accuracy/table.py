@@ -91,7 +91,7 @@ def _lines(budget: Budget, names: Sequence[str], causes: Sequence[Cause]) -> lis
         cells.append([_total(share) for share in totals])
         if of == budget.of or not has_disks:
             heads.append("at most")
-            cells.append(["?" if share.at_least else _upper(share) for share in totals])
+            cells.append([share.most if share.is_known else "-" for share in totals])
     wrapped = [textwrap.wrap(head, HEAD) for head in heads]
     deepest = max(map(len, wrapped))
     above = zip(*([""] * (deepest - len(lines)) + lines for lines in wrapped), strict=True)
@@ -119,14 +119,8 @@ def _total(share: Share) -> str:
     """A total error as text, with ≥ where a cause is unknown."""
     if not share.is_known:
         return "-"
-    if share.at_least:
-        return f">= {percent(share.value)}" if share.value > 0.0 else "?"
-    return f"<= {percent(share.upper)}" if share.upper > MUCH * share.value else in_words(share.value)
-
-
-def _upper(share: Share) -> str:
-    """How large a total may be."""
-    return in_words(share.upper) if share.is_known else "-"
+    is_wide = not share.at_least and share.upper > MUCH * share.value
+    return f"<= {percent(share.upper)}" if is_wide else share.expected
 
 
 def _at_most(totals: Sequence[Share]) -> str:

@@ -8,7 +8,6 @@ from dembound.accuracy.table import WIDTH, lines_of
 from dembound.casefile import Case
 from dembound.cli.console import out
 from dembound.cli.progress import Watching
-from dembound.results.estimates import in_words
 from dembound.words import percent, with_unit
 
 
@@ -31,10 +30,10 @@ class Table(Receiver):
     def best(self, bound: float, best: Proposal) -> None:
         """Print the choice for a bound."""
         share = best.budget.worst().share
-        numbers = f"{in_words(share.value):>9} {in_words(share.upper):>8}  {with_unit(best.cost, 's', 2):>8}   "
+        numbers = f"{share.expected:>9} {share.most:>8}  {with_unit(best.cost, 's', 2):>8}   "
         words = best.choice.name if best.choice.changes else "nothing"
         if not best.holds(bound):
-            words = f"no choice holds it, least: {words}"
+            words = f"no choice holds it, least error: {words if best.choice.changes else 'the case as it is'}"
         self._before, words = words, "the same" if words == self._before != "nothing" else words
         first = f"{percent(bound, 3):>12}  {numbers}"
         self._left.remove(bound)

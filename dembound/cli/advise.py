@@ -20,6 +20,15 @@ if TYPE_CHECKING:
     from dembound.casefile import Case
 
 
+LOWERED = {
+    "sides": 'wider ground, or sides of type = "outside"',
+    "grid": "smaller disks or cells",
+    "walls of holes": "smaller disks",
+    "time step": "a smaller time step",
+}
+"""What lowers the error by a cause by hand."""
+
+
 class Truth(StrEnum):
     """The motion with which a case is compared."""
 
@@ -179,11 +188,11 @@ def _print(line: str) -> None:
 
 def _lines(best: Proposal) -> list[str]:
     """The choice in words, with its error and cost."""
-    from dembound.results.estimates import in_words, split_in_words
+    from dembound.results.estimates import split_in_words
 
     worst = best.budget.worst()
     return [
-        f"{best.choice.name}; predicted error {in_words(worst.share.value)}, at most {in_words(worst.share.upper)} "
+        f"{best.choice.name}; predicted error {worst.share.expected}, at most {worst.share.most} "
         f"({split_in_words(worst.by)}), steps take about {with_unit(best.cost, 's', 2)}"
     ]
 
@@ -191,10 +200,18 @@ def _lines(best: Proposal) -> list[str]:
 def _missed(case: Case, found: Advice, bound: float) -> str:
     """A message that no choice keeps a bound, with the best one."""
     best = found.best[bound]
-    said = f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_lines(best)[0]}"
-    if not best.budget.worst().share.at_least:  # else no choice would do
-        said += "; --longest SECONDS tries choices that take longer"
-    return "\n".join([said, *best.choice.toml])
+    worst = best.budget.worst()
+    said = [f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_lines(best)[0]}"]
+    unknown = [cause for cause in best.budget.causes.unknown if cause.counts(best.budget.of)]
+    if worst.share.at_least:  # no choice with this cause would do
+        said += [f"not estimated, so that no bound is kept: {each.name}, {each.words}" for each in unknown]
+    else:
+        said.append("next: --longest SECONDS tries choices that take longer, and searches for a fifth of it")
+    if worst.by:
+        cause = max(worst.by, key=lambda name: worst.by[name])
+        by_hand = f"; less with {LOWERED[cause]}" if cause in LOWERED else ""
+        said.append(f"next: most is by {cause}, at {worst.monitor}{by_hand}")
+    return "\n".join([*said, *best.choice.toml])
 
 
 def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> None:

@@ -32,6 +32,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
 from dembound.motion.kind import Plan
+from dembound.words import percent
 
 LONGEST, PART = 8.0, 0.2
 """CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
@@ -41,7 +42,7 @@ PER_FACTOR, PER_REFUSED, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.02,
 """CPU seconds of counting the costs of all choices with disks of one diameter, of a choice that cannot run, of building
 one that can, of finding its error, of building it by disk, and of its companions by particle-step."""
 
-CUT = "; the search ended early, as it had taken long beside the run"
+CUT = f"; the search ended early: it may take {LONGEST:g} s, or {percent(PART)} of the run or of --longest"
 """Note on a choice that does not keep a bound, where the search ended for lack of time."""
 
 HELD = 30_000

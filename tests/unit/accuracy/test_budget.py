@@ -48,6 +48,8 @@ def test_histories_keep_their_signs_bounds_are_only_in_the_upper_value_and_what_
     assert (found.value, found.upper) == (pytest.approx(SIZE), pytest.approx(SIZE + np.hypot(0.5 * SIZE, 0.3)))
     found = budget(Cause.unknown("edge", "single disks", of_disks=True))
     assert found.total("a", "velocity", "rock").at_least
+    assert str(found.total("a", "velocity", "rock")).startswith(">= ")
+    assert str(found.total("a", "velocity", "rock")).endswith(" %, at most ?")
     assert not found.total("a", "velocity", "disks").at_least
 
 

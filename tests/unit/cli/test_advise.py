@@ -81,6 +81,7 @@ def test_a_bound_that_nothing_holds_ends_with_the_best(dembound, case, tmp_path)
         answer = dembound(command, case, *keep)
         assert answer.code == 3
         assert "bar: no choice keeps 1 %; the best of" in answer.err.replace("bar_1pct", "bar")
+        assert "next: most is by sides, at back; less with wider ground" in answer.err
     assert not (tmp_path / "results").exists()
     assert not case.with_name("bar_1pct.toml").exists()
 
