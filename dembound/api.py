@@ -1,10 +1,13 @@
 """dembound from Python: cases made of tables, runs, and their results as arrays. See docs/start/python.md."""
 
+import sys
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import takewhile
 from pathlib import Path
+from traceback import walk_stack
 from typing import Any
 
 import numba
@@ -21,10 +24,12 @@ from dembound.accuracy.proposal import Advice
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
-from dembound.errors import CaseError, DemboundError, NameMissingError, PackingError, RecordError, RunError
+from dembound.errors import CaseError, CaseWarning, DemboundError, NameMissingError, PackingError, RecordError, RunError
+from dembound.results.folder import Folder
 from dembound.results.results import Arrays, Results
 from dembound.running import Progress, resume_case, run_case
 from dembound.running.recorded import recorded_case
+from dembound.running.unfinished import left_of
 from dembound.studies import all_sides, calibration
 from dembound.studies.calibration import Calibration
 from dembound.table import Table, as_toml
@@ -36,6 +41,7 @@ __all__ = [
     "Calibration",
     "Case",
     "CaseError",
+    "CaseWarning",
     "DemboundError",
     "NameMissingError",
     "PackingError",
@@ -54,6 +60,8 @@ __all__ = [
     "resume",
     "run",
 ]
+
+warnings.simplefilter("always", CaseWarning, append=True)  # at every run, not only at the first one from a line
 
 
 def load(path: Path | str) -> Case:
@@ -109,21 +117,37 @@ def run(
 
     Parameters
     ----------
-    progress : receives progress and warnings; by default warnings are issued as Python warnings. threads : cores to
+    progress : receives progress and warnings; by default warnings are issued as Python warnings, of the category
+    CaseWarning. threads : cores to
     use, by default all; results do not depend on it.
 
     Raises CaseError if the case cannot be run, PackingError if its brick cannot be packed, RunError if the run fails.
+    A KeyboardInterrupt names the results so far and how to continue the run.
     """
-    chosen = case if isinstance(case, Case) else load(case)
-    with _threads(threads):
-        return _estimated(chosen, run_case(chosen, Path(results), progress or _Warns()))
+    chosen, told = case if isinstance(case, Case) else load(case), progress or _Warns()
+    with _threads(threads), _saying_what_is_left(Folder(Path(results), chosen.name)):
+        return _finished(chosen, run_case(chosen, Path(results), told), told)
 
 
-def _estimated(case: Case, folder: Path) -> Results:
+def _finished(case: Case, folder: Path, progress: Progress) -> Results:
     """The results of a run, after the estimate of its errors if its case requests it."""
     if failed := estimate_if_asked(case, folder):
-        warnings.warn(f"{case.name}: {failed}", stacklevel=3)
-    return Results(folder)
+        _warn(f"{case.name}: {failed}")
+    found = Results(folder)
+    if note := found.summary.get("spalls_note"):
+        progress.warned(note)
+    return found
+
+
+@contextmanager
+def _saying_what_is_left(folder: Folder) -> Iterator[None]:
+    """Inside, an interrupt has a message on the results so far and how to continue the run."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        left = left_of(folder.partial, f'dembound.resume("{folder.partial}")')
+        stop.args = (f"{folder.name}: stopped; {'; '.join(left) or 'the run had not begun'}",)
+        raise
 
 
 def estimate(results: Path | str, *, repeat: bool = False, threads: int | None = None) -> Budget:
@@ -177,9 +201,10 @@ def resume(
 
     Raises CaseError if there is nothing to continue, or a checkpoint of another version or case; else as `run`.
     """
-    with _threads(threads):
-        folder = resume_case(Path(results), until, progress or _Warns())
-        return _estimated(recorded_case(folder / "run.h5"), folder)
+    told = progress or _Warns()
+    with _threads(threads), _saying_what_is_left(Folder.of(Path(results))):
+        folder = resume_case(Path(results), until, told)
+        return _finished(recorded_case(folder / "run.h5"), folder, told)
 
 
 @contextmanager
@@ -223,7 +248,14 @@ class _Warns(Progress):
 
     def warned(self, message: str) -> None:
         """Warn."""
-        warnings.warn(message, stacklevel=2)
+        _warn(message)
+
+
+def _warn(message: str) -> None:
+    """Issue a Python warning at the line outside this package that called it."""
+    frames = (frame for frame, _ in walk_stack(sys._getframe()))
+    inside = takewhile(lambda frame: str(frame.f_globals.get("__name__")).startswith("dembound."), frames)
+    warnings.warn(message, CaseWarning, stacklevel=1 + sum(1 for _ in inside))
 
 
 def _in_toml_words(value: Any, place: str) -> Any:

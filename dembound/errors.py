@@ -96,5 +96,9 @@ class PackingError(DemboundError):
     exit_code = 4
 
 
+class CaseWarning(UserWarning):
+    """A warning about a probable mistake in a case, or about its results."""
+
+
 class UnusableTypeWarning(UserWarning):
     """A type of tables that another package registers, but that cannot be used."""

@@ -10,11 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.cause import QUANTITIES, SIDES, Cause, Causes, Truth, share_of
+from dembound.accuracy.cause import QUANTITIES, SIDES, TITLES, Cause, Causes, Truth, share_of
 from dembound.accuracy.history import Motions, loud
 from dembound.accuracy.repeat import Repeat
 from dembound.results.estimates import in_words, split_in_words
 from dembound.words import percent
+
+SHOWN = 8
+"""Number of monitors whose names Python displays."""
 
 
 @dataclass(frozen=True)
@@ -69,9 +72,11 @@ class Worst:
         return f"{self.share}{where}{f' ({split_in_words(self.by)})' if self.by else ''}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Budget:
-    """The error of a motion at its monitors.
+    """The error of a motion at its monitors, relative to the disks as the material or to the rock.
+
+    Where a function is given no truth, `of` applies: "disks" where packings are random or bonds may break, else "rock".
 
     Attributes
     ----------
@@ -87,10 +92,15 @@ class Budget:
     cpu_seconds: float = 0.0
     repeat: Repeat | None = None
 
-    def shares(self, monitor: str, quantity: str, of: Truth = "rock") -> dict[str, float]:
+    def __repr__(self) -> str:
+        names = [*list(self.motions)[:SHOWN], *["…"] * (len(self.motions) > SHOWN)]
+        worst = f"{self.worst()}; monitors: {', '.join(names)}" if names else "no monitor with known errors"
+        return f"<Budget, errors {TITLES[self.of]}: {worst}>"
+
+    def shares(self, monitor: str, quantity: str, of: Truth | None = None) -> dict[str, float]:
         """RMS errors over the RMS of the motion, by cause, without unknown causes."""
-        own = self.motions[monitor]
-        found = {cause.name: cause.share(monitor, quantity, own) for cause in self.causes.found if cause.counts(of)}
+        own, counted = self.motions[monitor], [cause for cause in self.causes.found if cause.counts(of or self.of)]
+        found = {cause.name: cause.share(monitor, quantity, own) for cause in counted}
         return {name: share for name, share in found.items() if math.isfinite(share)}
 
     def total(self, monitor: str, quantity: str, of: Truth | None = None) -> Share:
@@ -165,7 +175,7 @@ class Budget:
         if not found:
             return Worst(Share(0.0, 0.0))
         worst = max(found, key=lambda each: each.share.upper)
-        shares = self.shares(worst.monitor, worst.quantity, of or self.of)
+        shares = self.shares(worst.monitor, worst.quantity, of)
         return Worst(worst.share, worst.monitor, worst.quantity, {c: each for c, each in shares.items() if each > 0.0})
 
     def correction(self, monitor: str, quantity: str) -> np.ndarray | None:
@@ -210,4 +220,4 @@ class Budget:
             both = {of: self.total(name, quantity, of) for of in ("disks", "rock")}  # type: ignore[arg-type]
             if both["rock"].is_known:
                 totals = {of: {"value": s.value, "upper": s.upper} for of, s in both.items() if s.is_known}
-                yield quantity, {"of": totals, "by": self.shares(name, quantity)}
+                yield quantity, {"of": totals, "by": self.shares(name, quantity, "rock")}

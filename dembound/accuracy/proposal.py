@@ -10,7 +10,7 @@ from dembound.accuracy.choice import Choice
 from dembound.casefile import Case
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Proposal:
     """A choice for a case; without changes it is the case itself.
 
@@ -20,6 +20,9 @@ class Proposal:
     choice: Choice
     cost: float
     budget: Budget
+
+    def __repr__(self) -> str:
+        return f"<{self.choice.name}, {self.cost:.2g} s of CPU time: {self.budget.worst()}>"
 
     @property
     def case(self) -> Case:
@@ -42,15 +45,20 @@ class Receiver:
         """The best choice for an error bound is known; bounds come from the largest to the smallest."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Advice:
     """Choices advised for a case.
 
     given : the case as it is. best : by error bound the cheapest choice that keeps it, or else the choice with the
-    smallest error. tried : number of choices whose error was computed. cpu_seconds : CPU time of the search, s.
+    smallest error. Each is a proposal with ``case``, ``cost`` (CPU seconds of its steps) and ``budget``. tried : number
+    of choices whose error was computed. cpu_seconds : CPU time of the search, s.
     """
 
     given: Proposal
     best: Mapping[float, Proposal]
     tried: int
     cpu_seconds: float = 0.0
+
+    def __repr__(self) -> str:
+        best = (f"\n  {bound:g}: {proposal}" for bound, proposal in self.best.items())
+        return f"<Advice, given: {self.given}{''.join(best)}>"

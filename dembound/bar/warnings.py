@@ -26,7 +26,7 @@ from dembound.casefile.unlikely import unlikely_in
 from dembound.meanings import fading
 from dembound.words import percent, with_unit
 
-_TOO_LARGE = "solids break or yield at a tenth of 3 %, are the units right?"
+_TOO_LARGE = "solids break or yield at some 0.3 %, are the units right?"
 
 LIKELY = (100.0, 10_000.0)
 """Slowest and fastest waves (m/s) of bars of solids, from soft rubber to hard ceramics."""
@@ -93,10 +93,10 @@ def _large_strains(case: BarCase) -> Iterator[str]:
         yield from large_velocity(f"bar.range.{given.name}.velocity", abs(given.velocity), part.speed, _TOO_LARGE)
     for load in case.load if np.isinf(bar.least_strength) else ():  # others are compared with the strength
         stress = abs(load.pressure) * case.wave[load.wave].peak()
-        yield from large_stress(f"load.{load.name}", "its pressure", stress, bar.end(load.side).modulus, _TOO_LARGE)
+        yield from large_stress(f"load.{load.name}: its pressure", stress, bar.end(load.side).modulus, _TOO_LARGE)
     for part in bar.parts:
         if part.strength is not None:
-            yield from large_stress("bar.strength", "it", part.strength, part.modulus, _TOO_LARGE)
+            yield from large_stress("bar.strength:", part.strength, part.modulus, _TOO_LARGE)
 
 
 def _fades(case: BarCase) -> Iterator[str]:

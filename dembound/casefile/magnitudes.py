@@ -198,15 +198,15 @@ def fast_ground(place: str, wave: Wave) -> Iterator[str]:
         )
 
 
-def large_stress(place: str, what: str, stress: float, modulus: float, reason: str) -> Iterator[str]:
+def large_stress(what: str, stress: float, modulus: float, reason: str) -> Iterator[str]:
     """A warning about a stress (Pa) that is a large part of the stiffness (Pa).
 
-    place : table. what : the stress in words; reason : words on the likely mistake.
+    what : the table and the stress in words, such as "load.blow: its pressure"; reason : words on the likely mistake.
     """
     if stress > LARGE_STRAIN * modulus:
         yield (
-            f"{place}: {what}, {with_unit(stress, 'Pa')}, is {percent(stress / modulus)} of the stiffness, "
-            f"{with_unit(modulus, 'Pa')}, and so are strains; {reason}"
+            f"{what} is {with_unit(stress, 'Pa')}, {percent(stress / modulus)} of the stiffness, "
+            f"{with_unit(modulus, 'Pa')}, so strains reach {percent(stress / modulus)}; {reason}"
         )
 
 

@@ -30,13 +30,13 @@ def load(path: Path, schemas: Sequence[Schema]) -> Case:
     try:
         text = path.read_text(encoding="utf-8-sig")  # without the byte order mark of some editors
     except FileNotFoundError:
-        raise CaseError(["no such file"], str(path)) from None
+        raise CaseError([f"{path}: no such file"]) from None
     except UnicodeDecodeError:
-        raise CaseError(["is not a text file in UTF-8"], str(path)) from None
+        raise CaseError([f"{path}: is not a text file in UTF-8"]) from None
     except OSError as error:
-        raise CaseError([f"cannot be read: {error.strerror}"], str(path)) from None
+        raise CaseError([f"{path}: cannot be read: {error.strerror}"]) from None
     except ValueError:
-        raise CaseError(["is not the path of a file"], str(path)) from None
+        raise CaseError([f"{path}: is not the path of a file"]) from None
     return of_tables(parsed(text, str(path)), text, schemas, path.parent, path.stem, str(path))
 
 
@@ -142,7 +142,7 @@ class _Reader:
     def _named(self, path: str, raw: object, kind: TypeAdapter[Any]) -> dict[str, Any]:
         """A table of named tables."""
         if not isinstance(raw, Mapping):
-            self.problems.append(f"{path}: is {show(raw)}, must be made of tables [{path}.NAME]")
+            self.problems.append(f"{path}: is {show(raw)}, must be tables by name, [{path}.NAME] in TOML")
             return {}
         self.problems += [f"{path}.{name}: has control characters in its name" for name in raw if CONTROL.search(name)]
         return {name: self._valid(f"{path}.{name}", table, kind) for name, table in raw.items()}
@@ -166,6 +166,6 @@ class _Reader:
     def _numbered(self, key: str, raw: object, kind: TypeAdapter[Any]) -> tuple[Any, ...]:
         """The tables of a list, counted from 1 in error texts."""
         if not isinstance(raw, list):
-            self.problems.append(f"{key}: is {show(raw)}, must be made of tables [[{key}]]")
+            self.problems.append(f"{key}: is {show(raw)}, must be a list of tables, each [[{key}]] in TOML")
             return ()
         return tuple(self._valid(path, table, kind) for path, table in zip(places(key, raw), raw, strict=True))

@@ -213,15 +213,17 @@ def _run(
 def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:
     """Run work on the results in a folder, with its progress; if it ends early, print its partial results."""
     from dembound.cli.progress import progress_of
+    from dembound.running.unfinished import left_of
 
+    left = partial(left_of, folder.partial, f"dembound resume {folder.partial}")
     try:
         with progress_of(folder.name) as progress:
             return work(progress)
     except KeyboardInterrupt as stop:
-        err.print(f"{folder.name}: stopped; {'; '.join(_left_of(folder.partial)) or 'the run had not begun'}")
+        err.print(f"{folder.name}: stopped; {'; '.join(left()) or 'the run had not begun'}")
         raise typer.Exit(exit_code_of(stop)) from None
     except OSError as error:
-        for line in _left_of(folder.partial):
+        for line in left():
             error.add_note(f"{folder.name}: {line}")
         raise
 
@@ -235,11 +237,3 @@ def _print_results(folder: Path, *, estimated: bool) -> None:
         out.print(line)
     if estimated:
         print_estimate(folder)
-
-
-def _left_of(folder: Path) -> list[str]:
-    """The results in the partial folder of a run that ended early, and how to continue it."""
-    left = [f"histories so far are in {folder}"] if (folder / "run.h5").is_file() else []
-    if (folder / "checkpoint.npz").is_file():
-        left.append(f"to continue: dembound resume {folder}")
-    return left

@@ -24,7 +24,7 @@ COMPONENTS = ("x", "y", "rotation")
 
 
 _sound: set[tuple[int, ...]] = set()
-"""States (`_state_of`) of records that this process has checked for damage, without members of their collections."""
+"""States (`state_of`) of records that this process has checked for damage, without members of their collections."""
 
 _own: set[tuple[int, ...]] = set()
 """States of records that this process has written, which are not checked."""
@@ -39,7 +39,7 @@ def open_record(path: Path) -> Iterator[h5py.File]:
     `Members`.
     """
     with reading(path) as file:
-        state = _state_of(path)
+        state = state_of(path)
         if state not in _sound and state not in _own:
             require_structure(file)
             require_equal_rows(file)
@@ -50,10 +50,10 @@ def open_record(path: Path) -> Iterator[h5py.File]:
 
 def trust(path: Path) -> None:
     """Note that a record is sound, as this process has written it just now."""
-    _own.add(_state_of(path))
+    _own.add(state_of(path))
 
 
-def _state_of(path: Path) -> tuple[int, ...]:
+def state_of(path: Path) -> tuple[int, ...]:
     """Identity of a file in its present state, for any name: device, number, time of change (ns) and size."""
     status = path.stat()
     return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
@@ -186,7 +186,7 @@ class Snapshots(Sequence["h5py.Group"]):
     def __init__(self, file: h5py.File, names: list[str] | None = None) -> None:
         self._file = file
         path = Path(file.filename)
-        self._is_own = path.is_file() and _state_of(path) in _own
+        self._is_own = path.is_file() and state_of(path) in _own
         own: Mapping[str, h5py.Group] = file.get("snapshots", {})
         self._members = own if self._is_own else Members(file, "snapshots")
         self.names = sorted(self._members, key=int) if names is None else names

@@ -1,12 +1,14 @@
 """The results of a run as arrays, for Python: the same names as in ``run.h5`` (docs/reference/results.md)."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn, overload
 
 import h5py
 import numpy as np
 
+from dembound.errors import RecordError
 from dembound.results.named import Named, missing
 from dembound.results.reader import (
     Snapshots,
@@ -17,9 +19,40 @@ from dembound.results.reader import (
     reading,
     side_energies_of,
     snapshots_of,
+    state_of,
     text_of,
 )
-from dembound.results.summary_file import read_summary
+from dembound.results.summary_file import Entries, read_summary
+
+
+class _Record:
+    """A record that is read again and again, as long as no later run has replaced it.
+
+    That of a complete run does not change; that of another one may grow.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        with open_record(path) as file:
+            self._is_complete = bool(file.attrs.get("complete", False))
+            self._state = self._state_now()
+
+    @contextmanager
+    def opened(self) -> Iterator[h5py.File]:
+        """Open it for reading; errors as of `reading`, and RecordError if it has been replaced."""
+        with reading(self.path) as file:
+            self.require_same()
+            yield file
+
+    def require_same(self) -> None:
+        """Raise RecordError if it has been replaced."""
+        if self._state_now() != self._state:
+            own = "give runs names of their own: dembound.change(case, …, name=…)"
+            raise RecordError([f"{self.path.parent}: was replaced by a later run; {own}"])
+
+    def _state_now(self) -> tuple[int, ...]:
+        """What no other record at this place has: its state, or while it grows its number."""
+        return state_of(self.path)[: None if self._is_complete else 2]
 
 
 class Arrays(Mapping[str, np.ndarray]):
@@ -30,7 +63,7 @@ class Arrays(Mapping[str, np.ndarray]):
     attributes : attributes of the group, such as ``time`` of a snapshot in s.
     """
 
-    def __init__(self, record: Path, name: str, group: h5py.Group | None) -> None:
+    def __init__(self, record: _Record, name: str, group: h5py.Group | None) -> None:
         self._record, self._group = record, name
         self._names = [] if group is None else list(datasets_in(group))
         attributes = {} if group is None else group.attrs
@@ -39,7 +72,7 @@ class Arrays(Mapping[str, np.ndarray]):
     def __getitem__(self, name: str) -> np.ndarray:
         """The array of a name, in SI units; raises NameMissingError, a KeyError, with the existing names."""
         self._require(name)
-        with reading(self._record) as file:
+        with self._record.opened() as file:
             return file[self._group][name][:]
 
     def __iter__(self) -> Iterator[str]:
@@ -54,7 +87,7 @@ class Arrays(Mapping[str, np.ndarray]):
     def units(self, name: str) -> tuple[str, ...]:
         """The units of the columns of an array, such as x, y and rotation; errors as for the array."""
         self._require(name)
-        with reading(self._record) as file:
+        with self._record.opened() as file:
             dataset = file[self._group][name]
             parts = tuple(text_of(dataset.attrs.get("unit", "")).split(", "))
             return parts * (dataset.shape[1] if dataset.ndim > 1 else 1) if len(parts) == 1 else parts
@@ -62,7 +95,7 @@ class Arrays(Mapping[str, np.ndarray]):
     def _require(self, name: str) -> None:
         """Raise NameMissingError if there is no such array."""
         if name not in self._names:
-            raise missing("array", name, self._names, f"{self._record}, {self._group}")
+            raise missing("array", name, self._names, f"{self._record.path}, {self._group}")
 
 
 _PARTS = ("histories", "snapshots", "particles", "boundaries", "cracks", "energy", "side_energies", "laws", "summary")
@@ -72,7 +105,7 @@ _PARTS = ("histories", "snapshots", "particles", "boundaries", "cracks", "energy
 class _Snapshots(Sequence[Arrays]):
     """The snapshots of a record in the order of time, each opened when it is accessed."""
 
-    def __init__(self, record: Path, names: list[str]) -> None:
+    def __init__(self, record: _Record, names: list[str]) -> None:
         self._record, self._names = record, names
 
     @overload
@@ -83,7 +116,7 @@ class _Snapshots(Sequence[Arrays]):
 
     def __getitem__(self, number: int | slice) -> Arrays | list[Arrays]:
         """A snapshot; raises NumberMissingError, an IndexError, with the range of the existing ones."""
-        with reading(self._record) as file:
+        with self._record.opened() as file:
             found = Snapshots(file, self._names)[number]
             if isinstance(found, list):
                 return [Arrays(self._record, group.name, group) for group in found]
@@ -111,14 +144,15 @@ class Results:
     snapshots : in the order of time: ``displacement``, ``velocity`` (n, 3) and more; ``attributes["time"]`` in s.
     cracks : ``time``, ``position``, ``particles``, ``shear`` of the bonds that broke.
 
-    Raises RecordError when there is no record that can be read, and when a snapshot that cannot be read is accessed.
+    Raises RecordError when there is no record that can be read, when a snapshot that cannot be read is accessed, and
+    when anything is accessed after a later run has replaced the record.
     """
 
     def __init__(self, folder: Path | str) -> None:
         path = Path(folder)
-        self._record = path if path.suffix == ".h5" else path / "run.h5"
-        self.folder = self._record.parent
-        with open_record(self._record) as file:
+        self._record = _Record(path if path.suffix == ".h5" else path / "run.h5")
+        self.folder = self._record.path.parent
+        with self._record.opened() as file:
             self.attributes: dict[str, Any] = {name: _plain(value) for name, value in file.attrs.items()}
             self.particles = self._array(file, "particles")
             self.histories = self._arrays(file, "histories", "monitor")
@@ -146,19 +180,23 @@ class Results:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """The contents of ``summary.json``; raises CaseError for a run that is not complete, which has none."""
-        return read_summary(self.folder)
+        """The contents of ``summary.json``; raises CaseError for a run that is not complete, which has none.
+
+        A name that it does not have raises NameMissingError, a KeyError, with the existing names.
+        """
+        self._record.require_same()
+        return read_summary(self.folder, Entries)
 
     @property
     def energy(self) -> dict[str, np.ndarray]:
         """The columns (k,) of the energy ledger, and ``relative_error``; raises CaseError where there is none."""
-        with open_record(self._record) as file:
+        with self._record.opened() as file:
             return energy_of(file)
 
     @property
     def energy_units(self) -> dict[str, str]:
         """The unit of each column of `energy`; the same errors."""
-        with open_record(self._record) as file:
+        with self._record.opened() as file:
             columns = file.get("energy", {})
             return {
                 name: text_of(columns[name].attrs.get("unit", "")) if name in columns else "1"
@@ -168,7 +206,7 @@ class Results:
     @property
     def side_energies(self) -> dict[str, dict[str, np.ndarray]]:
         """Energies of every side: ``came_in``, ``absorbed`` and ``stored``, (k,) at the times of the energy ledger."""
-        with open_record(self._record) as file:
+        with self._record.opened() as file:
             return side_energies_of(file)
 
     def _array(self, file: h5py.File, name: str) -> Arrays:
@@ -178,7 +216,7 @@ class Results:
     def _arrays(self, file: h5py.File, name: str, what: str) -> Named[Arrays]:
         """The groups within a group of the record."""
         found = {key: Arrays(self._record, group.name, group) for key, group in file.get(name, {}).items()}
-        return Named(found, what, str(self._record))
+        return Named(found, what, str(self._record.path))
 
 
 def _plain(value: Any) -> Any:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from dembound.errors import CaseError, RecordError
+from dembound.results.named import missing
 from dembound.results.reader import open_record, text_of, understood
 
 FILE = "summary.json"
@@ -23,15 +24,22 @@ class Summary(dict[str, Any]):
     path: Path
 
 
-def read_json(path: Path) -> dict[str, Any]:
-    """The object in a JSON file, with all objects as `Summary`.
+class Entries(Summary):
+    """An object of a summary for users, who may have mistyped the name of an entry."""
+
+    def __missing__(self, name: str) -> Any:
+        raise missing("entry", name, self, str(self.path))
+
+
+def read_json(path: Path, kind: type[Summary] = Summary) -> dict[str, Any]:
+    """The object in a JSON file, with all objects of a kind.
 
     Raises RecordError, in one line, for any other file.
     """
     try:
         if path.stat().st_size > LARGEST:
             raise RecordError([f"{path}: is longer than {LARGEST:,} bytes, as no such file is"])
-        found = json.loads(path.read_text(encoding="utf-8"), object_hook=Summary)
+        found = json.loads(path.read_text(encoding="utf-8"), object_hook=kind)
     except (ValueError, RecursionError):
         raise RecordError([f"{path}: is damaged, no JSON"]) from None
     if not isinstance(found, Summary):
@@ -54,8 +62,8 @@ def _objects(found: Any) -> list[Summary]:
     return objects
 
 
-def read_summary(folder: Path) -> dict[str, Any]:
-    """The summary of a complete run in its folder.
+def read_summary(folder: Path, kind: type[Summary] = Summary) -> dict[str, Any]:
+    """The summary of a complete run in its folder, with all objects of a kind.
 
     Raises CaseError where there is none, RecordError as `read_json`, for a requested entry that is missing, and
     for a summary that belongs to another run than the record beside it.
@@ -63,7 +71,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
     path = folder / FILE
     if not path.is_file():
         raise CaseError([f"{path}: is missing, the run is not complete"])
-    found = read_json(path)
+    found = read_json(path, kind)
     if (record := folder / "run.h5").is_file():
         _require_same_run(found, record, path)
     return found

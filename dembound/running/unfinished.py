@@ -121,13 +121,21 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
     case = replace(_case_of(facts, path), name=results.name)
     is_complete = not path.name.endswith(PARTIAL)
     if until is None and is_complete:
-        raise CaseError([f"{path}: is complete; --until continues it to a later time"])
+        raise CaseError([f"{path}: is complete; a later time, until, continues it"])
     reached = facts["step"] * facts["time_step"] if facts["stage"] is None else 0.0
     if until is not None and until <= reached:
-        raise CaseError([f"--until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
+        raise CaseError([f"until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
     if until is not None:
         case = _lasting(case, until)
     return Unfinished(replace(case, silent=_silent(path)), results, path, facts)
+
+
+def left_of(partial: Path, command: str) -> list[str]:
+    """The results in the partial folder of a run that ended early, and the command that continues it, in words."""
+    left = [f"histories so far are in {partial}"] if (partial / "run.h5").is_file() else []
+    if (partial / FILE).is_file():
+        left.append(f"to continue: {command}")
+    return left
 
 
 def changes_since(folder: Path) -> list[str]:

@@ -43,7 +43,8 @@ class FileWave(Wave):
     """Velocities from a file, between its samples as `interpolation` says, zero outside; times count from `start`.
 
     Columns are separated by blanks, in a .csv file by commas, or by semicolons, with which numbers may have decimal
-    commas. A header line and text after # are skipped; units in the header other than s and m/s are warned of.
+    commas. A header line and text after # are skipped; other units in the header than s and m/s, or of a load Pa, N or
+    m/s² for its pressure, force or acceleration, are warned of.
 
     Notes
     -----
@@ -60,10 +61,11 @@ class FileWave(Wave):
     path: str = quantity(
         ...,
         unit="1",
-        help="text file of two columns, time (s) and velocity (m/s), relative to the folder of the case",
+        help="text file of two columns, time (s) and velocity (m/s), for a load the factor of its pressure, "
+        "force or acceleration; path relative to the folder of the case",
         min_length=1,
     )
-    scale: NonZero = quantity(1.0, unit="1", means="factor", help="factor of the file's velocities")
+    scale: NonZero = quantity(1.0, unit="1", means="factor", help="factor of the file's values")
 
     interpolation: Literal["band_limited", "lines"] | None = quantity(
         None,

@@ -1,6 +1,9 @@
 """dembound from Python: the same cases, checks and results as from files."""
 
 import re
+import signal
+import subprocess
+import sys
 import tomllib
 import warnings
 from dataclasses import replace
@@ -132,14 +135,57 @@ def test_folders_that_are_no_results_say_so(tmp_path, results) -> None:
         _ = dembound.Results(tmp_path).summary
 
 
+def test_results_that_a_later_run_replaced_say_so(tmp_path) -> None:
+    case = dembound.case("again", **TABLES)
+    first = dembound.run(case, tmp_path)
+    velocities = first.histories["middle"]
+    dembound.run(dembound.change(case, {"wave.push.amplitude": 0.1}), tmp_path)
+    for read in (
+        lambda: velocities["velocity"],
+        lambda: first.snapshots[0],
+        lambda: first.energy,
+        lambda: first.summary,
+    ):
+        with pytest.raises(dembound.RecordError, match=r"again: was replaced by a later run; give runs names of their"):
+            read()
+    assert dembound.Results(first.folder).histories["middle"]["velocity"].size > 0
+
+
+def test_warnings_come_at_every_run_unless_a_filter_says_otherwise() -> None:
+    script = "import dembound.api as api\nfor _ in range(3): api._warn('loud')"
+    for options, times in ((), 3), (("-W", "ignore"), 0):
+        done = subprocess.run([sys.executable, *options, "-c", script], capture_output=True, text=True, check=True)
+        assert done.stderr.count("<string>:2: CaseWarning: loud") == times
+
+
+def test_an_interrupted_run_names_what_continues_it(tmp_path) -> None:
+    class Stops(dembound.Progress):
+        def running(self, run, steps) -> None:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt) as stop:
+        dembound.run(dembound.case("cut", **TABLES), tmp_path, progress=Stops())
+    partial = tmp_path / "cut.partial"
+    again = f'to continue: dembound.resume("{partial}")'
+    assert str(stop.value) == f"cut: stopped; histories so far are in {partial}; {again}"
+    begun = dembound.Results(partial)
+    assert begun.histories["middle"]["velocity"].shape[1] == 3
+    assert dembound.resume(partial).attributes["complete"]
+
+
 def test_runs_are_estimated_if_their_case_asks_for_it_and_warn_as_python_does(tmp_path) -> None:
     case = dembound.case("asked", **(TABLES | {"output": TABLES["output"] | {"estimate": True}}))
-    with pytest.warns(UserWarning, match=r"^boundary\.right: sends back"):
+    with pytest.warns(dembound.CaseWarning, match=r"^boundary\.right: sends back") as warned:
         found = dembound.run(case, tmp_path)
+    assert {each.filename for each in warned} == {__file__}
     assert "middle" in found.summary["error_estimate"]["monitors"]
     longer = dembound.resume(found.folder, until=0.006)
     assert "middle" in longer.summary["error_estimate"]["monitors"]
-    assert dembound.estimate(found.folder).total("middle", "velocity").value > 0.0
+    budget = dembound.estimate(found.folder)
+    assert budget.total("middle", "velocity").value > 0.0
+    assert re.fullmatch(
+        r"<Budget, errors of the rock: .+ of the velocity at middle .*; monitors: middle>", repr(budget)
+    )
 
 
 def test_one_side_or_all_are_calibrated() -> None:
@@ -165,12 +211,13 @@ def test_the_documented_examples_run(tmp_path, monkeypatch, capsys) -> None:
 
     # half the peak of 1 m/s is there a quarter of the period of 0.08 s after 80 m at 1000 m/s
     assert float(re.search(r"after ([\d.]+) s", said[0])[1]) == pytest.approx(0.1, abs=0.001)
-    assert said[1:3] == ["0.1 m/s in, 0.100 m/s at 80 m", "1 m/s in, 1.000 m/s at 80 m"]
-    assert said[3].startswith("β_P = ")
+    assert said[1] == "spall at 439 µs, 0.905 to 0.909 m"
+    assert said[2:4] == ["0.1 m/s in, 0.100 m/s at 80 m", "1 m/s in, 1.000 m/s at 80 m"]
+    assert said[4].startswith("β_P = ")
     # the lattice delays a wave of 160 disks by (2π/160)²/24 of its way, a wavelength: the crest keeps its 1 m/s to 1 %
-    assert said[4].endswith(" m/s at 80 m under one period of a sine")
-    assert float(said[4].split()[0]) == pytest.approx(1.0, abs=0.01)
-    assert [line.split(":")[0] for line in said[5:]] == ["run.duration", "boundary.right.beta_p"]
+    assert said[5].endswith(" m/s at 80 m under one period of a sine")
+    assert float(said[5].split()[0]) == pytest.approx(1.0, abs=0.01)
+    assert [line.split(":")[0] for line in said[6:]] == ["run.duration", "boundary.right.beta_p"]
 
 
 def test_the_package_lists_what_it_has() -> None:
@@ -190,6 +237,8 @@ def test_names_that_results_do_not_have_are_answered_with_those_they_have(result
             'array: is "velocty", must be one of displacement, time, velocity (did you mean velocity?)',
         ),
         (lambda: results.particles.units("no"), 'array: is "no", must be one of '),
+        (lambda: results.summary["step"], 'entry: is "step", must be one of '),
+        (lambda: results.summary["energy"]["no"], 'entry: is "no", must be one of '),
     ):
         with pytest.raises(dembound.NameMissingError) as caught:
             ask()

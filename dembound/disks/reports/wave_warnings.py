@@ -38,8 +38,8 @@ ROTATION_MATTERS = 0.02
 """Relative change of the speed of S waves from which on there is a warning that disks do not rotate."""
 
 _TOO_LARGE = {
-    False: "the elastic law is for small ones, are the units right?",
-    True: "rock and soil break at a tenth of 3 %, are the units right?",
+    False: "the elastic law is for small strains, are the units right?",
+    True: "rock and soil break at some 0.3 %, are the units right?",
 }
 """Advice on large strains, by whether the law is history-dependent."""
 
@@ -225,10 +225,11 @@ def _large_strains(scene: DiskScene) -> Iterator[str]:
         yield from strained or fast_ground(place, wave)
     compared = scene.has_history and material.pb_ten is not None  # with the strength
     for load in () if compared else scene.case.load:
-        yield from large_stress(f"load.{load.name}", *_load_stress(scene, load), modulus, reason)
+        what, stress = _load_stress(scene, load)
+        yield from large_stress(f"load.{load.name}: {what}", stress, modulus, reason)
     for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh)):
         if strength is not None:
-            yield from large_stress(f"material.{key}", "the strength", strength, modulus, _TOO_LARGE[True])
+            yield from large_stress(f"material.{key}:", strength, modulus, _TOO_LARGE[True])
 
 
 def _rotation_held(scene: DiskScene) -> Iterator[str]:

@@ -231,9 +231,9 @@ def test_a_signal_ends_a_run_with_a_checkpoint(case, whole, tmp_path, monkeypatc
 def test_what_cannot_be_resumed_is_refused_with_the_reason(folder, tmp_path) -> None:
     with pytest.raises(CaseError, match="nothing: there is no such folder of results"):
         resume_case(tmp_path / "nothing")
-    with pytest.raises(CaseError, match=r"is complete; --until continues it"):
+    with pytest.raises(CaseError, match=r"is complete; a later time, until, continues it"):
         resume_case(folder)
-    with pytest.raises(CaseError, match=r"--until: is 0.001 s, must be after 0.02"):
+    with pytest.raises(CaseError, match=r"until: is 0.001 s, must be after 0.02"):
         resume_case(folder, until=0.001)
 
     checkpoint = (folder / "checkpoint.npz").read_bytes()

@@ -46,7 +46,7 @@ ratio = 1 | .ratio: is 1, must be less than 1
 damp = 0.0 | .damp: is 0.0, must be greater than 0
 max_steps = 0 | .max_steps: is 0, must be at least 1
 dump = 0.5 | .dump: unknown key; allowed: stress, ratio, damp, max_steps, from, boundary (did you mean damp?)
-boundary = 1 | .boundary: is 1, must be made of tables [static.boundary.NAME]
+boundary = 1 | .boundary: is 1, must be tables by name, [static.boundary.NAME] in TOML
 boundary.lefd.type = "free" | .boundary.lefd: unknown side; allowed: left, right, bottom, top (did you mean left?)
 boundary.top = {type = "free", x = 1} | .boundary.top.x: unknown key; allowed: type, artificial
 boundary.top = {type = "fixed", artificial = false} | .boundary.top.artificial: is of no use in the static stage; give i
