@@ -46,8 +46,8 @@ class Outside(Drivable):
         if self.waves and top and top.is_outside and not _goes_on("top", tables):
             yield (
                 f'boundary.top.type: is "{top.type}" at the surface of the ground, from which waves of boundary.{side} '
-                "would come back as from a free one; leave it out, or let them enter by [incident], which has no surface "
-                "there"
+                "would come back as from a free one; leave it out, or let them enter by [incident], which then has no "
+                "surface"
             )
         for other, table in across.items():
             if table and table.is_free and side in ("bottom", "top") and _has_column(tables):
