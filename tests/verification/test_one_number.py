@@ -103,7 +103,7 @@ def test_all_commands_agree(case: Case, apart: float) -> None:
 
     for name in advised.motions:
         for quantity in advised.quantities(name):
-            shares, others = own.shares(name, quantity), advised.shares(name, quantity)
+            shares, others = own.shares(name, quantity, "rock"), advised.shares(name, quantity, "rock")
             for cause in shares.keys() & others.keys():
                 assert shares[cause] == pytest.approx(others[cause], rel=apart, abs=1e-4), (name, quantity, cause)
                 if cause in quick:
@@ -135,7 +135,7 @@ def test_a_chart_gives_the_same_numbers(name: str, tmp_path: Any) -> None:
     causes = judge_of(case).of_reference(extended(case).case, motions, line.outcome.time_step)
     added = Budget(causes.motions or motions, causes, reference.of)
     for each in line.errors:
-        others, own = found.shares(each.monitor, "velocity"), added.shares(each.monitor, "velocity")
+        others, own = (budget.shares(each.monitor, "velocity", "rock") for budget in (found, added))
         # the continuum round the enlarged scene is farther away, and the monitors are where they are
         for cause in own.keys() & others.keys() - {CONTINUUM}:
             assert own[cause] == pytest.approx(others[cause], rel=0.06, abs=1e-4), (each.monitor, cause)
