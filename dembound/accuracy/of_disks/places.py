@@ -31,13 +31,14 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     cell = scene.ground.brick.mean_diameter
     own = disks[nearest(disks, place[None])[0]]
     cells = np.rint((disks - own) / cell).astype(int)
-    present = {(int(x), int(y)) for x, y in cells[(np.abs(cells) <= 2).all(axis=1)]}
+    near = np.flatnonzero((np.abs(cells) <= 2).all(axis=1))
+    disk_of = {tuple(cells[disk].tolist()): disk for disk in near}
     for patch in PATCHES:
-        middles = [shift for shift in NINE if all((int(x), int(y)) in present for x, y in patch + shift)]
+        middles = [shift for shift in NINE if all(tuple(each) in disk_of for each in (patch + shift).tolist())]
         if middles:
             break
     middle = middles[nearest(own + cell * np.array(middles), place[None])[0]]
-    return np.asarray(own + cell * (middle + patch))
+    return np.asarray(disks[[disk_of[tuple(each)] for each in (middle + patch).tolist()]])
 
 
 def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:

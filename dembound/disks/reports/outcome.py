@@ -66,8 +66,8 @@ def _even(uniformity: Mapping[str, Any]) -> str:
     own, beyond, near = (uniformity[key] for key in ("packing", "beyond", "near_holes"))
     return (
         f", within {percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
-        f"{f', {percent(beyond)} beside what the packing has by itself' if own >= SHOWN else ''}"
-        f"{f', {percent(near)} beside holes' if near is not None else ''}"
+        f"{f', {percent(beyond)} beyond what the packing has by itself' if own >= SHOWN else ''}"
+        f"{f', {percent(near)} next to holes' if near is not None else ''}"
     )
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected, too_much
+from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.matching import Held, factors_in, homogenised_beta, sent_back
 from dembound.disks.material.mirrored import continues
@@ -85,12 +86,22 @@ def _take_from_waves(scene: DiskScene) -> Iterator[str]:
             continue
         least = f", {100.0 * min(found.shares.values()):.0f} % where least" if len(found.shares) > 1 else ""
         sides = " and ".join(f"boundary.{side}" for side in found.sides)
-        upright = normal_axis(found.driven) == 1
-        cure = f'"free_field", or "outside" there and at {found.driven}' if upright else '"periodic"'
+        cure = _moves_with_waves(scene.case, found.driven)
         yield (
             f"{sides}: along wave {' and '.join(found.waves)} from {found.driven} no side moves as ground beyond it "
             f"would; at {place} about {100.0 * most:.0f} % of the velocity is wrong{least} (RMS); take {cure}"
         )
+
+
+def _moves_with_waves(case: DiskCase, driven: str) -> str:
+    """Sides along the waves of a driven side that move with them, in words; a given stress excludes some."""
+    if normal_axis(driven) == 0:
+        return '"periodic"'
+    if case.static is None or case.static.stress is None:
+        return f'"free_field", or "outside" there and at {driven}'
+    if set(case.driving[driven]) == {"p"}:
+        return '"roller", which leaves a P wave along it alone; static.stress excludes "free_field" and "outside"'
+    return '"free_field", with weight or material.locked_in in place of static.stress'
 
 
 def _hold_monitors(scene: DiskScene) -> Iterator[str]:

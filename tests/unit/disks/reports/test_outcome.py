@@ -50,7 +50,7 @@ def test_only_what_applies_is_reported() -> None:
     assert disk_outcome(elastic | {"static": pressed}) == [f"{reached} 5 m × 6.25 m{took}"]
     uneven = even | {"packing": 0.02, "beyond": 0.004, "near_holes": 0.8}
     assert disk_outcome(elastic | {"static": pressed | {"uniformity": uneven}}) == [
-        f"{reached} 5 m × 6.25 m, 0.4 % beside what the packing has by itself, 80 % beside holes{took}"
+        f"{reached} 5 m × 6.25 m, 0.4 % beyond what the packing has by itself, 80 % next to holes{took}"
     ]
     excavated = {"static": settled | {"steps": 900, "before": settled}}
     assert disk_outcome(elastic | excavated) == [
