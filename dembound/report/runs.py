@@ -12,6 +12,7 @@ from dembound.kinds import kind_of_record
 from dembound.motion.kind import Kind
 from dembound.results.reader import record_names, understood
 from dembound.results.results import Results
+from dembound.results.summary_file import read_summary
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ def _read(record: Path) -> tuple[Kind[Any, Any], Results, Mapping[str, Any]]:
     kind, results = kind_of_record(record), Results(record)
     if record.name != "run.h5" or not (record.parent / "summary.json").is_file():
         return kind, results, {}
-    summary = results.summary
+    summary = read_summary(record.parent)
     with understood(record):
         _ = summary["version"]  # which every summary has
         return kind, results, dict(summary)

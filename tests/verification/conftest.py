@@ -112,9 +112,7 @@ class Lab:
         whether there is `HOLE`.
         """
         left, bottom, right, top = box
-        sides: dict[str, Any] = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
-        if top == GROUND[1]:
-            del sides["top"]
+        sides: dict[str, Any] = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
         if wave:
             sides["bottom"][wave] = "pulse"
             words["wave"] = self.pulse(0.06)
@@ -124,6 +122,8 @@ class Lab:
             words |= {"edge_radius": 0.5}
         case = self.case(pattern, (right - left, top - bottom), **words)
         placed = {"ground.size": GROUND, "packing.origin": (left, bottom), "outside.element": 10.0}
+        if top < GROUND[1]:
+            placed["boundary.top"] = {"type": "outside"}
         return with_changes(case, placed | ({"hole": [HOLE]} if hole else {}) | (changes or {}))
 
     def scene(self, pattern: str, size: tuple[float, float], **words: Any) -> DiskScene:
