@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from dembound.casefile.disks.load import Load
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
+from dembound.holes import Hole
 from dembound.nearest import nearest
 
 NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
@@ -17,6 +19,9 @@ NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
 PATCHES = (NINE, NINE[NINE[:, 0] == 0], NINE[NINE[:, 1] == 0], np.zeros((1, 2), dtype=int))
 """Columns and rows of patches, of which the first is taken that is all disks; in bodies two disks wide the second."""
 
+ROUNDED = 1e-6
+"""Distance from the rim of a hole, over the diameter, within which a disk may be in it after rounding."""
+
 FARTHEST = 2.0
 """Cells from the middle of a patch up to which its polynomials are followed: one beyond its disks."""
 
@@ -24,11 +29,12 @@ FARTHEST = 2.0
 def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     """Places (k, 2) m of the patch of disks whose middle is nearest to a place (2,) m, in the order of `PATCHES`.
 
-    Nine disks, or three in a column or row where nine are not available, or only the nearest disk.
+    Nine disks, or three in a column or row where nine are not available, or only the nearest disk. Disks on the rim of
+    a hole are left out: where the scene is moved, rounding may put them into the hole.
     """
-    first = 0 if scene.seam is None else scene.seam.count
+    first, cell = 0 if scene.seam is None else scene.seam.count, scene.ground.brick.mean_diameter
     disks = scene.positions[first : scene.disk_count]
-    cell = scene.ground.brick.mean_diameter
+    disks = disks[~_on_rims(scene.case.hole, disks, ROUNDED * cell)]
     own = disks[nearest(disks, place[None])[0]]
     cells = np.rint((disks - own) / cell).astype(int)
     near = np.flatnonzero((np.abs(cells) <= 2).all(axis=1))
@@ -39,6 +45,15 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
             break
     middle = middles[nearest(own + cell * np.array(middles), place[None])[0]]
     return np.asarray(disks[[disk_of[tuple(each)] for each in (middle + patch).tolist()]])
+
+
+def _on_rims(holes: Sequence[Hole], disks: np.ndarray, within: float) -> np.ndarray:
+    """Mask (k,) of disks at (k, 2) m that are at most a distance (m) from a hole."""
+    beside = (disks[:, None] + within * NINE).reshape(-1, 2)
+    found = np.zeros(len(disks), dtype=bool)
+    for hole in holes:
+        found |= hole.contains(beside).reshape(-1, len(NINE)).any(axis=1)
+    return found
 
 
 def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
