@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Sequence
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.gauge.reading.scope import Columns, read_columns
+from dembound.gauge.reading.scope import BROKEN_OFF, Columns, read_columns
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
 from dembound.records.formats.source import DECIMAL, MOTIONS, NUMBER, Flaw, Source
@@ -35,9 +35,6 @@ RATE = re.compile(
 
 MOST_UNNAMED = 4
 """Columns that a file without their names may have; more of them are rather one series in lines."""
-
-BROKEN_OFF = 3
-"""Numbers above other text from which on this text is a break in the numbers, and no header."""
 
 
 class TextColumns(Format):
