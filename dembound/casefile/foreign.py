@@ -187,7 +187,7 @@ NAMES: dict[tuple[str, ...], Advice] = {
             f'there is none: with law = "linearpbond" bonds break at pb_ten or pb_coh, and runs record it{_MORE}',
         ),
     ),
-    ("layer", "layers", "soil", "strata", "zones"): (("packing", "there is one [material] for all disks"),),
+    ("layers", "soil", "strata", "stratum", "zones"): (("packing", "write [[layer]] for each, from the surface down"),),
     ("dt", "delta_t", "time_increment", "deltat"): _STEP,
     ("courant", "cfl", "timestep_factor", "safety_factor"): (("safety", "write safety, share of the stability limit"),),
     ("mass_scaling", "density_scaling", "timestep_scale", "scaling"): (

@@ -184,7 +184,7 @@ def numbered(key: str, tables: Iterable[Any]) -> Iterator[tuple[str, Any]]:
     """The valid tables of a list, each with its place, such as ``monitor[1, top]``; invalid ones are None."""
     for number, table in enumerate(tables, start=1):
         if table:
-            yield f"{key}[{number}, {table.name}]", table
+            yield f"{key}[{number}{f', {table.name}' if table.name else ''}]", table
 
 
 def show(value: object) -> str:

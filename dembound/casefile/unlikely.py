@@ -70,8 +70,8 @@ def _all_tables(case: Case) -> Iterator[tuple[str, Table]]:
     """All tables of a case, each with its place."""
     for key, value in case.tables.items():
         if isinstance(value, tuple):
-            for each in value:
-                yield from _tables_in(f"{key}.{each.name}", each)
+            for number, each in enumerate(value, start=1):
+                yield from _tables_in(f"{key}.{each.name or number}", each)
         elif isinstance(value, Mapping):
             for name, each in value.items():
                 yield from _tables_in(f"{key}.{name}", each)

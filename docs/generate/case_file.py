@@ -19,6 +19,7 @@ from dembound.casefile.bar.run import BarRun
 from dembound.casefile.chart import Chart, ChartChoice
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
+from dembound.casefile.disks.layer import Layer
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
@@ -69,6 +70,7 @@ DISKS = (
     Part("`[packing]`", packings.TYPES, packings.Packing),
     Part("`[ground]`", (Ground,), guide="tasks/absorb_waves"),
     Part("`[material]`", (Material,), guide="tasks/cracks"),
+    Part("`[[layer]]`", (Layer,)),
     Part("`[motion]`", (Motion,)),
     Part("`[reduce]`", (Reduce,), guide="evidence/reductions"),
     Part(
@@ -147,8 +149,8 @@ duration = 0.5
 - **Sizes**: numbers are 0 or between 1e-30 and 1e30; a scene has at most 5e8 disks, a random brick 1e6, a bar 2e6
   spacings, a case 1,000 monitors.
 - **Keys** without default (–) may be left out. Unknown keys and tables are refused.
-- `--set KEY=VALUE` changes a key for one command: `--set run.duration=0.2`, `--set load.blow.pressure=5e6`; loads,
-  holes and monitors go by their names or numbers.
+- `--set KEY=VALUE` changes a key for one command: `--set run.duration=0.2`, `--set load.blow.pressure=5e6`; layers,
+  loads, holes and monitors go by their names or numbers.
 - `dembound schema` writes this page for editors, which complete and check cases with it.
 - Z is Zhou et al. (2018), L is Lu & Wang (2016).
 

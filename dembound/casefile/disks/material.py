@@ -9,6 +9,9 @@ from dembound.table import Table, quantity
 
 WAVE_SPEED_KEYS = ("match", "contact_share")
 MODULI_KEYS = ("emod", "pb_emod")
+STIFFNESS_KEYS = ("p_wave_speed", "s_wave_speed", *MODULI_KEYS)
+"""Keys from which the moduli follow."""
+
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
 HISTORY_KEYS = ("locked_in", "geometry", "elastic_start")
 """Keys for history-dependent laws only."""
@@ -20,12 +23,13 @@ def with_history() -> str:
 
 
 class Material(Table):
-    """Density, and contacts and bonds by PFC's names; stiffness follows from `p_wave_speed`, or `emod` and `pb_emod`.
+    """Density, and contacts and bonds by PFC's names; stiffness follows from a wave speed, or `emod` and `pb_emod`.
 
-    A wave speed is made stiffness by Z eqs 9-11. With the law "elastic" contacts neither open nor slip, and bonds do
-    not break. "linearpbond" is PFC's: linear contacts without tension and with Coulomb friction, and parallel bonds
-    that break for good. Only history-dependent laws have `locked_in` (which needs a static stage), `geometry` and
-    `elastic_start`; `pb_ten`, `pb_coh` and `pb_fa` are for these laws and for `output.load_factor`.
+    A `p_wave_speed` is made stiffness by Z eqs 9-11; an `s_wave_speed` alone scales it so that S waves have that speed.
+    With the law "elastic" contacts neither open nor slip, and bonds do not break. "linearpbond" is PFC's: linear
+    contacts without tension and with Coulomb friction, and parallel bonds that break for good. Only history-dependent
+    laws have `locked_in` (which needs a static stage), `geometry` and `elastic_start`; `pb_ten`, `pb_coh` and `pb_fa`
+    are for these laws and for `output.load_factor`.
     """
 
     density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
@@ -46,7 +50,11 @@ class Material(Table):
         le=1.0,
     )
     s_wave_speed: float | None = quantity(
-        None, unit="m/s", means="wave speed", help="S-wave speed for the boundaries; absent: the packing's own", gt=0.0
+        None,
+        unit="m/s",
+        means="wave speed",
+        help="S-wave speed of the body if given alone, else for the boundaries only; absent: the packing's own",
+        gt=0.0,
     )
     emod: float | None = quantity(
         None, unit="Pa", means="modulus", help="modulus E_c of the contacts; 0 in pattern A only", ge=0.0
@@ -131,10 +139,11 @@ class Material(Table):
     def _problems_with_moduli(self) -> list[str]:
         """Mistakes of a material without a P-wave speed."""
         missing = [key for key in MODULI_KEYS if getattr(self, key) is None]
-        if len(missing) == 2:
-            return ["p_wave_speed: is missing; give either p_wave_speed or both emod and pb_emod"]
-        problems = [f"{key}: is missing; emod and pb_emod go together" for key in missing]
-        for key in WAVE_SPEED_KEYS:
+        by_speed = len(missing) == 2
+        if by_speed and self.s_wave_speed is None:
+            return ["p_wave_speed: is missing; give either p_wave_speed, s_wave_speed or both emod and pb_emod"]
+        problems = [] if by_speed else [f"{key}: is missing; emod and pb_emod go together" for key in missing]
+        for key in ("match",) if by_speed else WAVE_SPEED_KEYS:
             if key in self.model_fields_set:
                 problems.append(f"{key}: is only allowed together with p_wave_speed")
         return problems

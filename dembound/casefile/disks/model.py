@@ -7,6 +7,7 @@ from functools import cached_property
 from dembound.casefile.disks.floors import floors, lowered
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
+from dembound.casefile.disks.layer import Layer, bottoms
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
@@ -29,7 +30,7 @@ class DiskCase(Case):
     ----------
     ground, packing, material, motion, outside, reduce : the tables of these names.
     static, incident : the tables of these names; None: no static stage, no wave at an angle.
-    hole : in the order of the file.
+    layer : from the surface down; none: the ground is uniform. hole : in the order of the file.
     """
 
     packing: Packing
@@ -40,6 +41,7 @@ class DiskCase(Case):
     reduce: Reduce = field(default_factory=Reduce)
     incident: IncidentWave | None = None
     static: Static | None = None
+    layer: tuple[Layer, ...] = ()
     hole: tuple[Hole, ...] = ()
     load: tuple[Load, ...] = ()
     monitor: tuple[Monitor, ...] = ()
@@ -53,6 +55,21 @@ class DiskCase(Case):
     def box(self) -> Box:
         """Left, bottom, right and top (m) of the ground, or of the disks if they fill all of it."""
         return self.ground.box(self.packing)
+
+    @cached_property
+    def materials(self) -> tuple[Material, ...]:
+        """The material of each layer, from the surface down: [material] with the layer's keys; without layers one."""
+        return tuple(layer.merged(self.material) for layer in self.layer) or (self.material,)
+
+    @property
+    def joints(self) -> tuple[float, ...]:
+        """Heights y (m) of the planes between layers, from the uppermost down."""
+        return tuple(bottoms(self.layer, self.box[3])[:-1])
+
+    @property
+    def layer_names(self) -> tuple[str, ...]:
+        """The name of each layer, from the surface down: as given, or its number from 1."""
+        return tuple(layer.name or str(number) for number, layer in enumerate(self.layer, start=1))
 
     @property
     def reaches_surface(self) -> bool:

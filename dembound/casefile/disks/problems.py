@@ -18,6 +18,7 @@ from dembound.casefile.disks.floors import lowered_in, lowered_problems
 from dembound.casefile.disks.ground import Box, Ground, ground_problems, is_in, reach
 from dembound.casefile.disks.hole_problems import hole_problems
 from dembound.casefile.disks.incident import incident_problems
+from dembound.casefile.disks.layer import Layer, layer_problems
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import STRENGTH_KEYS, Material, with_history
 from dembound.casefile.disks.monitor import Monitor
@@ -49,11 +50,13 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         yield from _loaded_but_held(tables["load"], tables["motion"])
         if tables["material"]:
             yield from _nothing_to_match(tables["material"], tables["motion"])
-    if tables["packing"] and tables["material"]:
-        yield from _nothing_to_pack_with(tables["material"], tables["packing"])
+    if tables["packing"]:
+        for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
+            yield from _nothing_to_pack_with(place, table, tables["packing"])
     for key in ("hole", "load", "monitor"):
         yield from repeated_names(key, tables[key])
     yield from too_many(tables["monitor"])
+    yield from layer_problems(tables)
     ground, packing = tables["ground"], tables["packing"]
     if ground and packing:
         yield from ground_problems(ground, packing, tables["boundary"])
@@ -65,6 +68,9 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     if tables["output"] and tables["material"]:
         yield from _no_load_factor(tables["output"], tables["material"], tables["load"], "static" in given)
+        if not (LAWS[tables["material"].law].has_history or tables["output"].load_factor):
+            for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
+                yield from _no_strength(place, table)
     if tables["static"]:
         settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
         yield from static_problems(*settling, has_column=not lowered_in(tables))
@@ -83,11 +89,19 @@ def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[s
                 yield f"{place}.{load.key}: acts along {'xy'[axis]}, which motion.held holds for every particle"
 
 
-def _nothing_to_pack_with(material: Material, packing: Packing) -> Iterator[str]:
-    """Contacts without stiffness in a packing that contacts under stress hold together."""
-    key = "contact_share" if material.emod is None else "emod"
-    if packing.packed_under_stress and getattr(material, key) == 0.0:
-        yield f"material.{key}: is 0, but contacts hold pattern {packing.pattern} under stress; must be greater than 0"
+def _nothing_to_pack_with(place: str, table: Material | Layer | None, packing: Packing) -> Iterator[str]:
+    """Contacts without stiffness in a packing that contacts under stress hold together; an invalid table is None."""
+    for key in ("contact_share", "emod") if packing.packed_under_stress else ():
+        if getattr(table, key, None) == 0.0:
+            held = f"contacts hold pattern {packing.pattern} under stress"
+            yield f"{place}.{key}: is 0, but {held}; must be greater than 0"
+
+
+def _no_strength(place: str, table: Material | Layer) -> Iterator[str]:
+    """Strengths without effect."""
+    for key in (*STRENGTH_KEYS, "pb_fa"):
+        if key in table.model_fields_set:
+            yield f"{place}.{key}: is only allowed with law = {with_history()} or output.load_factor"
 
 
 def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
@@ -99,15 +113,7 @@ def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
 def _no_load_factor(
     output: Output, material: Material, loads: Sequence[Load | None], has_static: bool
 ) -> Iterator[str]:
-    """A load factor that cannot be computed, and strengths without effect.
-
-    has_static : whether there is a static stage.
-    """
-    elastic = not LAWS[material.law].has_history
-    if elastic and not output.load_factor:
-        for key in (*STRENGTH_KEYS, "pb_fa"):
-            if key in material.model_fields_set:
-                yield f"material.{key}: is only allowed with law = {with_history()} or output.load_factor"
+    """A load factor that cannot be computed; has_static : whether there is a static stage."""
     if not output.load_factor:
         return
     if not LAWS[material.law].is_linear:

@@ -5,6 +5,7 @@ from pydantic import TypeAdapter
 from dembound.casefile.chart import Chart
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
+from dembound.casefile.disks.layer import Layer
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.model import DiskCase
@@ -40,6 +41,11 @@ SCHEMA = Schema(
     side=TypeAdapter(BoundaryTable),
     optional={"incident": TypeAdapter(IncidentWave)},
     staged={"static": (TypeAdapter(Static), TypeAdapter(StaticSide))},
-    lists={"hole": TypeAdapter(HoleTable), "load": TypeAdapter(Load), "monitor": TypeAdapter(Monitor)},
+    lists={
+        "layer": TypeAdapter(Layer),
+        "hole": TypeAdapter(HoleTable),
+        "load": TypeAdapter(Load),
+        "monitor": TypeAdapter(Monitor),
+    },
     problems=problems_between,
 )

@@ -1,0 +1,143 @@
+"""The ``[[layer]]`` tables, the materials and heights that follow from them, and their mistakes."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from itertools import pairwise
+from typing import Any
+
+from pydantic import ValidationError, model_validator
+
+from dembound.casefile.disks.material import MODULI_KEYS, STIFFNESS_KEYS, WAVE_SPEED_KEYS, Material
+from dembound.casefile.messages import numbered, show
+from dembound.packings import Packing
+from dembound.packings.base import TYPED
+from dembound.table import Box, FileName, Table, quantity
+
+THINNEST = 2.0
+"""Least thickness of a layer over the mean diameter of the disks: bonds then join neighbouring layers only."""
+
+
+def _as_in_material(key: str) -> Any:
+    """The field of a layer for a key of [material], with its meaning and limits; absent: as there."""
+    field, described = Material.model_fields[key], Material.described(key)
+    limits = {name: value for each in field.metadata for name, value in asdict(each).items()}
+    said = (field.description or "").split("; absent")[0]
+    return quantity(None, unit=described["unit"], means=described["means"], help=said, **limits)
+
+
+class Layer(Table):
+    """A horizontal layer of the ground, from the surface down in the order of the file.
+
+    A key that is absent is as in [material], which gives all that has no key here. Of `p_wave_speed`, `s_wave_speed`,
+    `emod` and `pb_emod` a layer that gives one takes none from [material].
+    """
+
+    name: FileName | None = quantity(None, unit="1", help="name in results; absent: its number, from 1 at the surface")
+    thickness: float | None = quantity(
+        None, unit="m", means="length", help="thickness; the last layer may have none and goes on below", gt=0.0
+    )
+    bottom: float | None = quantity(None, unit="m", means="place", help="height y at which it ends, for thickness")
+    density: float | None = _as_in_material("density")
+    p_wave_speed: float | None = _as_in_material("p_wave_speed")
+    s_wave_speed: float | None = _as_in_material("s_wave_speed")
+    emod: float | None = _as_in_material("emod")
+    pb_emod: float | None = _as_in_material("pb_emod")
+    kratio: float | None = _as_in_material("kratio")
+    pb_kratio: float | None = _as_in_material("pb_kratio")
+    fric: float | None = _as_in_material("fric")
+    pb_ten: float | None = _as_in_material("pb_ten")
+    pb_coh: float | None = _as_in_material("pb_coh")
+    pb_fa: float | None = _as_in_material("pb_fa")
+
+    @model_validator(mode="after")
+    def _one_end(self) -> "Layer":
+        if self.thickness is not None and self.bottom is not None:
+            raise ValueError("bottom: is not allowed together with thickness; give one of them")
+        return self
+
+    @property
+    def own(self) -> dict[str, Any]:
+        """The keys of [material] that it gives."""
+        return {key: value for key, value in self.given().items() if key in Material.model_fields}
+
+    def merged(self, material: Material) -> Material:
+        """Its material: a case's [material] with the keys that it gives. Raises ValidationError for mistakes in it."""
+        own, gone = self.own, set[str]()
+        if not own.keys().isdisjoint(STIFFNESS_KEYS):
+            gone |= {*STIFFNESS_KEYS, *(() if "p_wave_speed" in own else ("match",))}
+        if not own.keys().isdisjoint(MODULI_KEYS):
+            gone |= {*WAVE_SPEED_KEYS}
+        return Material(**{key: value for key, value in material.given().items() if key not in gone} | own)
+
+
+def bottoms(layers: Sequence[Layer], surface: float) -> list[float]:
+    """Height y (m) at which each layer ends, −∞ without an end. surface : height of the free surface, m."""
+    found, top = list[float](), surface
+    for layer in layers:
+        if layer.bottom is not None:
+            top = layer.bottom
+        else:
+            top = -float("inf") if layer.thickness is None else top - layer.thickness
+        found.append(top)
+    return found
+
+
+def layer_problems(tables: Mapping[str, Any]) -> Iterator[str]:
+    """Check the layers with [material] and the ground; a table, or an entry, that is invalid on its own is None."""
+    layers, material = tables["layer"], tables["material"]
+    if material:
+        for place, layer in numbered("layer", layers):
+            yield from _problems_of_material(place, layer, material)
+    if not layers or None in layers:
+        return
+    first = dict[str, int]()
+    for number, layer in enumerate(layers, start=1):
+        name = layer.name or str(number)
+        if first.setdefault(name, number) != number:
+            yield f"layer[{number}].name: {show(name)} is taken by layer[{first[name]}]"
+    if (below := tables["boundary"].get("bottom")) is not None and below.is_periodic:
+        yield 'layer: boundary.bottom is "periodic", below which the surface follows again; layers need another side'
+    if (incident := tables["incident"]) and incident.angle != 0.0:
+        yield (
+            f"incident.angle: is {incident.angle:g}, but waves enter ground with [[layer]] straight from below only; "
+            "write 0, or leave out the layers"
+        )
+    if tables["ground"] and tables["packing"] and not ("bottom" in tables["boundary"] and below is None):
+        goes_on = below is not None and below.is_outside
+        yield from _problems_of_heights(layers, tables["packing"], tables["ground"].box(tables["packing"]), goes_on)
+
+
+def _problems_of_material(place: str, layer: Layer, material: Material) -> Iterator[str]:
+    """Mistakes of [material] with the keys of a layer, at the layer."""
+    try:
+        layer.merged(material)
+    except ValidationError as error:
+        for line in str(error.errors()[0]["ctx"]["error"]).splitlines():
+            yield f"{place}.{line}"
+
+
+def _problems_of_heights(layers: Sequence[Layer], packing: Packing, box: Box, goes_on: bool) -> Iterator[str]:
+    """Layers that have no end or no room, are too thin, or leave ground below; goes_on : it does so below its box."""
+    lowest, surface, least = box[1], box[3], THINNEST * 2.0 * packing.radius
+    heights, near = [surface, *bottoms(layers, surface)], TYPED * max(abs(box[1]), abs(box[3]), packing.radius)
+    for number, (layer, (top, bottom)) in enumerate(zip(layers, pairwise(heights), strict=True), start=1):
+        last, key = number == len(layers), "thickness" if layer.bottom is None else "bottom"
+        place = f"layer[{number}{f', {layer.name}' if layer.name else ''}].{key}"
+        if layer.thickness is None and layer.bottom is None:
+            if not last:
+                yield f"{place}: is missing; only the last layer may go on below, give thickness or bottom"
+                return
+        elif top - bottom < least - near:
+            what = f"{bottom:.10g}" if key == "bottom" else f"{layer.thickness:.10g}"
+            must = f"at most {top - least:.10g}" if key == "bottom" else f"at least {least:.10g}"
+            yield (
+                f"{place}: is {what}, must be {must} (m): the layer begins at {top:.10g} m, and must have two "
+                "diameters of the disks"
+            )
+        elif last and bottom > lowest + near:
+            yield f"{place}: ends at {bottom:.10g} m, above the bottom of the ground at {lowest:.10g} m; leave it out"
+        if number > 1 and not goes_on and top < lowest + least - near:
+            yield (
+                f"{place}: the layer begins at {top:.10g} m, must have two diameters of the disks above the bottom of "
+                f"the ground at {lowest:.10g} m"
+            )

@@ -1,0 +1,88 @@
+"""Layers of the ground: what they take from [material], where they end, and their mistakes."""
+
+import pytest
+from small_cases import BODY, problems_of
+
+from dembound.kinds import loads
+from tests.small_cases import rows
+
+SOIL = """\
+[[layer]]
+name = "clay"
+thickness = 1.5
+s_wave_speed = 200.0
+
+[[layer]]
+bottom = 2.0
+density = 2000.0
+kratio = 2.0
+
+[[layer]]
+name = "rock"
+emod = 1e9
+pb_emod = 2e9
+"""
+"""Three layers of `BODY`, whose surface is at 5 m and whose disks have a diameter of 0.5 m."""
+
+SHARED = BODY.replace("p_wave_speed = 1000.0", 'p_wave_speed = 1000.0\nmatch = "assembly"\ncontact_share = 0.3')
+
+
+def test_a_layer_takes_from_the_material_what_it_does_not_give() -> None:
+    case = loads(SHARED + SOIL)
+    clay, sand, rock = case.materials
+    assert clay.given() == {"density": 2500.0, "s_wave_speed": 200.0, "contact_share": 0.3}
+    assert sand.given() == case.material.given() | {"density": 2000.0, "kratio": 2.0}
+    assert rock.given() == {"density": 2500.0, "emod": 1e9, "pb_emod": 2e9}
+    assert case.joints == (3.5, 2.0)
+    assert case.layer_names == ("clay", "2", "rock")
+
+
+def test_uniform_ground_is_one_material_without_joints() -> None:
+    case = loads(BODY)
+    assert case.materials == (case.material,)
+    assert case.joints == case.layer_names == ()
+
+
+def test_heights_are_those_of_the_ground_round_the_disks() -> None:
+    """The surface is the top of the ground, and layers may begin in the continuum below."""
+    sides = "".join(f'[boundary.{side}]\ntype = "outside"\n' for side in ("left", "right", "bottom", "top"))
+    deep = "[ground]\nsize = [10.0, 20.0]\norigin = [0.0, -10.0]\n" + sides
+    case = loads(BODY + deep + SOIL.replace("bottom = 2.0", "bottom = -12.0"))
+    assert case.joints == (8.5, -12.0)
+
+
+MISTAKES = r"""
+thickness = 1.5 | thickness = 0.0 | layer[1, clay].thickness: is 0.0, must be greater than 0
+thickness = 1.5 | thickness = 1.5\nbottom = 3.5 | layer[1, clay].bottom: is not allowed together with thickness
+thickness = 1.5 | thickness = 0.99 | layer[1, clay].thickness: is 0.99, must be at least 1 (m): the layer begins at 5 m
+thickness = 1.5 |  | layer[1, clay].thickness: is missing; only the last layer may go on below
+bottom = 2.0 | bottom = 3.0 | layer[2].bottom: is 3, must be at most 2.5 (m): the layer begins at 3.5 m
+bottom = 2.0 | bottom = 0.5 | layer[3, rock].thickness: the layer begins at 0.5 m, must have two diameters
+emod = 1e9 | emod = 1e9\nbottom = 0.5 | layer[3, rock].bottom: ends at 0.5 m, above the bottom of the ground at 0 m
+"rock" | "clay" | layer[3].name: "clay" is taken by layer[1]
+"rock" | "2" | layer[3].name: "2" is taken by layer[2]
+emod = 1e9 | kratio = 3.0 | layer[3, rock].emod: is missing; emod and pb_emod go together
+kratio = 2.0 | s_wave_speed = 1e3\np_wave_speed = 1e3 | layer[2].s_wave_speed: is 1000, must be less than p_wave_speed
+kratio = 2.0 | pb_ten = 1e6 | layer[2].pb_ten: is only allowed with law = "linearpbond" or output.load_factor
+kratio = 2.0 | law = "elastic" | layer[2].law: unknown key; allowed: name, thickness
+"""
+
+
+@pytest.mark.parametrize(("old", "new", "line"), rows(MISTAKES))
+def test_each_mistake_has_one_line_at_its_place(old: str, new: str, line: str) -> None:
+    (found,) = problems_of(BODY + SOIL.replace(old, new))
+    assert found.startswith(line)
+
+
+def test_what_layers_do_not_go_with_is_refused() -> None:
+    sides = "".join(f'[boundary.{side}]\ntype = "periodic"\n' for side in ("bottom", "top"))
+    (line,) = problems_of(BODY + SOIL + sides)
+    assert line.startswith('layer: boundary.bottom is "periodic"')
+    around = "".join(f'[boundary.{side}]\ntype = "outside"\n' for side in ("left", "right", "bottom"))
+    wave = '[wave.w]\ntype = "constant"\namplitude = 1.0\n[incident]\ntype = "sv"\nwave = "w"\nangle = '
+    assert problems_of(BODY + SOIL + around + wave + "0.0\n") == []
+    (line,) = problems_of(BODY + SOIL + around + wave + "20.0\n")
+    assert line.startswith("incident.angle: is 20, but waves enter ground with [[layer]] straight from below only")
+    random = BODY.replace('pattern = "A"', 'pattern = "B"\nbrick = [10.0, 5.0]\nradius_ratio = 1.5')
+    (line,) = problems_of(random + SOIL.replace("emod = 1e9", "emod = 0.0", 1))
+    assert line.startswith("layer[3, rock].emod: is 0, but contacts hold pattern B under stress")
