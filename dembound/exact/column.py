@@ -1,10 +1,10 @@
 """P or S waves at normal incidence in a stack of layers on a half-space, after Thomson and Haskell.
 
 With e^{+iωt}, z downwards from the top of a layer, and complex wave number k = ω√(ρ/M) the displacement of layer m is
-u = A_m e^{ikz} + B_m e^{−ikz}, A running up and B down. The free surface makes A_1 = B_1; displacement and traction are
-continuous at the interface of layers m and m + 1, with α = √(ρ_m M_m)/√(ρ_{m+1} M_{m+1}):
+u = A_m e^{ikz} + B_m e^{−ikz}, A running up and B down, and R_m = B_m/A_m. The free surface makes R_1 = 1; displacement
+and traction are continuous at the interface of layers m and m + 1, with α = √(ρ_m M_m)/√(ρ_{m+1} M_{m+1}):
 
-    A_{m+1} = ½[A_m (1 + α) e^{ikh} + B_m (1 − α) e^{−ikh}] ,  B_{m+1} = ½[A_m (1 − α) e^{ikh} + B_m (1 + α) e^{−ikh}] .
+    A_m e^{ikh} = 2 A_{m+1}/N ,  R_{m+1} = [1 − α + (1 + α) R']/N ,  N = 1 + α + (1 − α) R' ,  R' = R_m e^{−2ikh} .
 
 (Haskell, The dispersion of surface waves on multilayered media, BSSA 43, 1953; Kramer, Geotechnical Earthquake
 Engineering, 1996, section 7.2.1.) A is the incident wave of the half-space; 2A moves its outcrop, A + B its top.
@@ -17,7 +17,7 @@ Moduli M with ρc² of the speed c and the quality Q of a layer:
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -38,16 +38,23 @@ DECAY = math.log(1e8)
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer of a stack: thickness m (of the half-space unused), density kg/m³, speed m/s of its waves, quality Q."""
+    """A layer of a stack: thickness m (of the half-space unused), density kg/m³, speed m/s of its waves, quality Q.
+
+    relative : M/ρc² (k,) of a layer with a modulus of its own, from frequencies (k,) Hz, which may be complex; Q then
+    has no effect.
+    """
 
     thickness: float
     density: float
     speed: float
     quality: float = math.inf
+    relative: Callable[[np.ndarray], np.ndarray] | None = None
 
     def modulus(self, omega: np.ndarray, damping: Damping, reference: float) -> np.ndarray:
         """M (k,) Pa at angular frequencies (k,) rad/s, which may be complex; reference : f₀ = ω₀/2π, Hz."""
         elastic = self.density * self.speed**2 * np.ones(np.shape(omega), dtype=complex)
+        if self.relative is not None:
+            return elastic * self.relative(omega / (2.0 * math.pi))
         if damping == "elastic" or math.isinf(self.quality):
             return elastic
         if damping == "hysteretic":
@@ -59,37 +66,63 @@ class Layer:
 
 @dataclass(frozen=True)
 class Column:
-    """Layers from the free surface down, the last one the half-space; reference : frequency of "constant_q", Hz."""
+    """Layers from the surface down, the last one the half-space; reference : frequency of "constant_q", Hz.
+
+    free : whether the surface is free; else the uppermost layer goes on above, and nothing comes back from there.
+    """
 
     layers: Sequence[Layer]
     damping: Damping = "elastic"
     reference: float = 1.0
+    free: bool = True
+
+    def motion(self, frequencies: np.ndarray, depths: Sequence[float], number: int | None = None) -> np.ndarray:
+        """Displacement m, and traction Pa on planes facing up, (2, d, k) at depths (d,) m and frequencies (k,) Hz.
+
+        Of an incident wave of 1 m at the top of the half-space. The traction is M ∂u/∂y, y upwards. All factors are of
+        waves on their way, so that nothing overflows.
+
+        frequencies : with a positive or zero real part; a negative imaginary one makes signals decay. number : of the
+        layer of all depths, from 0, which may reach a little beyond it; by default each depth's own, at an interface
+        the lower one.
+        """
+        omega = 2.0 * math.pi * np.asarray(frequencies)
+        omega = np.where(omega == 0.0, 1e-9 * 2.0 * math.pi * self.reference, omega)  # where powers have no phase
+        moduli = [layer.modulus(omega, self.damping, self.reference) for layer in self.layers]
+        impedances = [np.sqrt(layer.density * each) for layer, each in zip(self.layers, moduli, strict=True)]
+        waves = [1j * omega * layer.density / each for layer, each in zip(self.layers, impedances, strict=True)]
+        # returned: B/A at the top of each layer; gained: A at its bottom over A at the top of the next one
+        returned, gained = [np.full(omega.shape, float(self.free), dtype=complex)], []
+        for layer, turn, above, below in zip(
+            self.layers[:-1], waves[:-1], impedances[:-1], impedances[1:], strict=True
+        ):
+            back, alpha = returned[-1] * np.exp(-2.0 * turn * layer.thickness), above / below
+            gained.append(2.0 / (1.0 + alpha + (1.0 - alpha) * back))
+            returned.append(0.5 * (1.0 - alpha + (1.0 + alpha) * back) * gained[-1])
+        rising = [np.ones(omega.shape, dtype=complex)]  # A at the top of each layer, from the lowest up
+        for layer, turn, gain in zip(self.layers[-2::-1], waves[-2::-1], gained[::-1], strict=True):
+            rising.insert(0, rising[0] * gain * np.exp(-turn * layer.thickness))
+        tops = np.concatenate([[0.0], np.cumsum([layer.thickness for layer in self.layers[:-1]])])
+        found = np.empty((2, len(depths), *omega.shape), dtype=complex)
+        for place, depth in enumerate(depths):
+            own = max(int(np.searchsorted(tops, depth, "right")) - 1, 0) if number is None else number
+            z, turn = depth - tops[own], waves[own]
+            if own == len(gained):
+                up = rising[own] * np.exp(turn * z)
+            else:  # from the bottom of the layer, where waves come from
+                up = rising[own + 1] * gained[own] * np.exp(turn * (z - self.layers[own].thickness))
+            down = returned[own] * rising[own] * np.exp(-turn * z)
+            found[:, place] = up + down, -turn * moduli[own] * (up - down)
+        return found
 
     def transfer(self, frequencies: np.ndarray, depth: float = 0.0, over: Reference = "incident") -> np.ndarray:
         """Displacement (k,) at a depth (m) over a motion at the top of the half-space, at frequencies (k,) Hz.
 
-        frequencies : with a positive or zero real part; a negative imaginary one makes signals decay.
+        frequencies : as of `motion`.
         """
-        omega = 2.0 * math.pi * np.asarray(frequencies)
-        omega = np.where(omega == 0.0, 1e-9 * 2.0 * math.pi * self.reference, omega)  # where powers have no phase
-        up = down = np.ones(omega.shape, dtype=complex)
-        top, moved = 0.0, None
-        for number, layer in enumerate(self.layers):
-            modulus, last = layer.modulus(omega, self.damping, self.reference), number == len(self.layers) - 1
-            wave_number = omega * np.sqrt(layer.density / modulus)
-            if moved is None and (last or depth < top + layer.thickness):
-                phase = np.exp(1j * wave_number * (depth - top))
-                moved = up * phase + down / phase
-            if last:
-                break
-            following = self.layers[number + 1]
-            below = following.density * following.modulus(omega, self.damping, self.reference)
-            alpha, phase = np.sqrt(layer.density * modulus / below), np.exp(1j * wave_number * layer.thickness)
-            rising, falling = up * phase, down / phase
-            up, down = (0.5 * ((1.0 + a) * rising + (1.0 - a) * falling) for a in (alpha, -alpha))
-            top += layer.thickness
-        assert moved is not None
-        return np.asarray(moved / {"incident": up, "outcrop": 2.0 * up, "within": up + down}[over])
+        bottom = sum(layer.thickness for layer in self.layers[:-1])
+        moved, within = self.motion(frequencies, [depth, bottom])[0]
+        return np.asarray(moved / {"incident": 1.0, "outcrop": 2.0, "within": within}[over])
 
     def history(
         self, motion: np.ndarray, time_step: float, depth: float = 0.0, over: Reference = "incident"
