@@ -68,19 +68,19 @@ class Layer:
 class Column:
     """Layers from the surface down, the last one the half-space; reference : frequency of "constant_q", Hz.
 
-    free : whether the surface is free; else the uppermost layer goes on above, and nothing comes back from there.
+    mass : on the free surface, kg/m²; None: the uppermost layer goes on above, and nothing comes back from there.
     """
 
     layers: Sequence[Layer]
     damping: Damping = "elastic"
     reference: float = 1.0
-    free: bool = True
+    mass: float | None = 0.0
 
     def motion(self, frequencies: np.ndarray, depths: Sequence[float], number: int | None = None) -> np.ndarray:
-        """Displacement m, and traction Pa on planes facing up, (2, d, k) at depths (d,) m and frequencies (k,) Hz.
+        """Displacement u, m, gradient ∂u/∂y and traction M ∂u/∂y, Pa, (3, d, k), at depths (d,) m; y points upwards.
 
-        Of an incident wave of 1 m at the top of the half-space. The traction is M ∂u/∂y, y upwards. All factors are of
-        waves on their way, so that nothing overflows.
+        Of an incident wave of 1 m at the top of the half-space, at frequencies (k,) Hz. The traction is that on planes
+        facing up. All factors are of waves on their way, so that nothing overflows.
 
         frequencies : with a positive or zero real part; a negative imaginary one makes signals decay. number : of the
         layer of all depths, from 0, which may reach a little beyond it; by default each depth's own, at an interface
@@ -92,7 +92,8 @@ class Column:
         impedances = [np.sqrt(layer.density * each) for layer, each in zip(self.layers, moduli, strict=True)]
         waves = [1j * omega * layer.density / each for layer, each in zip(self.layers, impedances, strict=True)]
         # returned: B/A at the top of each layer; gained: A at its bottom over A at the top of the next one
-        returned, gained = [np.full(omega.shape, float(self.free), dtype=complex)], []
+        late = 1j * omega * (self.mass or 0.0) / impedances[0]
+        returned, gained = [np.zeros_like(late) if self.mass is None else (1.0 - late) / (1.0 + late)], []
         for layer, turn, above, below in zip(
             self.layers[:-1], waves[:-1], impedances[:-1], impedances[1:], strict=True
         ):
@@ -103,7 +104,7 @@ class Column:
         for layer, turn, gain in zip(self.layers[-2::-1], waves[-2::-1], gained[::-1], strict=True):
             rising.insert(0, rising[0] * gain * np.exp(-turn * layer.thickness))
         tops = np.concatenate([[0.0], np.cumsum([layer.thickness for layer in self.layers[:-1]])])
-        found = np.empty((2, len(depths), *omega.shape), dtype=complex)
+        found = np.empty((3, len(depths), *omega.shape), dtype=complex)
         for place, depth in enumerate(depths):
             own = max(int(np.searchsorted(tops, depth, "right")) - 1, 0) if number is None else number
             z, turn = depth - tops[own], waves[own]
@@ -112,8 +113,15 @@ class Column:
             else:  # from the bottom of the layer, where waves come from
                 up = rising[own + 1] * gained[own] * np.exp(turn * (z - self.layers[own].thickness))
             down = returned[own] * rising[own] * np.exp(-turn * z)
-            found[:, place] = up + down, -turn * moduli[own] * (up - down)
+            found[:2, place] = up + down, turn * (down - up)
+            found[2, place] = moduli[own] * found[1, place]
         return found
+
+    def rising(self, frequencies: np.ndarray, depth: float) -> np.ndarray:
+        """The incident wave (k,) at a depth (m) over that at the top of the half-space, continued if this is above."""
+        omega, last = 2.0 * math.pi * np.asarray(frequencies), self.layers[-1]
+        turn = 1j * omega * np.sqrt(last.density / last.modulus(omega, self.damping, self.reference))
+        return np.asarray(np.exp(turn * (depth - sum(layer.thickness for layer in self.layers[:-1]))))
 
     def transfer(self, frequencies: np.ndarray, depth: float = 0.0, over: Reference = "incident") -> np.ndarray:
         """Displacement (k,) at a depth (m) over a motion at the top of the half-space, at frequencies (k,) Hz.

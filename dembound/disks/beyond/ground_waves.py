@@ -111,8 +111,8 @@ class NearPlaces:
         """Number of amplitudes."""
         return DELAYS * len(self.spans)
 
-    def amplitudes(self, times: np.ndarray) -> np.ndarray:
-        """Displacements g (k, count) m at times (k,) s and the delays."""
+    def amplitudes(self, times: np.ndarray, behind: float) -> np.ndarray:
+        """Displacements g (k, count) m at times (k,) s and the delays; these are enough for velocities behind."""
         each = zip(self.ground.signals, self._delays, strict=True)
         return np.hstack([signal.displacement(times[:, None] - delays) for signal, delays in each])
 

@@ -11,11 +11,11 @@ def test_near_places_the_motion_is_that_of_the_waves() -> None:
     places, corrector = rng.uniform(0.0, 8.0, (20, 2)) * [1.0, 0.1], rng.normal(size=(3, 4, 20))
     near, times = waves.near(places), np.array([0.31, 0.35, 0.4])
     exact = waves.motion("displacement", times, places, corrector)
-    found = np.einsum("tq,cdq->tdc", near.amplitudes(times), near.motion(places, corrector))
+    found = np.einsum("tq,cdq->tdc", near.amplitudes(times, 0.0), near.motion(places, corrector))
 
     np.testing.assert_allclose(found, exact, atol=2e-4 * np.abs(exact).max())
     moving = waves.motion("velocity", times, places)
-    behind = near.amplitudes(times + 1e-4) @ near.velocities(1e-4).T
+    behind = near.amplitudes(times + 1e-4, 1e-4) @ near.velocities(1e-4).T
     found = np.einsum("tq,cdq->tdc", behind, near.motion(places, np.zeros((3, 4, 20))))
     np.testing.assert_allclose(found, moving, atol=1e-3 * np.abs(moving).max())
 

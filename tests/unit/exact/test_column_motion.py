@@ -1,0 +1,97 @@
+"""A column in time beside independent solutions in time."""
+
+import numpy as np
+
+from dembound.exact.column import Column, Layer
+from dembound.exact.column_motion import ColumnMotion
+
+WEIGHTS, TIMES, UNRELAXED = np.array([0.0641, 0.0472, 0.0749]), np.array([0.56, 0.0917, 0.0146]), 1.107
+"""Mechanisms of Q = 20."""
+
+DENSITIES, SPEEDS = (1800.0, 2000.0, 2300.0), (200.0, 350.0, 700.0)
+THICKNESSES = 30.0, 40.0
+
+
+def pulse(t: np.ndarray) -> np.ndarray:
+    """A Ricker wavelet of 3 Hz, m/s."""
+    power = (3.0 * np.pi * (t - 0.6)) ** 2
+    return np.asarray((1.0 - 2.0 * power) * np.exp(-power))
+
+
+def relative(frequency: np.ndarray) -> np.ndarray:
+    return UNRELAXED * (1.0 - np.sum(WEIGHTS / (1.0 + 2j * np.pi * frequency[..., None] * TIMES), axis=-1))
+
+
+def motion(modulus=None, until: float = 3.0) -> ColumnMotion:
+    """Of two layers, maybe with a modulus of their own, on an elastic half-space."""
+    two = [Layer(*each, relative=modulus) for each in zip(THICKNESSES, DENSITIES[:2], SPEEDS[:2], strict=True)]
+    return ColumnMotion(Column([*two, Layer(1.0, DENSITIES[2], SPEEDS[2])]), pulse, 70.0, 0.0, until)
+
+
+def scattered(until: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times (k,) and velocities (k, 3) of surface, joint and base, of waves from interface to interface of thin cells.
+
+    Exact in cells of equal travel time (Goupillaud, Geophysics 26, 1961).
+    """
+    cells, step = (84, 64), 0.15 / 84
+    z = np.repeat(np.multiply(DENSITIES, SPEEDS), [*cells, 1])
+    up, down, found = np.zeros(len(z)), np.zeros(len(z)), []  # about to meet the top of each cell from below and above
+    for time in step * np.arange(round(until / step) + 1):
+        up[-1] = pulse(time)
+        rising = (2.0 * z[1:] * up[1:] + (z[:-1] - z[1:]) * down[1:]) / (z[:-1] + z[1:])
+        falling = (2.0 * z[:-1] * down[1:] + (z[1:] - z[:-1]) * up[1:]) / (z[:-1] + z[1:])
+        found.append([2.0 * up[0], rising[cells[0] - 1] + down[cells[0]], rising[-1] + down[-1]])
+        down[1:] = np.append(up[0], falling[:-1])
+        up[:-1] = rising
+    return step * np.arange(len(found)), np.array(found)
+
+
+def test_elastic_layers_move_as_by_scattering_at_interfaces() -> None:
+    (times, expected), column, depths = scattered(3.0), motion(), (0.0, 30.0, 70.0)
+    found = column.at("velocity", times, depths)
+    assert np.abs(found - expected).max() < 1e-8 * np.abs(expected).max()
+    moved = np.diff(column.at("displacement", times, depths), axis=0) / times[1]
+    between = column.at("velocity", times[1:] - 0.5 * times[1], depths)
+    assert np.abs(moved - between).max() < 1e-4 * np.abs(expected).max()  # the differences err by (ω Δt)²/24
+
+
+def stepped(cells: int, until: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times (k,) and displacements (k,) of the surface by finite differences, so many cells to 10 m, with memories."""
+    size = 10.0 / cells
+    layer = np.repeat([0, 1], [3 * cells, 4 * cells])
+    density, modulus = np.array(DENSITIES)[layer], UNRELAXED * (np.multiply(DENSITIES, np.square(SPEEDS)))[layer]
+    mass = 0.5 * size * (np.append(density, 0.0) + np.append(0.0, density))
+    step = 0.4 * size / 400.0
+    dashpot = DENSITIES[2] * SPEEDS[2]
+    e = np.exp(-step / TIMES)
+    g = 0.5 * WEIGHTS * (1.0 - e)
+    u, before = np.zeros(len(mass)), np.zeros(len(mass))
+    strain, memory, found = np.zeros(len(layer)), np.zeros((3, len(layer))), [0.0]
+    implicit = np.zeros(len(mass))
+    implicit[-1] = 0.5 * step * dashpot / mass[-1]
+    for time in step * np.arange(round(until / step)):
+        last, strain = strain, np.diff(u) / size
+        memory = e[:, None] * memory + g[:, None] * (strain + last)
+        stress = modulus * (strain - memory.sum(axis=0))
+        force = np.append(stress, 0.0) - np.append(0.0, stress)
+        force[-1] += 2.0 * dashpot * pulse(time)
+        ahead = (2.0 * u - (1.0 - implicit) * before + step**2 * force / mass) / (1.0 + implicit)
+        before, u = u, ahead
+        found.append(float(u[0]))
+    return step * np.arange(len(found)), np.array(found)
+
+
+def test_damped_layers_move_as_by_finite_differences() -> None:
+    """Whose errors of second order are extrapolated."""
+    (times, coarse), (_, fine) = stepped(8, 2.0), stepped(16, 2.0)
+    expected = (4.0 * fine[::2] - coarse) / 3.0
+    found = motion(relative).at("displacement", times, (0.0,))[:, 0]
+    assert np.abs(found - expected).max() < 1e-5 * np.abs(expected).max()
+
+
+def test_times_after_the_last_one_continue_the_motion() -> None:
+    times = np.linspace(0.0, 3.0, 50)
+    early = motion(until=0.8)
+    early.at("velocity", times[:5], (0.0,))
+    expected = motion().at("velocity", times, (0.0,))
+    np.testing.assert_allclose(early.at("velocity", times, (0.0,)), expected, atol=1e-7 * np.abs(expected).max())
