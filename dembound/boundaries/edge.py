@@ -70,7 +70,8 @@ class Edge:
 
     def only(self, chosen: np.ndarray, length: float) -> "Edge":
         """Some of its particles, chosen (k,) bool, on a part of the side of this length (m)."""
-        return Edge(self.side, self.nodes[chosen], self.positions[chosen], self.diameters[chosen], length)
+        shares = self.shares[chosen] if isinstance(self.shares, np.ndarray) else self.shares
+        return Edge(self.side, self.nodes[chosen], self.positions[chosen], self.diameters[chosen], length, shares)
 
     @property
     def widths(self) -> np.ndarray:

@@ -179,12 +179,12 @@ class DiskBody(Scene):
     @cached_property
     def mass(self) -> np.ndarray:
         """Mass (n,) kg of each particle and node; half for particles on sides of half cells."""
-        return self._with_nodes(self.ground.mass[self.assembly.brick_particle] * self.cell_fraction)
+        return self._with_nodes(self.ground.disk_masses(self.assembly)[0] * self.cell_fraction)
 
     @cached_property
     def inertia(self) -> np.ndarray:
         """Moment of inertia (n,) kg·m², halved with the mass; of nodes of continua, which do not rotate, m × (1 m)²."""
-        return self._with_nodes(self.ground.inertia[self.assembly.brick_particle] * self.cell_fraction)
+        return self._with_nodes(self.ground.disk_masses(self.assembly)[1] * self.cell_fraction)
 
     def _with_nodes(self, of_disks: np.ndarray) -> np.ndarray:
         """Masses of the particles (m,), followed by those of the nodes of continua."""

@@ -26,7 +26,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.material.homogenise import Network
 from dembound.disks.reflection.bricks import end_scene
-from dembound.disks.scene import DiskScene
+from dembound.disks.scene import DiskScene, ground_at
 
 APART = 8.0
 """Diameters, at least, of each third of the strip in which s is found: at the side, where displacements are read,
@@ -69,7 +69,7 @@ def entries_of(scene: DiskScene) -> dict[str, dict[Motion, Entry]]:
     found: dict[str, dict[Motion, Entry]] = {}
     for side, waves in scene.case.driving.items():
         axis = normal_axis(side)
-        speeds = dict(zip(("p", "s"), scene.ground.wave_speeds(axis), strict=True))
+        speeds = dict(zip(("p", "s"), ground_at(scene, side).wave_speeds(axis), strict=True))
         running: list[Motion] = [motion for motion in waves if math.isfinite(speeds[motion])]
         if running:
             late = _late(scene, side, running)
@@ -118,7 +118,7 @@ def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, fl
 
 def side_ends(scene: DiskScene, side: str) -> dict[Motion, tuple[float, float]]:
     """Depths m and s (m) of a side with dashpots, by kind of wave that runs along its normal."""
-    end, speeds = _Strip.of(scene.case, side), scene.ground.wave_speeds(normal_axis(side))
+    end, speeds = _Strip.of(scene.case, side), ground_at(scene, side).wave_speeds(normal_axis(side))
     running = [motion for motion, speed in zip(MOTIONS, speeds, strict=True) if math.isfinite(speed)]
     return {motion: (end.mass_begins, end.depth(motion)) for motion in running}
 

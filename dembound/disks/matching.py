@@ -9,26 +9,26 @@ from dembound.boundaries import Motion, axis_of_motion
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.boundaries.words import reflected
-from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.scene import DiskScene, ground_at, medium_of_side
 from dembound.errors import CaseError
 
 
 def homogenised_beta(scene: DiskScene, side: str, motion: Motion) -> float:
     """β0 of a side, see `BoundaryMedium.matched`; nan where the motion is held."""
     edge = scene.edges[side]
-    return boundary_medium(scene.case, scene.ground, edge.axis).matched(edge)[motion]
+    return medium_of_side(scene, side).matched(edge)[motion]
 
 
 def factors_in(scene: DiskScene, side: str) -> dict[Motion, float]:
     """The factors β of a side's dashpots as numbers."""
     edge = scene.edges[side]
-    return scene.case.side(side).factors_at(edge, boundary_medium(scene.case, scene.ground, edge.axis))
+    return scene.case.side(side).factors_at(edge, medium_of_side(scene, side))
 
 
 def supports_of(scene: DiskScene, side: str) -> Supports:
     """The support table of one side only."""
     edge, builder = scene.edges[side], SupportBuilder(held=scene.ground.held)
-    medium = boundary_medium(scene.case, scene.ground, edge.axis)
+    medium = medium_of_side(scene, side)
     scene.case.side(side).support(edge, medium, scene.case.wave, builder)
     return builder.table()
 
@@ -40,7 +40,7 @@ def per_metre(scene: DiskScene, side: str, table: Boundary) -> dict[tuple[str, i
     and "forces" of waves, N/m per unit of their signal. Prescribed motion is left out.
     """
     edge = scene.edges[side]
-    medium = boundary_medium(scene.case, scene.ground, edge.axis)
+    medium = medium_of_side(scene, side)
     builder = SupportBuilder(held=scene.ground.held)
     matched = table.with_factors(dict.fromkeys(table.factors, "matched")).with_numbers(edge, medium)
     matched.support(edge, medium, scene.case.wave, builder)
@@ -106,12 +106,13 @@ def sent_back(scene: DiskScene, side: str, motion: Motion, frequency: float) -> 
     """
     edge, held = scene.edges[side], Held.of(scene, side)
     axis = axis_of_motion(side, motion)
-    own = scene.ground.density * scene.ground.wave_speeds(edge.axis)[0 if motion == "p" else 1]
+    ground = ground_at(scene, side)
+    own = ground.density * ground.wave_speeds(edge.axis)[0 if motion == "p" else 1]
     if not own > 0.0:
         return math.nan
     impedance = complex(held.damping[axis])
     if math.isfinite(frequency):
         omega = 2.0 * math.pi * frequency
-        half = 0.0 if scene.case.side(side).half_cells else 0.5 * scene.ground.density * float(edge.diameters.mean())
+        half = 0.0 if scene.case.side(side).half_cells else 0.5 * ground.density * float(edge.diameters.mean())
         impedance += 1j * omega * half - 1j * float(held.stiffness[axis]) / omega
     return abs(reflected(impedance / own, 1.0))

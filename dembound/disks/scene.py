@@ -22,6 +22,7 @@ from dembound.disks.body_sides import sides_of, tied_of
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.loads import drive, steady
+from dembound.disks.material.layered import LayeredGround, layered
 from dembound.disks.material.mirrored import with_images
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.monitors import monitors_of
@@ -163,19 +164,21 @@ def _scene(
     floors : left by its holes at left and right sides.
     """
     body, seam, beyond = assembly, None, case.outside_sides
-    outline = Outline.of(case, ground, body, beyond, case.periodic, floors) if beyond else None
+    around = ground.at(case.box[1]) if set(beyond) == {"bottom"} else ground
+    outline = Outline.of(case, around, body, beyond, case.periodic, floors) if beyond else None
     if sides := case.column_sides:
         beside = case.box[0] if outline is None else outline.mesh.origin[0]
         assembly, seam = with_column(ground.brick, body, sides, case.column_rows, (beside, case.box[1]))
         edges = edges_beside_column(assembly, seam, edges)
     assembly, seam = with_half_contacts(case, ground.brick, assembly, seam, edges)
     count = len(assembly.radii)
+    assembly, seam = with_layers(ground, assembly, seam)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
     outside = None
     if outline is not None:
         first, twin = (0, None) if seam is None else (seam.count, seam.twin)
-        outside = surroundings_of(ground, body, outline, slots, first, twin)
+        outside = surroundings_of(around, body, outline, slots, first, twin)
     foot = None
     if seam is not None and "bottom" in beyond:
         foot = _foot(case, ground, assembly, seam, slots if outside is None else outside.laid_out(slots))
@@ -201,7 +204,7 @@ def _scene(
 
 def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
     """The continuum below the free-field column, of equal width; layout : of all nodes before its own."""
-    column = assembly.part(slice(0, seam.count))
+    column, ground = assembly.part(slice(0, seam.count)), ground.at(case.box[1])
     return surroundings_of(ground, column, Outline.of(case, ground, column, ("bottom",), UPRIGHT), layout)
 
 
@@ -214,7 +217,7 @@ def column_alone(scene: DiskScene) -> DiskScene:
     """
     case, brick = scene.case, scene.ground.brick
     sides = {"left": Periodic(type="periodic"), "right": Periodic(type="periodic")}
-    medium = boundary_medium(case, scene.ground, axis=1)
+    medium = boundary_medium(scene.ground.at(case.box[1]), axis=1)
     upright = {
         side: table.with_numbers(scene.edges[side], medium) if side in scene.edges else table
         for side, table in case.boundary.items()
@@ -232,8 +235,12 @@ def column_alone(scene: DiskScene) -> DiskScene:
 
 def ground_of(case: DiskCase) -> PackedMaterial:
     """The case's brick, packed or from the cache, with its material."""
-    brick = case.packing.pack(nominal_moduli(case.material).emod)
-    return make_packed_material(brick, case.material, case.motion.held)
+    brick = case.packing.pack(nominal_moduli(case.materials[-1]).emod)
+    along = 1 if case.layer else 0  # waves in layers run upwards
+    materials = [make_packed_material(brick, each, case.motion.held, along) for each in reversed(case.materials)]
+    if len(materials) == 1:
+        return materials[0]
+    return layered(materials, case.joints[::-1], case.packing.origin[1])
 
 
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
@@ -270,13 +277,28 @@ def with_half_contacts(
     return assembly, seam
 
 
-def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> BoundaryMedium:
+def with_layers(ground: PackedMaterial, assembly: Assembly, seam: Seam | None) -> tuple[Assembly, Seam | None]:
+    """Replace the contacts of a layered ground, also across a seam, by types with the springs of their zones."""
+    if not ground.is_layered:
+        return assembly, seam
+    up, types = assembly.positions[:, 1], 2 * len(ground.brick.pairs)
+    pairing = ground.pairing_of(*up[assembly.pairs].T)
+    assembly = replace(assembly, contact_type=(assembly.contact_type + types * pairing).astype(np.int32))
+    if seam is not None:
+        owner = up[np.repeat(seam.twin[seam.node], seam.contact_counts)]
+        other = up[seam.neighbour]
+        pairing = ground.pairing_of(*np.where(seam.twin_is_second, [other, owner], [owner, other]))
+        seam = replace(seam, contact_type=seam.contact_type + types * pairing)
+    return assembly, seam
+
+
+def boundary_medium(ground: PackedMaterial, axis: int) -> BoundaryMedium:
     """The medium beyond a side: the wave speeds given in the case, else those of the packing along the side's normal.
 
     axis : of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
     """
     p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see homogenise.GRADIENTS
-    p_speed, s_speed = case.material.p_wave_speed, case.material.s_wave_speed
+    p_speed, s_speed = ground.given_speeds
     if p_speed is None:
         p_speed = float(np.sqrt(ground.material_tensor[p_gradient, p_gradient] / ground.density))
     if s_speed is None:
@@ -291,13 +313,39 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
     )
 
 
+def media_of(scene: DiskScene, side: str) -> list[tuple[Edge, BoundaryMedium]]:
+    """The parts of a side within one layer, with the medium that each represents; the lowest first."""
+    ground, edge = scene.ground, scene.edges[side]
+    if not isinstance(ground, LayeredGround):
+        return [(edge, boundary_medium(ground, edge.axis))]
+    layer = ground.layer_of(edge.positions[:, 1])
+    found = []
+    for each in reversed(ground.layers):
+        chosen = layer == each.layer
+        if chosen.any():
+            low, high = scene.low[1], scene.low[1] + edge.length
+            length = min(each.high, high) - max(each.low, low) if edge.axis == 0 else edge.length
+            found.append((edge.only(chosen, length), boundary_medium(each.material, edge.axis)))
+    return found
+
+
+def ground_at(scene: DiskScene, side: str) -> PackedMaterial:
+    """The material at a side; in a layered ground that of the lowest of its layers."""
+    return scene.ground.at(scene.case.box[3 if side == "top" else 1])
+
+
+def medium_of_side(scene: DiskScene, side: str) -> BoundaryMedium:
+    """The medium that a side represents; in a layered ground that of the lowest of its layers."""
+    return media_of(scene, side)[0][1]
+
+
 def _supports(scene: DiskScene, waves: Waves) -> Supports:
     """The support table: rows of all sides under these waves, of all loads that follow a wave, and of continua."""
-    case, ground, builder = scene.case, scene.ground, SupportBuilder(held=scene.ground.held)
+    case, builder = scene.case, SupportBuilder(held=scene.ground.held)
     for side, table in case.boundary.items():
-        if side in scene.edges:
-            edge, builder.side = scene.edges[side], side
-            table.support(edge, boundary_medium(case, ground, edge.axis), waves, builder)
+        builder.side = side
+        for edge, medium in media_of(scene, side) if side in scene.edges else ():
+            table.support(edge, medium, waves, builder)
     builder.side = ""
     drive(scene, builder)
     for each in scene.continua:

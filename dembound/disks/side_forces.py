@@ -106,8 +106,8 @@ def _ends(scene: DiskBody) -> tuple[CutContacts, np.ndarray]:
     brick, body = scene.ground.brick, scene.assembly
     cut = cut_contacts(brick, body, tuple(scene.edges), scene.case.periodic)
     found = [cut]
-    halved = np.flatnonzero(body.contact_type >= len(brick.pairs))
-    kind = body.contact_type[halved].astype(np.int64) - len(brick.pairs)
+    halved = np.flatnonzero(body.contact_type % (2 * len(brick.pairs)) >= len(brick.pairs))
+    kind = body.contact_type[halved].astype(np.int64) % len(brick.pairs)
     first, second = body.pairs[halved].T.astype(np.int64)
     side = _side_along(scene, first, second)
     for near, far, is_second in ((first, second, False), (second, first, True)):

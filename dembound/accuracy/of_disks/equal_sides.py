@@ -98,7 +98,7 @@ def _equal_supports(table: Boundary, side: str, own: DiskScene, finer: DiskScene
     if side not in own.edges:
         return table
     axis = normal_axis(side)
-    here, there = ((each.edges[side], boundary_medium(each.case, each.ground, axis)) for each in (own, finer))
+    here, there = ((each.edges[side], boundary_medium(each.ground, axis)) for each in (own, finer))
     answered = table.equal_supports(here, there)
     found = table if answered is None else answered
     ratios = np.array([_impedances(own, axis), _impedances(finer, axis)])

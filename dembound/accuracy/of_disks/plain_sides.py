@@ -38,7 +38,7 @@ def _plain(table: Boundary, side: str, scene: DiskScene) -> Boundary:
     if side not in scene.edges or not table.may_move or table.needs_column:
         return table
     edge, supports = scene.edges[side], supports_of(scene, side)
-    medium = boundary_medium(scene.case, scene.ground, edge.axis)
+    medium = boundary_medium(scene.ground, edge.axis)
     if _is_known(table, supports, (edge, medium), scene) or not _is_even(supports, edge):
         return table
     held = Held.of(scene, side)

@@ -119,15 +119,15 @@ def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray)
     slot : (n,) in which kernels hold the assembly's particles.
     """
     first, second = slot[assembly.pairs.T].astype(np.uint32, order="C")
-    bonded = INTACT if ground.moduli.pb_emod > 0.0 else NONE
+    constants = brick_constants(ground, gaps_close=False, locked_in=0.0)
     nothing = np.zeros(0)
     return Contacts(
         begin=int(slot.min()),
         first=first,
         second=second,
         contact_type=assembly.contact_type.astype(np.uint32),
-        constants=brick_constants(ground, gaps_close=False, locked_in=0.0),
-        state=np.full(len(first), bonded, dtype=np.uint8),
+        constants=constants,
+        state=bonds_of(constants, assembly.contact_type),
         shear=nothing,
         slip=nothing,
         closed=np.zeros(0, dtype=np.uint8),
@@ -137,3 +137,8 @@ def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray)
         start=first[:0],
         end=first[:0],
     )
+
+
+def bonds_of(constants: np.ndarray, contact_type: np.ndarray) -> np.ndarray:
+    """States (b,) of contacts as built: intact where the rows of their types in constants (p, 12) have a bond."""
+    return np.where(constants[contact_type, 7] > 0.0, INTACT, NONE).astype(np.uint8)

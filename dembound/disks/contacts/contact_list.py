@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.contacts.arrays import ContactHistory, Pairs
+from dembound.disks.contacts.arrays import ContactHistory, Pairs, bonds_of
 from dembound.disks.contacts.forces import acting
 from dembound.disks.contacts.neighbours import near_pairs, pair_keys
 from dembound.disks.contacts.pair_list import PairList
@@ -57,6 +57,7 @@ class ContactList(PairList):
     In addition to those of `PairList`:
 
     limits : strengths and friction.
+    own_types : number of the types of the brick's contacts, which come before those of near pairs.
     skin : m, gap up to which the list is complete.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
@@ -85,8 +86,9 @@ class ContactList(PairList):
         first, second = assembly.pairs.T.astype(np.int64)
         images = self.images(first, second, self.bonds[assembly.contact_type, :2])
         pairs = Pairs(first, second, images, assembly.contact_type)
-        bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
+        bonded = bonds_of(self.bonds, assembly.contact_type)
         zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
+        self.own_types = len(self.bonds)
         self._constants = self.bonds
         self._list(pairs, ContactHistory(bonded, zero, zero, none, np.full(len(first), -1)))
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
@@ -189,10 +191,15 @@ class ContactList(PairList):
         fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, len(radii)), keys)
         (first, second), image = near[fresh].T, image[fresh]
         vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
-        constants = self.ground.law.pair_constants(
-            self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
+        pairing = self.ground.pairing_of(positions[first, 1], positions[second, 1])
+        constants = self.ground.pair_constants(
+            (radii[first], radii[second]),
+            vectors,
+            pairing,
+            bonded=False,
+            locked_in=self.locked_in,
         )
-        constants, row_of = shared_constants(constants, self.skin)
+        constants, row_of = shared_constants(constants, pairing, self.skin)
         return Pairs(first, second, image, row_of), constants
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:

@@ -47,7 +47,7 @@ def settled_slip(pairs: ContactList, displacement: np.ndarray) -> np.ndarray | s
     that was open is closed, or a bond is broken. Where shear is counted along the path, its difference from the shear
     of small displacements becomes slip.
     """
-    state, own = pairs.of("state"), pairs.of("contact_type") < 2 * len(pairs.ground.brick.pairs)
+    state, own = pairs.of("state"), pairs.of("contact_type") < pairs.own_types
     if ((state == TENSION) | (state == SHEAR)).any():
         return "a bond broke in the static stage"
     if np.count_nonzero(own) < len(pairs.assembly.pairs):

@@ -34,8 +34,7 @@ def lane_rows(
     special[slot[fraction != 1.0] // LANES] = True
     special[(begin + ends.slot) // LANES] = True
     mass, inertia = np.zeros(rows), np.zeros(rows)
-    mass[plan.row] = ground.mass[assembly.brick_particle]
-    inertia[plan.row] = ground.inertia[assembly.brick_particle]
+    mass[plan.row], inertia[plan.row] = ground.disk_masses(assembly)
     return LaneRows(
         group_row=plan.group_row,
         group_block=first_block + plan.group_block,

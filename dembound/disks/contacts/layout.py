@@ -29,7 +29,7 @@ def lay_out(
     parts : their disks, in order; fraction : (n,) of its mass that each disk has.
     """
     each = [assembly.part(disks) for disks in parts.values()]
-    plans = [_plan(part) for part in each]
+    plans = [_plan(part, ground) for part in each]
     if all(plan is None for plan in plans):
         layout = Layout.plain(len(assembly.radii))
         return layout, tuple(
@@ -50,11 +50,11 @@ def lay_out(
     return layout, tuple(rows)
 
 
-def _plan(part: Assembly) -> RowPlan | None:
+def _plan(part: Assembly, ground: PackedMaterial) -> RowPlan | None:
     """The rows of a part, if enough of their lanes would hold disks."""
     if np.prod(part.copies) == 1:
         return None
-    plan = plan_rows(part)
+    plan = plan_rows(part, by_level=ground.is_layered)
     return plan if len(part.radii) >= LEAST_FILL * LANES * plan.group_block[-1] else None
 
 

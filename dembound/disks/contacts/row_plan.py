@@ -57,25 +57,30 @@ class RowPlan:
         return LANES * self.block + self.lane
 
 
-def plan_rows(assembly: Assembly) -> RowPlan:
+def plan_rows(assembly: Assembly, *, by_level: bool = False) -> RowPlan:
     """Rows of the copies of each disk of the brick, those in rows that close the frame in groups of their own.
 
     Copies are numbered along the shorter side of the scene first, and cut into eight lengths, one for each lane: the
-    neighbour in the next copy is then in the next column, in the same lane.
+    neighbour in the next copy is then in the next column, in the same lane. by_level : for layers, whose disks differ
+    with height; each row of bricks is then a group of its own, with copies along x only, and all these groups have the
+    same columns.
     """
     (across, up), tile = assembly.copies, assembly.tile.astype(np.int64)
     closing = 2 * (tile[:, 0] >= across) + (tile[:, 1] >= up)
-    along_x = bool(assembly.size[0] < assembly.size[1])
-    regular = tile[:, 1] * across + tile[:, 0] if along_x else tile[:, 0] * up + tile[:, 1]
-    copy = np.choose(closing, [regular, tile[:, 0], tile[:, 1], 0])
-    short, long = (across, up) if along_x else (up, across)
-    columns = np.array([columns_of(short, long), -(-across // LANES), -(-up // LANES), 1])
-    kinds, group = np.unique(closing, return_inverse=True)
-    brick_rows, row = np.unique(
-        group * (assembly.brick_particle.max() + 1) + assembly.brick_particle, return_inverse=True
-    )
-    group_row = np.searchsorted(brick_rows // (assembly.brick_particle.max() + 1), np.arange(len(kinds) + 1))
-    columns = columns[kinds]
+    if by_level:
+        kinds, group = np.unique(2 * tile[:, 1] + (closing >= 2), return_inverse=True)
+        copy = np.where(closing >= 2, 0, tile[:, 0])
+        columns = np.where(kinds % 2 == 0, -(-across // LANES), 1)
+    else:
+        along_x = bool(assembly.size[0] < assembly.size[1])
+        regular = tile[:, 1] * across + tile[:, 0] if along_x else tile[:, 0] * up + tile[:, 1]
+        copy = np.choose(closing, [regular, tile[:, 0], tile[:, 1], 0])
+        short, long = (across, up) if along_x else (up, across)
+        kinds, group = np.unique(closing, return_inverse=True)
+        columns = np.array([columns_of(short, long), -(-across // LANES), -(-up // LANES), 1])[kinds]
+    disks = int(assembly.brick_particle.max()) + 1
+    brick_rows, row = np.unique(group * disks + assembly.brick_particle, return_inverse=True)
+    group_row = np.searchsorted(brick_rows // disks, np.arange(len(kinds) + 1))
     return RowPlan(
         row=row,
         column=copy % columns[group],

@@ -4,6 +4,8 @@ import numpy as np
 
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.tables import NeighbourTable
+from dembound.laws import Stiffness
+from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
 
 
@@ -31,9 +33,19 @@ def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> 
 def elastic_constants(ground: PackedMaterial) -> tuple[np.ndarray, np.ndarray]:
     """Constants (4b, 6), and the row in them of contact k for its first (2k) and second disk (2k + 1).
 
-    Contacts from number b on are those of the brick with half their stiffness, for sides of half cells.
+    Contacts from number b on are those of the brick with half their stiffness, for sides of half cells; those of other
+    pairings of zones follow in a layered ground.
     """
-    brick, law = ground.brick, ground.stiffness
+    found, rows = [], []
+    for number, pairing in enumerate(ground.pairings):
+        constants, row_of = _constants_of(ground.brick, ground.stiffness_of(pairing))
+        found.append(constants)
+        rows.append(row_of + number * len(row_of))
+    return np.vstack(found), np.concatenate(rows)
+
+
+def _constants_of(brick: Brick, law: Stiffness) -> tuple[np.ndarray, np.ndarray]:
+    """Constants and rows, as of `elastic_constants`, of the brick's contacts with these stiffnesses."""
     vectors = brick.vectors
     n = vectors / np.hypot(*vectors.T)[:, None]
     root_n, root_s = np.sqrt(law.normal), np.sqrt(law.shear)

@@ -31,30 +31,28 @@ def limits_of(material: Material) -> Limits:
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
     """Constants (2b, 12) of the brick's contacts, followed by the same with half their stiffness, for half cells.
 
-    Arguments as for `pair_constants`.
+    For each pairing of zones in a layered ground. Arguments as for `pair_constants`.
     """
     brick = ground.brick
     first, second = brick.radii[brick.pairs].T
-    constants = ground.law.pair_constants(
-        ground.moduli,
-        first,
-        second,
-        brick.vectors,
-        bonded=ground.moduli.pb_emod > 0.0,
-        gaps_close=gaps_close,
-        locked_in=locked_in,
-    )
-    half = constants.copy()
-    half[:, 5:10] *= 0.5  # stiffnesses
-    half[:, 10:] *= 2.0  # and areas and section moduli too, so that stresses do not change
-    return np.vstack([constants, half])
+    found = []
+    for pairing in range(len(ground.pairings)):
+        constants = ground.pair_constants(
+            (first, second), brick.vectors, pairing, gaps_close=gaps_close, locked_in=locked_in
+        )
+        half = constants.copy()
+        half[:, 5:10] *= 0.5  # stiffnesses
+        half[:, 10:] *= 2.0  # and areas and section moduli too, so that stresses do not change
+        found += [constants, half]
+    return np.vstack(found)
 
 
-def shared_constants(constants: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+def shared_constants(constants: np.ndarray, pairing: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
     """Distinct rows (p, 12) of the constants of pairs, to rounding, and the row of each pair (b,).
 
-    Pairs at the same place of different bricks then share a row; length (m) is the scale for rounding errors.
+    Pairs at the same place of different bricks then share a row, if they have the same pairing (b,) of zones; length
+    (m) is the scale for rounding errors.
     """
-    places = np.round(constants[:, :5] / (1e-6 * length))
+    places = np.column_stack([np.round(constants[:, :5] / (1e-6 * length)), pairing])
     _, first, row_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
     return constants[first], row_of.reshape(-1)

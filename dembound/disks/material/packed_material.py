@@ -20,6 +20,7 @@ from dembound.disks.material.homogenise import HomogenisedMaterial, homogenise
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
+from dembound.packings.tiling import Assembly
 from dembound.words import with_unit
 
 LARGEST_OVERLAP = 0.1
@@ -42,6 +43,7 @@ class PackedMaterial:
     moduli : micro-parameters in use, after any scaling to a wave speed.
     law : the bond law.
     held : components (0 x, 1 y, 2 rotation) that are held for all particles.
+    given_speeds : speeds (m/s) of P and S waves that the case gives; None for those it does not give.
     """
 
     brick: Brick
@@ -49,6 +51,7 @@ class PackedMaterial:
     moduli: Moduli
     law: Law
     held: tuple[int, ...] = ()
+    given_speeds: tuple[float | None, float | None] = (None, None)
     _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _continua: dict[tuple[int, ...], HomogenisedMaterial] = field(
@@ -71,6 +74,60 @@ class PackedMaterial:
     def inertia(self) -> np.ndarray:
         """Moments of inertia of the disks (n,) kg·m², mR²/2."""
         return 0.5 * self.mass * self.brick.radii**2
+
+    def at(self, height: float) -> PackedMaterial:
+        """The material at a height (m): the same everywhere, except in a layered ground."""
+        return self
+
+    def layer_of(self, heights: np.ndarray) -> np.ndarray:
+        """Number of the layer, from the top, of disks at heights (n,) m."""
+        return np.zeros(len(heights), dtype=np.int64)
+
+    def disk_masses(self, assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:
+        """Masses (n,) kg and moments of inertia (n,) kg·m² of an assembly's disks."""
+        return self.mass[assembly.brick_particle], self.inertia[assembly.brick_particle]
+
+    @property
+    def is_layered(self) -> bool:
+        """Whether masses and springs change with height."""
+        return len(self.pairings) > 1
+
+    @property
+    def pairings(self) -> tuple[tuple[int, int], ...]:
+        """The zones of the first and second disk of contacts, in the order of the variants of the brick's contacts."""
+        return ((0, 0),)
+
+    def pairing_of(self, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        """Number (b,) in `pairings` of contacts between disks at heights first and second (b,) m."""
+        return np.zeros(len(first), dtype=np.int64)
+
+    def stiffness_of(self, pairing: tuple[int, int]) -> Stiffness:
+        """Constants of the brick's contacts between two zones."""
+        return self.stiffness
+
+    def pair_constants(
+        self,
+        radii: tuple[np.ndarray, np.ndarray],
+        vectors: np.ndarray,
+        pairing: np.ndarray | int = 0,
+        *,
+        bonded: bool | None = None,
+        gaps_close: bool = True,
+        locked_in: float = 0.0,
+    ) -> np.ndarray:
+        """Constants (b, 12) of pairs, see `Law.pair_constants`.
+
+        radii : (b,) m of first and second disks. pairing : numbers (b,) in `pairings`. bonded : whether the pairs have
+        bonds; None: if the material has bonds.
+        """
+        return self.law.pair_constants(
+            self.moduli,
+            *radii,
+            vectors,
+            bonded=self.moduli.pb_emod > 0.0 if bonded is None else bonded,
+            gaps_close=gaps_close,
+            locked_in=locked_in,
+        )
 
     @property
     def packed_pressure(self) -> float:
@@ -147,12 +204,14 @@ class PackedMaterial:
         return float(np.sqrt(p_square)), float(np.sqrt(s_square))
 
 
-def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
+def make_packed_material(brick: Brick, material: Material, held: Iterable[str], along: int = 0) -> PackedMaterial:
     """Combine a brick with its material; if match is "assembly", the moduli are scaled to the given wave speed.
+
+    An S-wave speed alone always scales them. along : axis of the waves with the given speed, 0 (x) or 1 (y).
 
     Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
     """
-    ground = _scaled(brick, material, held)
+    ground = _scaled(brick, material, held, along)
     if material.locked_in is not None:
         most = LARGEST_OVERLAP * ground.moduli.emod
         if ground.packed_pressure <= 0.0:
@@ -163,29 +222,31 @@ def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) 
     return ground
 
 
-def _scaled(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
-    """A brick with its material; if match is "assembly", the moduli are scaled to the case's wave speed."""
+def _scaled(brick: Brick, material: Material, held: Iterable[str], along: int) -> PackedMaterial:
+    """A brick with its material, its moduli scaled to the case's wave speed where they are, see above."""
     ground = PackedMaterial(
         brick=brick,
         density=material.density,
         moduli=nominal_moduli(material),
         law=LAWS[material.law],
         held=tuple(AXES[name] for name in held),
+        given_speeds=(material.p_wave_speed, material.s_wave_speed),
     )
-    if material.p_wave_speed is None or material.match == "lattice":
+    kind, given = (1, material.s_wave_speed) if material.by_s_waves else (0, material.p_wave_speed)
+    if given is None or (kind == 0 and material.match == "lattice"):
         return ground
-    axis = 1 if 0 in ground.held else 0
-    factor = (material.p_wave_speed / ground.wave_speeds(axis)[0]) ** 2
+    moves = along if kind == 0 else 1 - along
+    axis = 1 - along if moves in ground.held else along
+    factor = (given / ground.wave_speeds(axis)[kind]) ** 2
     moduli = replace(ground.moduli, emod=ground.moduli.emod * factor, pb_emod=ground.moduli.pb_emod * factor)
     return replace(ground, moduli=moduli)
 
 
 def nominal_moduli(material: Material) -> Moduli:
     """Micro-parameters as the case gives them, or by Z eq. 11 from its wave speed."""
-    if material.p_wave_speed is not None:
-        emod, pb_emod = lattice_moduli(
-            material.density, material.p_wave_speed, material.contact_share, material.pb_rmul
-        )
+    speed = material.p_wave_speed or (material.s_wave_speed if material.by_s_waves else None)
+    if speed is not None:
+        emod, pb_emod = lattice_moduli(material.density, speed, material.contact_share, material.pb_rmul)
     else:
         assert material.emod is not None
         assert material.pb_emod is not None

@@ -188,6 +188,7 @@ def end_scene(case: DiskCase, side: str, bricks: int = LAST) -> DiskScene:
     ends: dict[str, Boundary] = {name: Periodic(type="periodic") for name in lateral}
     ends[side] = case.side(side).stiffest(side, case.box).at_rest()
     packing = case.packing.with_copies(*copies)
+    case = case.uniform_at(case.box[3 if side == "top" else 1])  # beside layers the lowest
     return build(
         replace(case, packing=packing, boundary=ends, hole=(), load=(), monitor=(), wave={}, static=None, incident=None)
     )

@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.boundaries.viscoelastic import Springs
 from dembound.disks.loads import forces_of
-from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.scene import DiskScene, medium_of_side
 from dembound.words import with_unit
 
 UNLIKE = 2.0
@@ -85,7 +85,7 @@ def _wrong_modulus(scene: DiskScene, side: str, table: Springs) -> Iterator[str]
     """A warning about a given modulus of springs that differs from that of the disks."""
     if table.young_modulus is None:
         return
-    medium = boundary_medium(scene.case, scene.ground, scene.edges[side].axis)
+    medium = medium_of_side(scene, side)
     ratio = table.shear_modulus(medium) / medium.shear_modulus if medium.shear_modulus > 0.0 else math.nan
     if ratio > OTHER_MODULUS or ratio < 1.0 / OTHER_MODULUS:  # nan is neither
         yield (

@@ -6,7 +6,7 @@ import numpy as np
 
 from dembound.disks.rest.block_stress import Uniformity
 from dembound.disks.rest.settled import Settled
-from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.scene import DiskScene, medium_of_side
 from dembound.disks.stepping.load_factor import load_factor_of
 from dembound.disks.stepping.near_ties import OPENED
 from dembound.disks.stepping.system import DiskSystem
@@ -99,7 +99,7 @@ def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
     """One side in numbers: type, particles, diameters (m), ΣD/H, and the numbers of its table."""
     table = scene.case.side(side)
     edge = (scene.sides if table.is_outside else scene.edges)[side]
-    medium = boundary_medium(scene.case, scene.ground, edge.axis)
+    medium = medium_of_side(scene, side)
     described: dict[str, Any] = {
         "type": table.type,
         "particles": len(edge.nodes),

@@ -72,7 +72,7 @@ def strong_waves(scene: DiskScene) -> dict[str, str]:
     if pressure is None:
         return {}
     entering = scene.case.entering
-    medium = boundary_medium(scene.case, scene.ground, axis=0)
+    medium = boundary_medium(scene.ground, axis=0)
     impedance = medium.density * medium.p_wave_speed
     stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in entering}
     return {
@@ -171,7 +171,7 @@ def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str
     for edge in scene.edges.values():
         table = scene.case.side(edge.side)
         grips = set(table.prescribed(edge.axis))
-        medium, length = boundary_medium(scene.case, scene.ground, edge.axis), float(scene.size[edge.axis])
+        medium, length = boundary_medium(scene.ground, edge.axis), float(scene.size[edge.axis])
         for motion, name in table.waves.items():
             wave, speed = scene.case.wave[name], medium.p_wave_speed if motion == "p" else medium.s_wave_speed
             if axis_of_motion(edge.side, motion) in grips:

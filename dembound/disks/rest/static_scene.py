@@ -9,7 +9,7 @@ from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.rest.tractions import Tractions
-from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.scene import DiskScene, media_of
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.state import State
 
@@ -23,8 +23,8 @@ class StaticScene:
         free_field = {side: table for side, table in case.boundary.items() if table.needs_column}
         for side, table in (free_field | dict(static.boundary)).items():
             if side in scene.edges:
-                edge = scene.edges[side]
-                table.support(edge, boundary_medium(case, scene.ground, edge.axis), case.wave, builder)
+                for part, medium in media_of(scene, side):
+                    table.support(part, medium, case.wave, builder)
         self.static = static
         self._tractions = None if static.stress is None else Tractions(scene, static.stress)
         self.scene = without_own_continua(scene)

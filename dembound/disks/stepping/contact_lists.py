@@ -36,4 +36,6 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
 def _row_plan(scene: DiskBody, name: str, part: Assembly) -> tuple[RowPlan, int] | None:
     """The rows of copies that a part's particles are held in and their first block; None if held one by one."""
     rows = scene.rows[list(scene.parts).index(name)]
-    return (plan_rows(part), int(rows.group_block[0])) if isinstance(rows, LaneRows) else None
+    if not isinstance(rows, LaneRows):
+        return None
+    return plan_rows(part, by_level=scene.ground.is_layered), int(rows.group_block[0])

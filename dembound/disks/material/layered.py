@@ -1,0 +1,334 @@
+"""Ground of horizontal layers: one packing whose masses and springs change with height.
+
+A contact between two layers has their springs in series, k = 2k₁k₂/(k₁ + k₂). For long waves the mass then changes at
+one height and the stiffness at others, for P and for S waves, up to half a diameter from the joint of the layers. A
+strip of bricks across the joint gives these heights, and the disks within five diameters of the joint get masses and
+springs that move all three to the joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.errors import CaseError
+from dembound.laws import Moduli, Stiffness
+from dembound.packings.brick import Brick
+from dembound.packings.tiling import Assembly, tile
+
+REACH = 5.0
+"""Diameters on either side of a joint in which masses and springs move its effective heights to it."""
+
+ON_JOINT = 1e-6
+"""Diameters below a joint from which a disk counts as above it: rounding of the heights of rows."""
+
+STRIP = 8.0
+"""Diameters, at least, of each third of the strip on either side of a joint, see `entry.APART`."""
+
+ROUNDS = 3
+"""Times that masses and springs beside a joint are corrected; each leaves about a tenth of the error."""
+
+SAME = 1e-9
+"""Relative difference of densities or moduli of two layers that counts as none."""
+
+FAINT = 1e-12
+"""Springs against single motions over those of the contacts, see `Network.relaxed`."""
+
+SLIGHT = 1e-3
+"""Relative change of springs by which the derivatives of the moduli are computed."""
+
+
+class Zone(NamedTuple):
+    """Disks of one material: heights low and high (m), number of their layer from the top, and the material."""
+
+    low: float
+    high: float
+    layer: int
+    material: PackedMaterial
+
+
+class Joint(NamedTuple):
+    """The effective heights (m) of a joint less the height asked for, before they are corrected.
+
+    mass : where the density changes; p, s : where the stiffness changes for P and S waves; nan where it does not.
+    """
+
+    height: float
+    mass: float
+    p: float
+    s: float
+
+
+@dataclass(frozen=True)
+class LayeredGround(PackedMaterial):
+    """A brick in several layers. Its own density, moduli and tensors are those of the layer of the slowest waves.
+
+    Attributes
+    ----------
+    zones : from the bottom up, without gaps; the lowest and the highest have no end.
+    layers : the layers as asked for, from the bottom up, without corrections.
+    joints : between the layers, from the bottom up.
+    """
+
+    zones: tuple[Zone, ...] = ()
+    layers: tuple[Zone, ...] = ()
+    joints: tuple[Joint, ...] = ()
+
+    def at(self, height: float) -> PackedMaterial:
+        """The material of the layer at a height (m), without corrections; above it on a joint."""
+        return self.layers[int(_number(self.layers, self._rounding, np.array(height)))].material
+
+    def zone_of(self, heights: np.ndarray) -> np.ndarray:
+        """Number of the zone, from the bottom, of disks at heights (n,) m."""
+        return _number(self.zones, self._rounding, heights)
+
+    def layer_of(self, heights: np.ndarray) -> np.ndarray:
+        """Number of the layer, from the top, of disks at heights (n,) m."""
+        return np.array([zone.layer for zone in self.zones])[self.zone_of(heights)]
+
+    def disk_masses(self, assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:
+        """Masses (n,) kg and moments of inertia (n,) kg·m² of an assembly's disks."""
+        zone, disk = self.zone_of(assembly.positions[:, 1]), assembly.brick_particle
+        mass, inertia = (
+            np.stack([getattr(each.material, name) for each in self.zones]) for name in ("mass", "inertia")
+        )
+        return mass[zone, disk], inertia[zone, disk]
+
+    @property
+    def pairings(self) -> tuple[tuple[int, int], ...]:
+        """The zones of the first and second disk of contacts, in the order of the variants of the brick's contacts."""
+        last = len(self.zones) - 1
+        return tuple((a, b) for a in range(last + 1) for b in (a - 1, a, a + 1) if 0 <= b <= last)
+
+    def pairing_of(self, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        """Number (b,) in `pairings` of contacts between disks at heights first and second (b,) m."""
+        a, b = self.zone_of(first), self.zone_of(second)
+        if (np.abs(a - b) > 1).any():
+            raise CaseError(["layer: a layer is too thin for this packing: contacts reach across it"])
+        return 3 * a + b - a
+
+    def stiffness_of(self, pairing: tuple[int, int]) -> Stiffness:
+        """Constants of the brick's contacts between two zones: springs in series."""
+        one, other = (self.zones[zone].material.stiffness for zone in pairing)
+        if pairing[0] == pairing[1]:
+            return one
+        normal, shear, bending = (
+            _in_series(getattr(one, name), getattr(other, name)) for name in ("normal", "shear", "bending")
+        )
+        return Stiffness(normal, shear, bending, one.arm_i, one.arm_j)
+
+    def pair_constants(
+        self,
+        radii: tuple[np.ndarray, np.ndarray],
+        vectors: np.ndarray,
+        pairing: np.ndarray | int = 0,
+        *,
+        bonded: bool | None = None,
+        gaps_close: bool = True,
+        locked_in: float = 0.0,
+    ) -> np.ndarray:
+        """Constants (b, 12) of pairs, see `PackedMaterial.pair_constants`; pairing : (b,) their zones."""
+        pairing = np.broadcast_to(pairing, len(vectors))
+        found = np.empty((len(vectors), 12))
+        for number in np.unique(pairing).tolist():
+            chosen = pairing == number
+            one, other = (
+                self.zones[zone].material.pair_constants(
+                    (radii[0][chosen], radii[1][chosen]),
+                    vectors[chosen],
+                    bonded=bonded,
+                    gaps_close=gaps_close,
+                    locked_in=locked_in,
+                )
+                for zone in self.pairings[number]
+            )
+            found[chosen] = one
+            found[chosen, 5:10] = _in_series(one[:, 5:10], other[:, 5:10])
+        return found
+
+    @cached_property
+    def _rounding(self) -> float:
+        return ON_JOINT * self.brick.mean_diameter
+
+
+def layered(layers: Sequence[PackedMaterial], joints: Sequence[float], origin: float) -> LayeredGround:
+    """The ground of layers of one brick.
+
+    layers : from the bottom up, one more than joints : heights (m) between them, ascending. origin : height (m) of the
+    lower edge of a brick.
+    """
+    ends = [-np.inf, *joints, np.inf]
+    plain = [Zone(*each) for each in zip(ends[:-1], ends[1:], range(len(layers) - 1, -1, -1), layers, strict=True)]
+    zones, found = [plain[0]], []
+    for under, above, height in zip(plain[:-1], plain[1:], joints, strict=True):
+        reach = min(REACH * layers[0].brick.mean_diameter, *(0.5 * (each.high - each.low) for each in (under, above)))
+        joint, nearby = _settled(under, above, height, origin, reach)
+        below = zones.pop()
+        zones += [below._replace(high=height - reach), *nearby, above._replace(low=height + reach)]
+        found.append(joint)
+    zones = [zone for zone in zones if zone.high > zone.low]
+    slowest = min(layers, key=lambda each: float(np.nanmin([each.wave_speeds(axis) for axis in (0, 1)])))
+    own = {each.name: getattr(slowest, each.name) for each in fields(PackedMaterial) if each.init}
+    return LayeredGround(**own, zones=tuple(zones), layers=tuple(plain), joints=tuple(found))
+
+
+def _number(zones: Sequence[Zone], rounding: float, heights: np.ndarray) -> np.ndarray:
+    """Number of the zone of disks at heights (m)."""
+    return np.searchsorted([zone.low for zone in zones[1:]], heights + rounding, side="right")
+
+
+def _in_series(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Twice the stiffness of two springs in series, each of which is half of a contact; 0 where either is 0."""
+    return np.divide(2.0 * one * other, one + other, out=np.zeros_like(one), where=one + other > 0.0)
+
+
+def _settled(below: Zone, above: Zone, height: float, origin: float, reach: float) -> tuple[Joint, tuple[Zone, Zone]]:
+    """A joint of two layers as it is without corrections, and the zones within reach (m) of it that correct it."""
+    strip = _strip(below.material.brick, height, origin)
+    below, above = below._replace(low=-np.inf), above._replace(high=np.inf)
+    first = left = _heights(strip, (below, above), height)
+    moved = np.zeros(3)
+    for _ in range(ROUNDS):
+        moved = moved + np.nan_to_num(left)
+        lower, upper = (_corrected(moved, below.material, above.material, reach, number) for number in (0, 1))
+        nearby = Zone(height - reach, height, below.layer, lower), Zone(height, height + reach, above.layer, upper)
+        zones = below._replace(high=height - reach), *nearby, above._replace(low=height + reach)
+        left = _heights(strip, zones, height)
+    return Joint(height, *first.tolist()), nearby
+
+
+def _strip(brick: Brick, height: float, origin: float) -> Assembly:
+    """A strip of bricks, periodic sideways, three thirds below and above the brick that a height (m) is in.
+
+    origin : height (m) of the lower edge of a brick.
+    """
+    deep = float(brick.size[1])
+    third = int(np.ceil(STRIP * brick.mean_diameter / deep))
+    begins = height - (height - origin) % deep - 3 * third * deep
+    return tile(brick, (1, 6 * third + 1), (True, False), (0.0, begins))
+
+
+def _heights(strip: Assembly, zones: Sequence[Zone], height: float) -> np.ndarray:
+    """Heights (3,) m where mass, and stiffness for P and S waves, change in a strip, less that of its joint.
+
+    The strip has the mass of two uniform layers that meet at h_m. Pulled along x or y, it lengthens like two uniform
+    layers that meet at h_c: by (h_c − y₁)/M₁ + (y₂ − h_c)/M₂ per unit of traction between the mass centres y₁, y₂ of
+    bricks away from its ends and from the joint. nan where the two layers do not differ.
+    """
+    below, above = zones[0].material, zones[-1].material
+    own = {each.name: getattr(below, each.name) for each in fields(PackedMaterial) if each.init}
+    ground = LayeredGround(**own, zones=tuple(zones))
+    up, row, third = strip.positions[:, 1], strip.tile[:, 1], strip.copies[1] // 6
+    wide, high = strip.size.tolist()
+    mass, _ = ground.disk_masses(strip)
+    found = np.full(3, np.nan)
+    if not np.isclose(below.density, above.density, rtol=SAME, atol=0.0):
+        more = mass.sum() / wide - above.density * high
+        found[0] = more / (below.density - above.density) + float(strip.origin[1] + below.brick.mass_offset[1])
+    ends = [(row >= third) & (row < 2 * third), (row > 4 * third) & (row <= 5 * third)]
+    moved = _pulled(ground, strip, row < third, row > 5 * third)
+    for place, component in ((1, 1), (2, 0)):
+        soft = [_compliances(each)[component] for each in (below, above)]
+        if component in below.held or np.isclose(soft[0], soft[1], rtol=SAME, atol=0.0):
+            continue
+        y, u = (
+            [float(np.average(values[part], weights=mass[part])) for part in ends]
+            for values in (up, moved[component, :, component])
+        )
+        found[place] = ((u[1] - u[0]) * wide + y[0] * soft[0] - y[1] * soft[1]) / (soft[0] - soft[1])
+    return found - height
+
+
+def _compliances(material: PackedMaterial) -> tuple[float, float]:
+    """Gradients ∂u_x/∂y and ∂u_y/∂y under unit traction along x and along y on horizontal planes, 1/Pa."""
+    free = [component for component in (0, 1) if component not in material.held]
+    numbers = [(2, 1)[component] for component in free]  # see homogenise.GRADIENTS
+    inverse = np.linalg.inv(material.tensor[np.ix_(numbers, numbers)])
+    found = [float(inverse[free.index(c), free.index(c)]) if c in free else np.nan for c in (0, 1)]
+    return found[0], found[1]
+
+
+def _pulled(ground: LayeredGround, strip: Assembly, held: np.ndarray, pulled: np.ndarray) -> np.ndarray:
+    """Motions (3, n, 2) of a strip's disks, some held and some pulled along x and along y by 1 N in all."""
+    from scipy.sparse import diags
+    from scipy.sparse.linalg import splu
+
+    from dembound.disks.material.homogenise import Network
+
+    count, up = len(strip.radii), strip.positions[:, 1]
+    first, second = up[strip.pairs].T
+    kinds = ground.pairing_of(first, second)
+    each = [ground.stiffness_of(pairing) for pairing in ground.pairings]
+    columns = {
+        field.name: np.stack([getattr(one, field.name) for one in each])[kinds, strip.contact_type]
+        for field in fields(Stiffness)
+    }
+    network = Network(count, strip.pairs, ground.brick.vectors[strip.contact_type], Stiffness(**columns))
+    free = np.ones((3, count), dtype=bool)
+    free[:2, held] = False
+    free[list(ground.held)] = False
+    ways = network.motion_matrix()[:, free.ravel()]
+    matrix = (ways.T @ diags(network.springs) @ ways).tocsc()
+    matrix += FAINT * diags(matrix.diagonal(), format="csc")
+    mass, _ = ground.disk_masses(strip)
+    force = np.zeros((3, count, 2))
+    for component in (0, 1):
+        force[component, pulled, component] = mass[pulled] / mass[pulled].sum()
+    moved = np.zeros_like(force)
+    moved[free] = splu(matrix).solve(force[free])
+    return moved
+
+
+def _corrected(
+    moved: np.ndarray, below: PackedMaterial, above: PackedMaterial, reach: float, number: int
+) -> PackedMaterial:
+    """The material below (number 0) or above (1) a joint, within reach (m) of it, that moves the joint.
+
+    moved : (3,) m, by which it moves down the heights where mass and stiffness for P and S waves change. The mass that
+    lacks is spread over both zones, and so is the compliance, of normal springs by that of P waves and of shear springs
+    by that of S waves.
+    """
+    own = (below, above)[number]
+    mass = -moved[0] * (below.density - above.density)
+    density = own.density * (1.0 + mass / (reach * (below.density + above.density)))
+    p, s = (
+        -np.log1p(-way * (one - other) / (reach * (one + other)))
+        for way, one, other in zip(moved[1:], *(_compliances(each)[::-1] for each in (below, above)), strict=True)
+    )
+    normal, shear = _factors(own, np.array([p, s]))
+    return replace(own, density=density, moduli=_scaled(own.moduli, normal, shear))
+
+
+def _scaled(moduli: Moduli, normal: float, shear: float) -> Moduli:
+    """Moduli with all normal and bending springs, and all shear springs, multiplied by factors."""
+    ratio = normal / shear
+    return replace(
+        moduli,
+        emod=moduli.emod * normal,
+        pb_emod=moduli.pb_emod * normal,
+        kratio=moduli.kratio * ratio,
+        pb_kratio=moduli.pb_kratio * ratio,
+    )
+
+
+def _factors(material: PackedMaterial, targets: np.ndarray) -> tuple[float, float]:
+    """Factors of normal and shear springs that change the logarithms of the moduli of P and S waves by targets (2,)."""
+    if not targets.any():
+        return 1.0, 1.0
+    moving = [1 - component for component in (1, 0) if component not in material.held]  # P along y, S along x
+    logarithms = [
+        -np.log(_compliances(each)[::-1])
+        for each in (
+            material,
+            replace(material, moduli=_scaled(material.moduli, 1.0 + SLIGHT, 1.0)),
+            replace(material, moduli=_scaled(material.moduli, 1.0, 1.0 + SLIGHT)),
+        )
+    ]
+    slopes = np.column_stack([each - logarithms[0] for each in logarithms[1:]]) / np.log1p(SLIGHT)
+    normal, shear = np.exp(np.linalg.lstsq(slopes[moving], targets[moving], rcond=1e-6)[0])
+    return float(normal), float(shear)
