@@ -125,6 +125,11 @@ class Material(Table):
             raise ValueError("\n".join(problems))
         return self
 
+    @property
+    def by_s_waves(self) -> bool:
+        """Whether the moduli follow from the S-wave speed alone."""
+        return all(getattr(self, key) is None for key in ("p_wave_speed", *MODULI_KEYS))
+
     def _problems_with_speed(self) -> list[str]:
         """Mistakes of a material given by its P-wave speed."""
         problems = [

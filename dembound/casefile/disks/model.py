@@ -1,7 +1,7 @@
 """A case of bonded disks: all tables of one file."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from dembound.casefile.disks.floors import floors, lowered
@@ -65,6 +65,18 @@ class DiskCase(Case):
     def joints(self) -> tuple[float, ...]:
         """Heights y (m) of the planes between layers, from the uppermost down."""
         return tuple(bottoms(self.layer, self.box[3])[:-1])
+
+    def layer_at(self, height: float) -> int:
+        """Number of the layer, from the top, at a height (m); above a plane between two on it."""
+        near = 1e-9 * max(abs(self.box[1]), abs(self.box[3]))
+        return sum(height + near < joint for joint in self.joints)
+
+    def uniform_at(self, height: float) -> "DiskCase":
+        """The case with the layer at a height (m) everywhere; itself without layers."""
+        if not self.layer:
+            return self
+        only = self.layer[self.layer_at(height)].model_copy(update={"thickness": None, "bottom": None})
+        return replace(self, layer=(only,))
 
     @property
     def layer_names(self) -> tuple[str, ...]:
