@@ -39,6 +39,14 @@ class Kind(StrEnum):
     p = "p"
 
 
+class Damping(StrEnum):
+    """How damped layers are taken."""
+
+    as_run = "as_run"
+    hysteretic = "hysteretic"
+    constant_q = "constant_q"
+
+
 class Baseline(StrEnum):
     """What is removed as the baseline."""
 
@@ -161,6 +169,21 @@ def wave(
             "of the case's only wave.",
         ),
     ] = None,
+    damping: Annotated[
+        Damping,
+        typer.Option(
+            help="Q of the case in --deconvolve: as_run, by the mechanisms of runs; hysteretic, G(1 + i/Q), as programs of "
+            "the equivalent-linear method; or causal constant_q.",
+        ),
+    ] = Damping.as_run,
+    transfer: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="NAME.png",
+            help="Picture of the transfer functions of the ground in --deconvolve to write (PNG and CSV).",
+            callback=png,
+        ),
+    ] = None,
     table: Annotated[
         Path | None, typer.Option(metavar="NAME.csv", help="Curves of the picture to write (CSV).", callback=_csv)
     ] = None,
@@ -194,7 +217,9 @@ def wave(
         err.print(f"warning: {remark}")
     motions = [processed(channel, processing.of(channel)) for channel in channels]
     if deconvolve is not None:
-        motions = _below(deconvolve, motions, kinds)
+        motions = _below(deconvolve, motions, kinds, damping, transfer)
+    elif transfer is not None or damping != Damping.as_run:
+        raise CaseError(["--transfer, --damping: go with --deconvolve"])
     for line in _lines(motions):
         out.print(f"  {line}")
     out.print(_table(channels, motions, processing))
@@ -232,13 +257,25 @@ def _chosen(record: Record, names: Sequence[str] | None) -> list[Channel]:
     return [channel for name in chosen for channel in record.channels if channel.component.casefold() == name]
 
 
-def _below(path: Path, motions: Sequence[Motion], kinds: Sequence[Kind] | None) -> list[Motion]:
-    """The incident motions of these kinds below the ground of a case whose surface moves so."""
-    from dembound.studies.deconvolution import below, ground_of_file
+def _below(
+    path: Path, motions: Sequence[Motion], kinds: Sequence[Kind] | None, damping: Damping, transfer: Path | None
+) -> list[Motion]:
+    """The incident motions of these kinds below the ground of a case whose surface moves so; its transfer functions."""
+    from dembound.plot.record import plot_transfers
+    from dembound.plot.style import save
+    from dembound.plot.table import write_lines
+    from dembound.studies.deconvolution import below, ground_of_file, transfers
 
     if not path.is_file():
         raise CaseError([f"--deconvolve: no file {path}"])
-    return below(ground_of_file(path), motions, [kind.value for kind in kinds] if kinds else [None] * len(motions))
+    case, names = ground_of_file(path), [kind.value for kind in kinds] if kinds else [None] * len(motions)
+    found = below(case, motions, names, damping.value)
+    if transfer is not None:
+        figure = plot_transfers(transfers(case, motions, names), f"Ground of {case.name}")
+        save(figure, transfer)
+        write_lines(figure, transfer.with_suffix(".csv"))
+        out.print(f"wrote {transfer} and {transfer.with_suffix('.csv')}")
+    return found
 
 
 def _lines(motions: Sequence[Motion]) -> Iterator[str]:

@@ -14,8 +14,8 @@ import numpy as np
 
 from dembound.exact.column import DECAY, PADDED, Column
 
-Quantity = Literal["displacement", "velocity", "gradient", "rate", "traction"]
-"""u m, v m/s, ∂u/∂y, ∂v/∂y 1/s, with y upwards, and the traction M ∂u/∂y, Pa, on planes facing up."""
+Quantity = Literal["displacement", "velocity", "gradient", "rate", "traction", "impulse"]
+"""u m, v m/s, ∂u/∂y, ∂v/∂y 1/s, with y upwards, and on planes facing up the traction, Pa, and its integral, Pa·s."""
 
 QUANTITIES: dict[Quantity, tuple[int, int]] = {
     "displacement": (0, 0),
@@ -23,6 +23,7 @@ QUANTITIES: dict[Quantity, tuple[int, int]] = {
     "gradient": (1, 0),
     "rate": (1, 1),
     "traction": (2, 0),
+    "impulse": (2, -1),
 }
 """Row of `Column.motion`, and number of derivatives in time."""
 
@@ -57,14 +58,22 @@ class ColumnMotion:
 
     Parameters
     ----------
-    column : its layers. velocity : of the incident wave alone, m/s at times in s, at a depth, m, in its half-space or
-    continued from there. begin : time (s) before which it is zero. until : last time (s); later ones double the window.
+    column : its layers. velocity : m/s at times in s, of the incident wave alone at a depth, m, in its half-space or
+    continued from there; or if `within` of the column at this depth. begin : time (s) before which it is zero. until :
+    last time (s); later ones double the window.
     """
 
     def __init__(
-        self, column: Column, velocity: Callable[[np.ndarray], np.ndarray], depth: float, begin: float, until: float
+        self,
+        column: Column,
+        velocity: Callable[[np.ndarray], np.ndarray],
+        depth: float,
+        begin: float,
+        until: float,
+        within: bool = False,
     ) -> None:
-        self._column, self._velocity, self._depth, self._begin, self._until = column, velocity, depth, begin, until
+        self._column, self._velocity, self._begin, self._until = column, velocity, begin, until
+        self._depth, self._within = depth, within
         self._found: dict[tuple[Quantity, tuple[float, ...], int | None], np.ndarray] = {}
 
     def at(self, of: Quantity, times: np.ndarray, depths: tuple[float, ...], number: int | None = None) -> np.ndarray:
@@ -113,7 +122,10 @@ class ColumnMotion:
         """A quantity (n, d) at all samples, after `POINTS` samples at rest."""
         window, (row, derivatives) = self._window, QUANTITIES[of]
         incident = window.spectrum * (2j * math.pi * window.frequencies) ** (derivatives - 1)
-        incident = incident / self._column.rising(window.frequencies, self._depth)
+        if self._within:
+            incident = incident / self._column.motion(window.frequencies, [self._depth])[0, 0]
+        else:
+            incident = incident / self._column.rising(window.frequencies, self._depth)
         count = window.kept + POINTS
         growth = np.exp(window.rate * window.step * np.arange(count))
         found = np.zeros((count + POINTS, len(depths)))

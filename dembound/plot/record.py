@@ -1,7 +1,8 @@
 """A measured ground motion: its histories and its spectra, a column for each component."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from dembound.plot.spectra import LEGEND_OF_FAINT, draw_curve, fourier_curve, on_logarithmic_axes, response_curve
@@ -52,5 +53,29 @@ def plot_motions(motions: Sequence[Motion], title: str) -> Figure:
     )
     for row in panels[HISTORIES:]:
         on_logarithmic_axes(row)
+    figure.suptitle(title, fontsize=11)
+    return figure
+
+
+@styled
+def plot_transfers(
+    transfers: Mapping[str, tuple[np.ndarray, Mapping[str, Mapping[str, np.ndarray]]]], title: str
+) -> Figure:
+    """Amplitudes of transfer functions to the surface, a row for each input, a column for each kind of wave.
+
+    transfers : by kind, "s" or "p": frequencies (k,) Hz, and by input and by curve |surface over input| (k,).
+    """
+    figure = new_figure(2.5 + 5.0 * len(transfers), 6.5)
+    panels = figure.subplots(2, len(transfers), sharex="col", sharey="row", squeeze=False)
+    for column, (kind, (frequencies, inputs)) in zip(panels.T, transfers.items(), strict=True):
+        for panel, (over, curves) in zip(column, inputs.items(), strict=True):
+            for number, (name, amplitude) in enumerate(curves.items()):
+                look = line_style(number) | {"linewidth": 1.0}
+                panel.plot(frequencies, amplitude, label=name, gid=f"{kind.upper()}, {over}, {name}", **look)
+            panels[list(inputs).index(over), 0].set_ylabel(f"surface over {over}, amplitude (–)")
+            panel.set_yscale("log")
+        column[0].set_title(f"{kind.upper()} waves")
+        column[0].legend(fontsize=8)
+        column[-1].set_xlabel("frequency (Hz)")
     figure.suptitle(title, fontsize=11)
     return figure

@@ -1,8 +1,10 @@
 """Deconvolution: the incident wave below the ground of a case that moves its surface as a record.
 
 What runs up below the free surface is half of its motion, early by the way up; from what runs up at the plane where the
-wave enters, the incident wave follows as in disks/within.py: in the same ground, or in the rock of the side. The ground
-is uniform and undamped, so this only delays and adds, and is computed for all frequencies of the record.
+wave enters, the incident wave follows as in disks/within.py: in the same ground, or in the rock of the side. Undamped
+ground only delays and adds, so that this is computed for all frequencies of the record. Waves that damped ground
+weakens on their way up must be larger below, the more so the higher their frequency: beyond the band of the record,
+where it has little but noise, they are not magnified further than within it.
 """
 
 import math
@@ -19,7 +21,7 @@ from dembound.casefile.disks.motions_of_waves import not_level
 from dembound.casefile.model import as_kind
 from dembound.casefile.toml import parsed
 from dembound.disks.scene import build
-from dembound.disks.within import Level
+from dembound.disks.within import Level, Modulus
 from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.records.processing import Motion as Recorded
@@ -33,19 +35,28 @@ ROUNDING = 1e-6
 """Steps by which a whole number of them may be missed."""
 
 
+FREQUENCIES = 2001
+"""Frequencies of transfer functions."""
+
+MODULI: dict[Modulus, str] = {"as_run": "Q as in runs", "hysteretic": "hysteretic", "constant_q": "constant Q"}
+"""How damped layers are taken -> words."""
+
+
 @dataclass(frozen=True)
 class Deconvolved:
     """An incident wave.
 
     velocity : (n + k,) m/s at the time step of the record. early : by how long (s) it begins before the record: if the
     wave begins at t = 0, the surface moves so much later than recorded. magnification : largest amplitude over that of
-    the record, which noise has too; band : highest frequency that counts, Hz.
+    the record, which noise has too; band : highest frequency that counts, Hz. is_limited : whether larger
+    magnifications beyond the band have been limited to that.
     """
 
     velocity: np.ndarray
     early: float
     magnification: float
     band: float
+    is_limited: bool = False
 
     @property
     def sentence(self) -> str:
@@ -54,6 +65,7 @@ class Deconvolved:
             f"the incident wave, and in it the noise of the record, has up to {self.magnification:.3g} times the "
             f"amplitude of the surface at frequencies to {self.band:.3g} Hz, above which the record's velocity has "
             f"less than {100.0 * FADED:g} % of its largest amplitude"
+            + (", and is magnified by no more" if self.is_limited else "")
         )
 
 
@@ -83,61 +95,73 @@ def level_ground(case: DiskCase, motion: Motion | None = None) -> Level:
     return Level.of(build(case), SIDE, motion)
 
 
-def incident_below(ground: Level, surface: np.ndarray, time_step: float, early: float | None = None) -> Deconvolved:
+def incident_below(
+    ground: Level, surface: np.ndarray, time_step: float, early: float | None = None, modulus: Modulus = "as_run"
+) -> Deconvolved:
     """The incident wave below level ground whose free surface has a velocity (n,) m/s, sampled at a step (s).
 
     early : by how long (s) it begins before the record; by default in whole steps as early as it must.
     """
-    way = ground.height / ground.speed
-    early = earliest(ground, time_step) if early is None else early
+    early = earliest(ground, time_step, modulus) if early is None else early
     count = len(surface) + math.ceil(early / time_step - ROUNDING)
     window = 2 ** math.ceil(math.log2(2 * count))
     frequencies = np.fft.rfftfreq(window, time_step)
-    turn = 2j * math.pi * frequencies
-    below = 0.5 * sum(factor * np.exp(-turn * (late - way)) for late, factor in ground.echoes)
-    spectrum = np.fft.rfft(surface, window) * below * np.exp(-turn * early)
-    velocity = np.fft.irfft(spectrum, window)[:count]
+    with np.errstate(over="ignore", invalid="ignore"):  # damped waves of high frequencies
+        below = ground.incident(frequencies, modulus)
     band = faded_frequency(*amplitude_spectrum(surface, time_step))
-    magnification = float(np.abs(below[frequencies <= max(band, frequencies[1])]).max())
-    return Deconvolved(velocity, early, magnification, band)
+    size = np.abs(below)
+    magnification = float(size[frequencies <= max(band, frequencies[1])].max())
+    limited = ground.is_damped & ~(size <= magnification)
+    below = np.where(np.isfinite(size), below * np.where(limited, magnification / size, 1.0), 0.0)
+    spectrum = np.fft.rfft(surface, window) * below * np.exp(-2j * math.pi * frequencies * early)
+    velocity = np.fft.irfft(spectrum, window)[:count]
+    return Deconvolved(velocity, early, magnification, band, bool(limited.any()))
 
 
-def earliest(ground: Level, time_step: float) -> float:
+def earliest(ground: Level, time_step: float, modulus: Modulus = "as_run") -> float:
     """The time (s) by which the incident wave must begin before the record, in whole time steps (s)."""
-    needed = (ground.height + max(0.0, -ground.mass, -ground.stiffness)) / ground.speed
+    needed = ground.way(modulus) + max(0.0, -ground.mass, -ground.stiffness) / ground.speed
     return time_step * math.ceil(needed / time_step)
 
 
 def ground_of_file(path: Path) -> DiskCase:
     """The case of a file without loads, static stage and holes; its name says that it had holes.
 
-    Other waves take the place of its own, whose files need not exist yet. Errors as of a case.
+    Other waves take the place of its own, whose files need not exist yet. Errors as of a case, and CaseError for damped
+    ground whose band is that of its waves.
     """
     data = parsed(path.read_text(encoding="utf-8-sig"))
     holes = data.pop("hole", [])
     for name in ("load", "static"):
         data.pop(name, None)
+    damped = any("quality_factor" in table for table in (data.get("material", {}), *data.get("layer", ())))
+    if damped and "band" not in data.get("damping", {}):
+        recipe = "a run takes it from its waves, which are yet to be made: give it, such as band = [0.3, 10.0]"
+        raise CaseError([f"damping.band: is missing; {recipe}"], str(path))
     data["wave"] = {name: {"type": "cosine", "amplitude": 1.0, "period": 1.0} for name in data.get("wave", {})}
     name = path.stem if not holes else f"{path.stem} without its hole{'s' if len(holes) > 1 else ''}"
     case = loads(tomli_w.dumps(data), path.parent, name)
     return as_kind(case, DiskCase, "is the case of a bar, deconvolution is for disks", str(path))
 
 
-def below(case: DiskCase, surfaces: Sequence[Recorded], kinds: Sequence[Motion | None]) -> list[Recorded]:
+def below(
+    case: DiskCase, surfaces: Sequence[Recorded], kinds: Sequence[Motion | None], modulus: Modulus = "as_run"
+) -> list[Recorded]:
     """The incident motions at the bottom of a case whose surface moves as components of a record, in step.
 
     kinds : of wave that each component becomes; None for that of the bottom side. All motions begin at one time.
-    Raises CaseError as `deconvolve`.
+    modulus : of damped layers. Raises CaseError as `deconvolve`.
     """
     grounds = {kind: level_ground(case, kind) for kind in dict.fromkeys(kinds)}
     ways = [grounds[kind] for kind in kinds]
     first = min(float(each.time[0]) for each in surfaces)
-    lead = max(earliest(ground, each.time_step) for ground, each in zip(ways, surfaces, strict=True))
+    lead = max(earliest(ground, each.time_step, modulus) for ground, each in zip(ways, surfaces, strict=True))
     shift = f"waves begin {lead:.4g} s before the record: the surface moves {lead:.4g} s later than recorded"
     motions = []
     for surface, ground in zip(surfaces, ways, strict=True):
         step, early = surface.time_step, lead + float(surface.time[0]) - first
-        found, rates = (incident_below(ground, each, step, early) for each in (surface.velocity, surface.acceleration))
+        histories = surface.velocity, surface.acceleration
+        found, rates = (incident_below(ground, each, step, early, modulus) for each in histories)
         done = f"deconvolution: ground of {case.name}, from its surface down to its {SIDE}; {found.sentence}"
         motions.append(
             replace(
@@ -150,3 +174,26 @@ def below(case: DiskCase, surfaces: Sequence[Recorded], kinds: Sequence[Motion |
             )
         )
     return motions
+
+
+def transfers(
+    case: DiskCase, surfaces: Sequence[Recorded], kinds: Sequence[Motion | None]
+) -> dict[str, tuple[np.ndarray, dict[str, dict[str, np.ndarray]]]]:
+    """Transfer functions of the ground of a case, up to the band of the components of a record.
+
+    By kind of wave: frequencies (k,) Hz, and by input, and by modulus in damped ground, |surface over input| (k,).
+    """
+    found = {}
+    for kind in dict.fromkeys(kinds):
+        ground = level_ground(case, kind)
+        band = max(faded_frequency(*amplitude_spectrum(each.velocity, each.time_step)) for each in surfaces)
+        frequencies = np.linspace(0.0, band, FREQUENCIES)
+        inputs: dict[str, dict[str, np.ndarray]] = {"outcrop": {}, "within": {}}
+        for modulus, words in MODULI.items() if ground.is_damped else [("as_run", "undamped")]:
+            column = ground.column(modulus, on_rock=True)
+            moved = column.motion(frequencies, [0.0, ground.height])[0]
+            rising = 1.0 if ground.alpha is not None else column.rising(frequencies, ground.height)
+            inputs["outcrop"][words] = np.abs(moved[0] / (2.0 * rising))
+            inputs["within"][words] = np.abs(moved[0] / moved[1])
+        found[kind or next(iter(case.driving[SIDE]))] = frequencies, inputs
+    return found

@@ -17,7 +17,7 @@ SURFACE = np.exp(-(((STEP * np.arange(400) - 1.0) / 0.06) ** 2))
 @pytest.mark.parametrize("alpha", [3.0, 0.4])
 def test_it_moves_the_surface_as_given(alpha: float) -> None:
     """Of stiffer rock at most half of the surface's amplitude comes in, of softer one up to half over α."""
-    found = incident_below(Level(29.0, 210.0, alpha), SURFACE, STEP)
+    found = incident_below(Level((Layer(29.0, 1900.0, 210.0),), alpha), SURFACE, STEP)
     column = Column([Layer(29.0, 1900.0, 210.0), Layer(1.0, 1900.0, alpha * 210.0)])
     delayed = np.concatenate([np.zeros(round(found.early / STEP)), SURFACE])
     assert np.abs(column.history(found.velocity, STEP) - delayed).max() < 1e-6
