@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from rich.table import Table
@@ -172,8 +172,8 @@ def wave(
     damping: Annotated[
         Damping,
         typer.Option(
-            help="Q of the case in --deconvolve: as_run, by the mechanisms of runs; hysteretic, G(1 + i/Q), as programs of "
-            "the equivalent-linear method; or causal constant_q.",
+            help="Q of the case in --deconvolve: as_run, by the mechanisms of runs; hysteretic, G(1 + i/Q), as in "
+            "equivalent-linear programs; or constant_q, causal.",
         ),
     ] = Damping.as_run,
     transfer: Annotated[
@@ -268,7 +268,8 @@ def _below(
 
     if not path.is_file():
         raise CaseError([f"--deconvolve: no file {path}"])
-    case, names = ground_of_file(path), [kind.value for kind in kinds] if kinds else [None] * len(motions)
+    case = ground_of_file(path)
+    names: Sequence[Literal["s", "p"] | None] = [kind.value for kind in kinds] if kinds else [None] * len(motions)
     found = below(case, motions, names, damping.value)
     if transfer is not None:
         figure = plot_transfers(transfers(case, motions, names), f"Ground of {case.name}")

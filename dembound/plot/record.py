@@ -1,6 +1,7 @@
 """A measured ground motion: its histories and its spectra, a column for each component."""
 
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -59,7 +60,7 @@ def plot_motions(motions: Sequence[Motion], title: str) -> Figure:
 
 @styled
 def plot_transfers(
-    transfers: Mapping[str, tuple[np.ndarray, Mapping[str, Mapping[str, np.ndarray]]]], title: str
+    transfers: Mapping[Literal["p", "s"], tuple[np.ndarray, Mapping[str, Mapping[str, np.ndarray]]]], title: str
 ) -> Figure:
     """Amplitudes of transfer functions to the surface, a row for each input, a column for each kind of wave.
 

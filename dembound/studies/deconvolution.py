@@ -39,7 +39,8 @@ FREQUENCIES = 2001
 """Frequencies of transfer functions."""
 
 MODULI: dict[Modulus, str] = {"as_run": "Q as in runs", "hysteretic": "hysteretic", "constant_q": "constant Q"}
-"""How damped layers are taken -> words."""
+UNDAMPED: dict[Modulus, str] = {"as_run": "undamped"}
+"""How damped, and undamped, layers are taken -> words."""
 
 
 @dataclass(frozen=True)
@@ -178,22 +179,22 @@ def below(
 
 def transfers(
     case: DiskCase, surfaces: Sequence[Recorded], kinds: Sequence[Motion | None]
-) -> dict[str, tuple[np.ndarray, dict[str, dict[str, np.ndarray]]]]:
+) -> dict[Motion, tuple[np.ndarray, dict[str, dict[str, np.ndarray]]]]:
     """Transfer functions of the ground of a case, up to the band of the components of a record.
 
     By kind of wave: frequencies (k,) Hz, and by input, and by modulus in damped ground, |surface over input| (k,).
     """
-    found = {}
-    for kind in dict.fromkeys(kinds):
-        ground = level_ground(case, kind)
+    found = dict[Motion, tuple[np.ndarray, dict[str, dict[str, np.ndarray]]]]()
+    for only in dict.fromkeys(kind or next(iter(case.driving[SIDE])) for kind in kinds):
+        ground = level_ground(case, only)
         band = max(faded_frequency(*amplitude_spectrum(each.velocity, each.time_step)) for each in surfaces)
         frequencies = np.linspace(0.0, band, FREQUENCIES)
         inputs: dict[str, dict[str, np.ndarray]] = {"outcrop": {}, "within": {}}
-        for modulus, words in MODULI.items() if ground.is_damped else [("as_run", "undamped")]:
+        for modulus, words in MODULI.items() if ground.is_damped else UNDAMPED.items():
             column = ground.column(modulus, on_rock=True)
             moved = column.motion(frequencies, [0.0, ground.height])[0]
             rising = 1.0 if ground.alpha is not None else column.rising(frequencies, ground.height)
             inputs["outcrop"][words] = np.abs(moved[0] / (2.0 * rising))
             inputs["within"][words] = np.abs(moved[0] / moved[1])
-        found[kind or next(iter(case.driving[SIDE]))] = frequencies, inputs
+        found[only] = frequencies, inputs
     return found
