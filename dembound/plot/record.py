@@ -72,7 +72,7 @@ def plot_transfers(
         for panel, (over, curves) in zip(column, inputs.items(), strict=True):
             for number, (name, amplitude) in enumerate(curves.items()):
                 look = line_style(number) | {"linewidth": 1.0}
-                panel.plot(frequencies, amplitude, label=name, gid=f"{kind.upper()}, {over}, {name}", **look)
+                panel.plot(frequencies, amplitude, label=name, gid=f"{kind.upper()} waves over {over}", **look)
             panels[list(inputs).index(over), 0].set_ylabel(f"surface over {over}, amplitude (–)")
             panel.set_yscale("log")
         column[0].set_title(f"{kind.upper()} waves")

@@ -38,6 +38,9 @@ ROUNDING = 1e-6
 FREQUENCIES = 2001
 """Frequencies of transfer functions."""
 
+PEAKS = 5.0
+"""Frequency up to which they are computed at least, over the lowest of the ground, 1 over four times the way up."""
+
 MODULI: dict[Modulus, str] = {"as_run": "Q as in runs", "hysteretic": "hysteretic", "constant_q": "constant Q"}
 UNDAMPED: dict[Modulus, str] = {"as_run": "undamped"}
 """How damped, and undamped, layers are taken -> words."""
@@ -180,15 +183,16 @@ def below(
 def transfers(
     case: DiskCase, surfaces: Sequence[Recorded], kinds: Sequence[Motion | None]
 ) -> dict[Motion, tuple[np.ndarray, dict[str, dict[str, np.ndarray]]]]:
-    """Transfer functions of the ground of a case, up to the band of the components of a record.
+    """Transfer functions of the ground of a case, over the band of the components of a record and its first peaks.
 
     By kind of wave: frequencies (k,) Hz, and by input, and by modulus in damped ground, |surface over input| (k,).
     """
     found = dict[Motion, tuple[np.ndarray, dict[str, dict[str, np.ndarray]]]]()
-    for only in dict.fromkeys(kind or next(iter(case.driving[SIDE])) for kind in kinds):
+    bands = [faded_frequency(*amplitude_spectrum(each.velocity, each.time_step)) for each in surfaces]
+    given: list[Motion] = [kind or next(iter(case.driving[SIDE])) for kind in kinds]
+    for only in dict.fromkeys(given):
         ground = level_ground(case, only)
-        band = max(faded_frequency(*amplitude_spectrum(each.velocity, each.time_step)) for each in surfaces)
-        frequencies = np.linspace(0.0, band, FREQUENCIES)
+        frequencies = np.linspace(0.0, max(*bands, PEAKS * 0.25 / ground.way()), FREQUENCIES)
         inputs: dict[str, dict[str, np.ndarray]] = {"outcrop": {}, "within": {}}
         for modulus, words in MODULI.items() if ground.is_damped else UNDAMPED.items():
             column = ground.column(modulus, on_rock=True)
