@@ -189,8 +189,7 @@ def transfers(
     """
     found = dict[Motion, tuple[np.ndarray, dict[str, dict[str, np.ndarray]]]]()
     bands = [faded_frequency(*amplitude_spectrum(each.velocity, each.time_step)) for each in surfaces]
-    given: list[Motion] = [kind or next(iter(case.driving[SIDE])) for kind in kinds]
-    for only in dict.fromkeys(given):
+    for only in [kind for kind in case.driving.get(SIDE, {}) if kind in kinds or None in kinds]:
         ground = level_ground(case, only)
         frequencies = np.linspace(0.0, max(*bands, PEAKS * 0.25 / ground.way()), FREQUENCIES)
         inputs: dict[str, dict[str, np.ndarray]] = {"outcrop": {}, "within": {}}
