@@ -23,6 +23,9 @@ LABELS = (
 HISTORIES = 3
 """Rows of histories."""
 
+HIGHEST = 100.0
+"""Largest amplitude of transfer functions that is shown: undamped ground stands still within at some frequencies."""
+
 
 @styled
 def plot_motions(motions: Sequence[Motion], title: str) -> Figure:
@@ -75,6 +78,9 @@ def plot_transfers(
                 panel.plot(frequencies, amplitude, label=name, gid=f"{kind.upper()} waves over {over}", **look)
             panels[list(inputs).index(over), 0].set_ylabel(f"surface over {over}, amplitude (–)")
             panel.set_yscale("log")
+            panel.yaxis.set_major_formatter("{x:g}")
+            panel.yaxis.set_minor_formatter("{x:g}")
+            panel.set_ylim(top=min(panel.get_ylim()[1], HIGHEST))
         column[0].set_title(f"{kind.upper()} waves")
         column[0].legend(fontsize=8)
         column[-1].set_xlabel("frequency (Hz)")

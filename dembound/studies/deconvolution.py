@@ -35,7 +35,7 @@ ROUNDING = 1e-6
 """Steps by which a whole number of them may be missed."""
 
 
-FREQUENCIES = 2001
+FREQUENCIES = 2000
 """Frequencies of transfer functions."""
 
 PEAKS = 5.0
