@@ -76,6 +76,11 @@ class Column:
     reference: float = 1.0
     mass: float | None = 0.0
 
+    def _turning(self, frequencies: np.ndarray) -> np.ndarray:
+        """ω (k,) of frequencies (k,) Hz; nearly zero for zero, where powers have no phase."""
+        omega = 2.0 * math.pi * np.asarray(frequencies)
+        return np.where(omega == 0.0, 1e-9 * 2.0 * math.pi * self.reference, omega)
+
     def motion(self, frequencies: np.ndarray, depths: Sequence[float], number: int | None = None) -> np.ndarray:
         """Displacement u, m, gradient ∂u/∂y and traction M ∂u/∂y, Pa, (3, d, k), at depths (d,) m; y points upwards.
 
@@ -86,8 +91,7 @@ class Column:
         layer of all depths, from 0, which may reach a little beyond it; by default each depth's own, at an interface
         the lower one.
         """
-        omega = 2.0 * math.pi * np.asarray(frequencies)
-        omega = np.where(omega == 0.0, 1e-9 * 2.0 * math.pi * self.reference, omega)  # where powers have no phase
+        omega = self._turning(frequencies)
         moduli = [layer.modulus(omega, self.damping, self.reference) for layer in self.layers]
         impedances = [np.sqrt(layer.density * each) for layer, each in zip(self.layers, moduli, strict=True)]
         waves = [1j * omega * layer.density / each for layer, each in zip(self.layers, impedances, strict=True)]
@@ -119,7 +123,7 @@ class Column:
 
     def rising(self, frequencies: np.ndarray, depth: float) -> np.ndarray:
         """The incident wave (k,) at a depth (m) over that at the top of the half-space, continued if this is above."""
-        omega, last = 2.0 * math.pi * np.asarray(frequencies), self.layers[-1]
+        omega, last = self._turning(frequencies), self.layers[-1]
         turn = 1j * omega * np.sqrt(last.density / last.modulus(omega, self.damping, self.reference))
         return np.asarray(np.exp(turn * (depth - sum(layer.thickness for layer in self.layers[:-1]))))
 
