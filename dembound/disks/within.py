@@ -22,6 +22,7 @@ from dembound.boundaries.sides import OPPOSITE
 from dembound.boundaries.signals import Incident, Signal
 from dembound.disks.entry import MOTIONS, entries_of, mass_begins, side_ends
 from dembound.disks.matching import factors_in, homogenised_beta
+from dembound.disks.material.layered import LayeredGround, Zone
 from dembound.disks.scene import DiskScene, with_waves
 from dembound.exact.column import Column, Damping, Layer
 from dembound.exact.column_motion import ColumnMotion, Quantity
@@ -130,9 +131,9 @@ class Level:
 
 def _layers(scene: DiskScene, motion: Motion, bottom: float, top: float) -> tuple[tuple[Layer, ...], float]:
     """The layers between two heights (m) for waves of a kind, and the frequency (Hz) at which their speeds hold."""
-    found, frequency = [], 1.0
-    ground = reversed(getattr(scene.ground, "layers", ((-math.inf, math.inf, scene.ground),)))
-    for table, (low, high, material) in zip(scene.case.materials, ground, strict=False):
+    ground, found, frequency = scene.ground, [], 1.0
+    zones = ground.layers[::-1] if isinstance(ground, LayeredGround) else [Zone(-math.inf, math.inf, 0, ground)]
+    for table, (low, high, _, material) in zip(scene.case.materials, zones, strict=True):
         if (thickness := min(high, top) - max(low, bottom)) > 0.0:
             speed, mechanisms = material.wave_speeds(1)[MOTIONS.index(motion)], getattr(material, "mechanisms", None)
             layer = Layer(thickness, material.density, speed)

@@ -17,6 +17,7 @@ from dembound.boundaries.sides import SIDES
 from dembound.boundaries.support import Incident
 from dembound.disks.beyond.cut_bonds import GRADIENT
 from dembound.disks.beyond.ground_waves import DELAYS, NO_PART
+from dembound.disks.material.layered import ON_JOINT
 from dembound.exact.column import Column, Layer
 from dembound.exact.column_motion import ColumnMotion, Quantity
 from dembound.outside.gll import Rule
@@ -45,8 +46,9 @@ class LayeredWaves:
     grain: float
 
     def layer_of(self, heights: np.ndarray) -> np.ndarray:
-        """The number (k,) of the layer at heights (k,) m, from 0 at the surface; on a joint that below."""
-        return len(self.joints) - np.searchsorted(np.array(self.joints[::-1]), heights, "left")
+        """The number (k,) of the layer at heights (k,) m, from 0 at the surface; on a joint that above."""
+        near = ON_JOINT * self.grain
+        return len(self.joints) - np.searchsorted(np.array(self.joints[::-1]), heights + near, "right")
 
     def near(self, places: np.ndarray) -> NearLayers:
         """The waves near places (k, 2) m only."""
