@@ -12,9 +12,10 @@ from dembound.boundaries.support import BoundaryMedium, Edge, Incident, SupportB
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.beyond.edges import edges_beside_column, find_edges
-from dembound.disks.beyond.ground_waves import ground_waves, rising_waves
+from dembound.disks.beyond.ground_waves import rising_waves
 from dembound.disks.beyond.hollowed import hollowed
 from dembound.disks.beyond.incident import let_in, let_in_below, power_through
+from dembound.disks.beyond.layered_waves import undisturbed
 from dembound.disks.beyond.mesh import NO_FLOORS, Outline
 from dembound.disks.beyond.surroundings import Surroundings, surroundings_of
 from dembound.disks.body import DiskBody, parts_of
@@ -182,7 +183,7 @@ def _scene(
     foot = None
     if seam is not None and "bottom" in beyond:
         foot = _foot(case, ground, assembly, seam, slots if outside is None else outside.laid_out(slots))
-    waves = None if outside is None else ground_waves(case, ground, outside)
+    waves = None if outside is None else undisturbed(case, ground, outside)
     monitors, between = monitors_of(case, ground, assembly, seam, outside, waves)
     scene = DiskScene(
         case=case,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -37,6 +38,17 @@ NO_PART = 1e-12
 """Part of a wave below which it is rounding: in an isotropic medium S waves have no P part."""
 
 
+class Arriving(Protocol):
+    """The motion of the undisturbed ground under an incident wave."""
+
+    @property
+    def across(self) -> float:
+        """Time (s) of the incident wave, or the slowest part of it, through a mean diameter of the disks."""
+
+    def arrives(self, places: np.ndarray) -> float:
+        """Time (s) from the incident wave at its reference to that at the first of places (k, 2) m."""
+
+
 @dataclass(frozen=True, eq=False)
 class GroundWaves:
     """The motion of the undisturbed ground.
@@ -51,6 +63,15 @@ class GroundWaves:
     waves: tuple[ElasticPlaneWave, ...]
     signals: tuple[Incident, ...]
     grain: float
+
+    @property
+    def across(self) -> float:
+        """Time (s) of the incident wave through a mean diameter of the disks."""
+        return self.grain * float(np.hypot(*self.waves[0].slowness))
+
+    def arrives(self, places: np.ndarray) -> float:
+        """Time (s) from the incident wave at its reference to that at the first of places (k, 2) m."""
+        return float(self.waves[0].delays(places).min())
 
     def near(self, places: np.ndarray) -> NearPlaces:
         """The waves near places (k, 2) m only."""
@@ -182,7 +203,7 @@ def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) 
         waves += reflected
     signals = (case.wave[table.wave],) * len(waves)
     found = GroundWaves(medium, tuple(waves), signals, ground.brick.mean_diameter)
-    _must_not_be_there(case, found, outside)
+    must_not_be_there(case, found, outside)
     return found
 
 
@@ -213,14 +234,13 @@ def _beyond(medium: Medium, table: IncidentWave) -> str:
     )
 
 
-def _must_not_be_there(case: DiskCase, found: GroundWaves, outside: Surroundings) -> None:
+def must_not_be_there(case: DiskCase, found: Arriving, outside: Surroundings) -> None:
     """Raise CaseError if the incident wave has reached the body at the beginning of the run."""
     assert case.incident is not None
     left, bottom, right, top = outside.box
-    first = float(found.waves[0].delays(np.array([(left, bottom), (right, bottom), (left, top), (right, top)])).min())
+    first = found.arrives(np.array([(left, bottom), (right, bottom), (left, top), (right, top)]))
     begins = case.wave[case.incident.wave].start
-    earliest = found.grain * float(np.hypot(*found.waves[0].slowness))  # ties are within a diameter of the box
-    if begins + first < -earliest:
+    if begins + first < -found.across:  # ties are within a diameter of the box
         raise CaseError(
             [
                 f"incident.point: the wave would reach the disks {-(begins + first):.3g} s before the run begins; give "

@@ -10,14 +10,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from dembound.boundaries.sides import SIDES
 from dembound.boundaries.support import Incident
+from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.cut_bonds import GRADIENT
-from dembound.disks.beyond.ground_waves import DELAYS, NO_PART
-from dembound.disks.material.layered import ON_JOINT
+from dembound.disks.beyond.ground_waves import (
+    DELAYS,
+    NO_PART,
+    GroundWaves,
+    ground_waves,
+    must_not_be_there,
+    reference_point,
+)
+from dembound.disks.beyond.mesh import medium_of
+from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.material.layered import ON_JOINT, LayeredGround
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.exact.column import Column, Layer
 from dembound.exact.column_motion import ColumnMotion, Quantity
 from dembound.outside.gll import Rule
@@ -35,7 +47,8 @@ class LayeredWaves:
     ----------
     surface : height y (m) of its top. joints : heights (m) of the planes between layers, from the uppermost down.
     columns : a column for each wave. polarisations : (w, l, 2) unit motion of each wave in each layer. impedances :
-    (w, l) ρc of each, Pa·s/m. grain : mean diameter of the disks, m.
+    (w, l) ρc of each, Pa·s/m. grain : mean diameter of the disks, m. height : of the reference of the incident wave, m.
+    speeds : (w, l) m/s.
     """
 
     surface: float
@@ -44,6 +57,20 @@ class LayeredWaves:
     polarisations: np.ndarray
     impedances: np.ndarray
     grain: float
+    height: float
+    speeds: np.ndarray
+
+    @property
+    def across(self) -> float:
+        """Time (s) of the slowest wave through a mean diameter of the disks."""
+        return self.grain / float(self.speeds.min())
+
+    def arrives(self, places: np.ndarray) -> float:
+        """Time (s) from the incident wave at its reference to that at the first of places (k, 2) m."""
+        low, high = sorted((self.height, float(places[:, 1].min())))
+        planes = np.clip([np.inf, *self.joints, -np.inf], low, high)
+        way = float((-np.diff(planes) / self.speeds.max(axis=0)).sum())
+        return way if low == self.height else -way
 
     def layer_of(self, heights: np.ndarray) -> np.ndarray:
         """The number (k,) of the layer at heights (k,) m, from 0 at the surface; on a joint that above."""
@@ -217,7 +244,35 @@ def rising_in_layers(
             columns.append(ColumnMotion(Column(layers, mass=mass), velocity, top - height, *span))
             polarisations.append(motions)
             impedances.append([medium.density * speed for medium, speed in zip(media, speeds, strict=True)])
-    return LayeredWaves(top, tuple(joints), tuple(columns), np.array(polarisations), np.array(impedances), grain)
+    moved, stiff = np.array(polarisations), np.array(impedances)
+    speeds = stiff / np.array([medium.density for medium in media])
+    return LayeredWaves(top, tuple(joints), tuple(columns), moved, stiff, grain, height, speeds)
+
+
+def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -> GroundWaves | LayeredWaves | None:
+    """The motion of the ground under the incident wave of a case, None without one; errors as of `ground_waves`."""
+    table = case.incident
+    if table is None or not isinstance(ground, LayeredGround):
+        return ground_waves(case, ground, outside)
+    layers = [zone.material for zone in reversed(ground.layers)]
+    wave, grain = case.wave[table.wave], ground.brick.mean_diameter
+    found = rising_in_layers(
+        [medium_of(material) for material in layers],
+        case.joints,
+        outside.free_surface,
+        (wave, None) if table.type == "sv" else (None, wave),
+        reference_point(case)[1],
+        (wave.begin(), case.run.duration),
+        grain,
+        [mechanisms and mechanisms.relative_modulus for mechanisms in map(_mechanisms, layers)],
+    )
+    must_not_be_there(case, found, outside)
+    return found
+
+
+def _mechanisms(material: PackedMaterial) -> Any:
+    """The mechanisms of damped ground; None for others."""
+    return getattr(material, "mechanisms", None)
 
 
 def _summed(

@@ -10,6 +10,7 @@ import numpy as np
 
 from dembound.disks.beyond.ground_motion import GroundMotion
 from dembound.disks.beyond.ground_waves import GroundWaves
+from dembound.disks.beyond.layered_waves import LayeredWaves
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.motion.beside import Beside
 from dembound.packings.column import nearest_in_column
@@ -31,7 +32,7 @@ class RecordedContinuum(Beside):
     def __init__(
         self,
         outside: Surroundings,
-        waves: GroundWaves | None,
+        waves: GroundWaves | LayeredWaves | None,
         disks: Assembly,
         column: int,
         mass: np.ndarray,

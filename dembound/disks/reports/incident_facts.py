@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dembound.disks.beyond.ground_waves import GroundWaves, reference_point
+from dembound.disks.beyond.layered_waves import LayeredWaves
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.scene import DiskScene
 from dembound.outside.plane_waves import GRAZING, ElasticPlaneWave, critical_angle
@@ -26,11 +27,16 @@ def incident_facts(scene: DiskScene) -> Entries:
     assert table is not None
     assert outside is not None
     x, y = reference_point(scene.case)
+    along = "" if isinstance(waves, LayeredWaves) else _along(waves.waves[0], outside)
     yield (
         "incident wave",
         f"{NAMES[table.type]}, {_way(table.angle)}, with the velocity of wave {table.wave} at "
-        f"({x:.10g}, {y:.10g}) m{_along(waves.waves[0], outside)}; reaches the disks at {arrival(scene, waves):.4g} s",
+        f"({x:.10g}, {y:.10g}) m{along}; reaches the disks at {arrival(scene, waves):.4g} s",
     )
+    if isinstance(waves, LayeredWaves):
+        surface = " and by the surface" * (outside.free_surface is not None)
+        yield "reflected waves", f"by the layers{surface}, from the column of layers at each frequency"
+        return
     if outside.free_surface is None:
         yield "reflected waves", "none, as the ground has no surface"
         return
@@ -54,11 +60,10 @@ def _along(wave: ElasticPlaneWave, outside: Surroundings) -> str:
     return f", at {1.0 / slowness:.5g} m/s along {where}" if slowness > STRAIGHT * abs(wave.slowness[1]) else ""
 
 
-def arrival(scene: DiskScene, waves: GroundWaves) -> float:
+def arrival(scene: DiskScene, waves: GroundWaves | LayeredWaves) -> float:
     """Time (s) at which the wave reaches the first of the disks."""
     assert scene.case.incident is not None
-    first = float(waves.waves[0].delays(scene.assembly.positions).min())
-    return scene.case.wave[scene.case.incident.wave].start + first
+    return scene.case.wave[scene.case.incident.wave].start + waves.arrives(scene.assembly.positions)
 
 
 def _reflected(waves: GroundWaves) -> Iterator[str]:

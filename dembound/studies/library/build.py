@@ -180,7 +180,7 @@ def _lead(planned: Plan[DiskScene], spacing: float) -> int:
     """
     if (waves := planned.scene.ground_waves) is None:
         return 0
-    return math.ceil(waves.grain * math.hypot(*waves.waves[0].slowness) / spacing)
+    return math.ceil(waves.across / spacing)
 
 
 def _of_runs(base: DiskCase, longer: float) -> DiskCase:
@@ -188,8 +188,9 @@ def _of_runs(base: DiskCase, longer: float) -> DiskCase:
     data = parsed(base.text)
     data["run"]["duration"] += longer
     data["output"].pop("load_factor")
-    for key in (*STRENGTH_KEYS, "pb_fa"):
-        data["material"].pop(key, None)
+    for table in (data["material"], *data.get("layer", ())):
+        for key in (*STRENGTH_KEYS, "pb_fa"):
+            table.pop(key, None)
     return _of_disks(loads(tomli_w.dumps(data), base.folder, base.name, base.files))
 
 

@@ -67,7 +67,9 @@ class Problem(ABC):
 
 
 def solid_of(scene: DiskScene) -> Solid:
-    """The homogenised medium of a scene; raises CaseError if it is not isotropic."""
+    """The homogenised medium of a scene; raises CaseError if it is not isotropic, or layered."""
+    if scene.ground.is_layered:
+        raise CaseError(["layer: the solution is that of uniform ground; leave the layers out"])
     tensor = scene.ground.material_tensor
     if abs(tensor[0, 0] - tensor[0, 1] - 2.0 * tensor[3, 3]) > ISOTROPY * tensor[0, 0]:
         raise CaseError(["material: makes an anisotropic medium, which has no such solution; see kratio and fric"])
