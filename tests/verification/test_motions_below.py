@@ -1,5 +1,7 @@
 """The same ground moves alike under its incident wave, outcrop, motion within, and under the deconvolved surface."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 import tomli_w
@@ -15,18 +17,24 @@ ROCK = {"density": 2400.0, "p_wave_speed": 1100.0, "s_wave_speed": 672.0}
 PULSE = {"type": "ricker", "amplitude": 1.0, "frequency": 6.0}
 
 
-def column(bottom: dict, wave: dict, *, half_mass: bool = True, material: dict | None = None):
-    """A column, 20 m high, of S waves of 212 m/s, 70 disks in the shortest wave."""
+LAYERS = [{"thickness": 8.0, "density": 1800.0, "s_wave_speed": 170.0}, {"s_wave_speed": 300.0}]
+
+
+def column(bottom: dict, wave: dict, *, half_mass: bool = True, layers: Sequence[dict] = ()):
+    """A column, 20 m high, of S waves of 212 m/s, 70 disks in the shortest wave; maybe of layers."""
+    given = {"type": "viscous_input", "wave_s": "w", "half_mass": half_mass} | bottom
+    given = {key: value for key, value in given.items() if value is not None}
     tables = {
         "packing": {"pattern": "A", "size": [0.5, 20.0], "radius": 0.25},
         "material": {"density": 1900.0, "p_wave_speed": 300.0, "fric": 0.5},
         "boundary": {
             "left": {"type": "periodic"},
             "right": {"type": "periodic"},
-            "bottom": {"type": "viscous_input", "wave_s": "w", "half_mass": half_mass} | bottom,
+            "bottom": given,
         },
         "wave": {"w": wave, "v": PULSE | {"frequency": 4.0}},
         "run": {"duration": 1.0},
+        "layer": [*layers],
     }
     return loads(tomli_w.dumps(tables))
 
@@ -68,17 +76,28 @@ def test_both_components_on_rock_do_not_disturb_each_other(lab) -> None:
     assert np.linalg.norm(both[:, 1] - expected) < 1e-3 * np.linalg.norm(expected)
 
 
-@pytest.mark.parametrize("half_mass", [True, False], ids=["half", "whole"])
-@pytest.mark.parametrize("below", [{"rock": ROCK}, {}], ids=["rock", "same"])
-def test_the_deconvolved_surface_comes_back(lab, tmp_path, below: dict, half_mass: bool) -> None:
+@pytest.mark.parametrize(
+    ("below", "half_mass", "layers"),
+    [
+        ({"rock": ROCK}, True, ()),
+        ({"rock": ROCK}, False, ()),
+        ({}, True, ()),
+        ({}, False, ()),
+        ({"rock": ROCK}, True, LAYERS),
+        ({"type": "outside", "half_mass": None}, False, LAYERS),
+    ],
+    ids=["rock", "rock, whole cells", "same", "same, whole cells", "layers on rock", "layers on continuum"],
+)
+def test_the_deconvolved_surface_comes_back(lab, tmp_path, below: dict, half_mass: bool, layers) -> None:
     """In a run to 0.5 %: dispersion, and lines between samples of 0.5 ms."""
     step = 5e-4
     time = step * np.arange(1600)
     record = column({}, PULSE).wave["w"].velocity(time)
-    found = deconvolve(column(below, PULSE, half_mass=half_mass), record, step)
+    found = deconvolve(column(below, PULSE, half_mass=half_mass, layers=layers), record, step)
     delayed = np.concatenate([np.zeros(round(found.early / step)), record])
     path = tmp_path / "below.txt"
     np.savetxt(path, np.column_stack([step * np.arange(len(found.velocity)), found.velocity]))
-    times, moved = surface(lab, column(below, {"type": "file", "path": str(path)}, half_mass=half_mass))
+    wave = {"type": "file", "path": str(path)}
+    times, moved = surface(lab, column(below, wave, half_mass=half_mass, layers=layers))
     expected = np.interp(times, step * np.arange(len(delayed)), delayed)
     assert np.linalg.norm(moved[:, 0] - expected) < 0.005 * np.linalg.norm(expected)

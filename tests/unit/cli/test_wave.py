@@ -144,3 +144,27 @@ def test_a_surface_record_is_taken_down_in_step(dembound, recorded, tmp_path) ->
     for wrong in (("--as", "s"), ("--as", "s", "--as", "p", "--component", "NS")):
         assert "--as: must be given" in dembound("wave", recorded, *options, *wrong).err
     assert dembound("wave", recorded, "--deconvolve", "none.toml").err == "--deconvolve: no file none.toml\n"
+
+
+def test_transfer_functions_of_layers_are_drawn_and_written(dembound, recorded, tmp_path) -> None:
+    """At low frequencies all ground moves alike; the first peak on rock is the ratio of impedances at most."""
+    layers = "[[layer]]\nthickness = 8.0\np_wave_speed = 200.0\n[[layer]]\n"
+    text = SOIL.replace('wave_p = "up"\n', "").replace("[boundary.left]", layers + "[boundary.left]", 1)
+    (tmp_path / "soil.toml").write_text(text, encoding="utf-8")
+    options = ("--component", "NS", "-o", "rock.csv", "--deconvolve", "soil.toml")
+    answer = dembound("wave", recorded, *options, "--transfer", "ground.png")
+    assert answer.code == 0, answer.err
+    assert "wrote ground.png and ground.csv" in answer.out
+    heads, *_ = (tmp_path / "ground.csv").read_text(encoding="utf-8").splitlines()
+    assert [words in heads for words in ("S waves over outcrop, undamped", "S waves over within")] == [True, True]
+    frequency, over_outcrop, over_within = np.genfromtxt(tmp_path / "ground.csv", delimiter=",", skip_header=1).T
+    assert (frequency[0], over_outcrop[0], over_within[0]) == (0.0, 1.0, 1.0)
+    softer = 2400.0 * 672.0 / (1900.0 * 200.0 / np.sqrt(2.0))
+    assert 3.0 < over_outcrop.max() < softer
+    (tmp_path / "soil.toml").write_text(
+        text.replace("fric = 0.5", "fric = 0.5\nquality_factor = 20.0"), encoding="utf-8"
+    )
+    answer = dembound("wave", recorded, *options)
+    assert answer.err.startswith("soil.toml: damping.band: is missing; a run takes it from its waves")
+    for option in (("--transfer", "ground.png"), ("--damping", "hysteretic")):
+        assert dembound("wave", recorded, *option).err.startswith("--transfer, --damping: go with --deconvolve")
