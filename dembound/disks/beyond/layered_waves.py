@@ -250,11 +250,15 @@ def rising_in_layers(
 
 
 def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -> GroundWaves | LayeredWaves | None:
-    """The motion of the ground under the incident wave of a case, None without one; errors as of `ground_waves`."""
-    table = case.incident
-    if table is None or not isinstance(ground, LayeredGround):
+    """The motion of the ground under the incident wave of a case, None without one; errors as of `ground_waves`.
+
+    Damped uniform ground is one layer if the wave runs straight up.
+    """
+    table, layers = case.incident, [ground]
+    if isinstance(ground, LayeredGround):
+        layers = [zone.material for zone in reversed(ground.layers)]
+    if table is None or table.angle != 0.0 or (len(layers) == 1 and _mechanisms(ground) is None):
         return ground_waves(case, ground, outside)
-    layers = [zone.material for zone in reversed(ground.layers)]
     wave, grain = case.wave[table.wave], ground.brick.mean_diameter
     found = rising_in_layers(
         [medium_of(material) for material in layers],

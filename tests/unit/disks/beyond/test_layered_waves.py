@@ -68,3 +68,20 @@ def test_motion_and_traction_do_not_jump_at_a_joint_and_the_surface_is_free() ->
             np.testing.assert_allclose(above, below, atol=1e-9 * np.abs(below).max())
         at_surface = waves.along(wave, "traction", TIMES, np.array([SURFACE]), 0)
         assert np.abs(at_surface).max() < 1e-9 * np.abs(below).max()
+
+
+def test_ground_without_a_surface_sends_nothing_back() -> None:
+    """Above the uppermost joint; below it runs what the joint reflects, (Z₁ − Z₂)/(Z₁ + Z₂) of the wave."""
+    stiff = Medium.isotropic(2300.0, 1000.0, 500.0)
+    waves = rising_in_layers([SOFT, stiff], [5.0], None, (PULSE, None), 0.0, (0.0, 0.2), GRAIN)
+    times, (below, above) = np.linspace(0.0, 0.2, 40), (2300.0 * 500.0, 1800.0 * 250.0)
+    up, down = 5.0 / 500.0 + 2.0 / 250.0, 5.0 / 500.0 + 4.0 / 500.0
+    expected = np.stack(
+        [
+            2.0 * below / (below + above) * PULSE.velocity(times - up),
+            PULSE.velocity(times - 1.0 / 500.0) + (below - above) / (below + above) * PULSE.velocity(times - down),
+        ],
+        axis=1,
+    )
+    found = waves.motion("velocity", times, np.array([(0.0, 7.0), (0.0, 1.0)]))[:, :, 0]
+    np.testing.assert_allclose(found, expected, atol=1e-5)
