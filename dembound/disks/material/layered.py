@@ -113,14 +113,16 @@ class LayeredGround(PackedMaterial):
         return 3 * a + b - a
 
     def stiffness_of(self, pairing: tuple[int, int]) -> Stiffness:
-        """Constants of the brick's contacts between two zones: springs in series."""
-        one, other = (self.zones[zone].material.stiffness for zone in pairing)
+        """Constants of the brick's contacts between two zones: contacts in series, and bonds in series."""
+        one = self.zones[pairing[0]].material.stiffness
         if pairing[0] == pairing[1]:
             return one
-        normal, shear, bending = (
-            _in_series(getattr(one, name), getattr(other, name)) for name in ("normal", "shear", "bending")
+        radii = self.brick.radii[self.brick.pairs].T
+        constants = self.pair_constants(
+            (radii[0], radii[1]), self.brick.vectors, self.pairings.index(pairing), gaps_close=False
         )
-        return Stiffness(normal, shear, bending, one.arm_i, one.arm_j)
+        normal, shear = (constants[:, 5:7] + constants[:, 7:9]).T
+        return Stiffness(normal, shear, constants[:, 9], one.arm_i, one.arm_j)
 
     def pair_constants(
         self,
