@@ -77,7 +77,14 @@ def test_a_random_packing_has_the_motion_of_its_layers(lab) -> None:
 PACKINGS = {
     "A": {"pattern": "A", "radius": 0.5, "size": [12.0, 24.0]},
     "B": {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 6.0], "size": [12.0, 24.0]},
-    "C": {"pattern": "C", "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 6.0], "size": [12.0, 24.0]},
+    "C": {
+        "pattern": "C",
+        "edge_radius": 0.25,
+        "radius": 0.25,
+        "radius_ratio": 1.5,
+        "brick": [6.0, 6.0],
+        "size": [12.0, 24.0],
+    },
 }
 
 
