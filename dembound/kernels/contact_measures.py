@@ -6,6 +6,7 @@ from numba import njit, types
 from dembound.kernels.apart import apart, in_chunks
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum, largest
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
+from dembound.kernels.limits import limit_of
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
 
 TURN = 0.01
@@ -33,8 +34,7 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
     """Fill closest (chunks,) with the least `slack` of each chunk of pairs, negative."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
     constants, state, slip = contacts.constants, contacts.state, contacts.slip
-    friction, tension, cohesion = limits.friction, limits.tension, limits.cohesion
-    tan_fa, geometry = limits.tan_fa, limits.geometry
+    geometry = limits.geometry
     b = first.size
     for chunk in range(begin, end):
         room = np.inf
@@ -52,6 +52,7 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
             elif constants[k, U(3)] >= distance:
                 room = min(room, overlap)
                 if ks > 0.0:
+                    friction = limit_of(limits.friction, k)
                     stuck = shear - slip[c] if keeps_slip else shear
                     room = min(room, (friction * kn * overlap - ks * abs(stuck)) / (ks + friction * kn))
             else:
@@ -64,8 +65,9 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
                 turned = bending * abs(u[U(2), j] - u[U(2), i])
                 normal = constants[k, U(7)] * per_area
                 sheared = constants[k, U(8)] * per_area
-                room = min(room, (tension - stress - turned) / (2.0 * normal))
-                strength = cohesion - stress * tan_fa - sheared * abs(shear)
+                room = min(room, (limit_of(limits.tension, k) - stress - turned) / (2.0 * normal))
+                tan_fa = limit_of(limits.tan_fa, k)
+                strength = limit_of(limits.cohesion, k) - stress * tan_fa - sheared * abs(shear)
                 room = min(room, strength / (sheared + normal * tan_fa))
         closest[chunk] = -room
 

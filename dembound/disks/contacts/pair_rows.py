@@ -89,7 +89,7 @@ class PairPlan:
         """The rows for kernels; place (b,) of the pairs that are in them, constants (types, 12) of contacts."""
         exists = np.zeros(int(self.group_block[-1]), dtype=np.uint8)
         np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
-        lines = constants[self.key % self.types]
+        lines = constants[self.key % self.types, :12]
         return self._empty._replace(exists=exists, constants=np.column_stack([lines, lines[:, :2] / lines[:, 2:3]]))
 
     @cached_property
@@ -112,6 +112,7 @@ class PairPlan:
             disk_rows=np.diff(plan.group_row),
             step=np.column_stack([owner - plan.group_row[group], self.shift]),
             constants=np.zeros((0, 14)),
+            contact_type=(self.key % self.types).astype(np.uint32),
             exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(counts)]),
             offset=offset[order],

@@ -1,11 +1,14 @@
 """Contact data for the history-dependent law: constants, and the limits of contacts and bonds."""
 
+from collections.abc import Callable, Iterable
+
 import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
+from dembound.kernels.limits import in_columns
 from dembound.kernels.tables import Limits
 
 
@@ -26,6 +29,25 @@ def limits_of(material: Material) -> Limits:
     if not LAWS[material.law].has_history:
         return strength._replace(tension=np.inf, cohesion=np.inf)
     return strength._replace(geometry={"updated": UPDATED, "reference": BONDED}[material.geometry])
+
+
+def limits_between(
+    pairings: Iterable[tuple[Material, Material]], types: int, of: Callable[[Material], Limits] = limits_of
+) -> Limits:
+    """Columns (p,) of the limits of contacts between two materials: `types` rows for each pairing, in their order.
+
+    The smaller friction and tensile strength hold, and the line of shear strength with the smaller cohesion. of :
+    `limits_of` or `strength_of`.
+    """
+    rows = [_weaker(of(one), of(other)) for one, other in pairings]
+    return in_columns(np.repeat([row[:4] for row in rows], types, axis=0), rows[0].geometry)
+
+
+def _weaker(one: Limits, other: Limits) -> Limits:
+    """Limits of contacts between materials of two limits."""
+    sheared = min(one, other, key=lambda each: (each.cohesion, each.tan_fa))
+    least = {name: min(getattr(one, name), getattr(other, name)) for name in ("friction", "tension")}
+    return sheared._replace(**least)
 
 
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
