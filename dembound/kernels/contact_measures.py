@@ -34,7 +34,8 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
     """Fill closest (chunks,) with the least `slack` of each chunk of pairs, negative."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
     constants, state, slip = contacts.constants, contacts.state, contacts.slip
-    geometry = limits.geometry
+    friction, tension, cohesion = limits.friction, limits.tension, limits.cohesion
+    tan_fa, geometry = limits.tan_fa, limits.geometry
     b = first.size
     for chunk in range(begin, end):
         room = np.inf
@@ -52,9 +53,9 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
             elif constants[k, U(3)] >= distance:
                 room = min(room, overlap)
                 if ks > 0.0:
-                    friction = limit_of(limits.friction, k)
                     stuck = shear - slip[c] if keeps_slip else shear
-                    room = min(room, (friction * kn * overlap - ks * abs(stuck)) / (ks + friction * kn))
+                    most = limit_of(friction, k) * kn
+                    room = min(room, (most * overlap - ks * abs(stuck)) / (ks + most))
             else:
                 room = min(room, -overlap)
             if state[c] == INTACT:
@@ -65,10 +66,10 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
                 turned = bending * abs(u[U(2), j] - u[U(2), i])
                 normal = constants[k, U(7)] * per_area
                 sheared = constants[k, U(8)] * per_area
-                room = min(room, (limit_of(limits.tension, k) - stress - turned) / (2.0 * normal))
-                tan_fa = limit_of(limits.tan_fa, k)
-                strength = limit_of(limits.cohesion, k) - stress * tan_fa - sheared * abs(shear)
-                room = min(room, strength / (sheared + normal * tan_fa))
+                room = min(room, (limit_of(tension, k) - stress - turned) / (2.0 * normal))
+                pressed = limit_of(tan_fa, k)
+                strength = limit_of(cohesion, k) - stress * pressed - sheared * abs(shear)
+                room = min(room, strength / (sheared + normal * pressed))
         closest[chunk] = -room
 
 

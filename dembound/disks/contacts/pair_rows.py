@@ -136,12 +136,12 @@ class PairPlan:
             disk_rows=np.diff(plan.group_row),
             step=np.column_stack([owner - plan.group_row[group], self.shift]),
             constants=np.zeros((0, 14)),
-            contact_type=(self.key % self.types).astype(np.uint32),
             exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(counts)]),
             offset=offset[order],
             mask=mask[order],
             masks=masks,
+            contact_type=(self.key % self.types).astype(np.uint32),
         )
 
     def _masks(self, group: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -102,11 +102,12 @@ class PairRows(NamedTuple):
     group_row, group_block : (g + 1,) rows and blocks of pairs of each group; column by column, every row of a group has
     a block there, as disks have (LaneRows). disk_block, disk_rows : (g,) first block and number of rows of the group's
     disks. step : (q, 2) row of the first disk within its group, and slots from the first disk to the second; constants
-    : (q, 14) those of Contacts, and the direction from the first disk to the second at the start; contact_type : (q,)
-    uint32; exists : (blocks,) uint8, the bits of the lanes that hold a pair.
+    : (q, 14) those of Contacts, and the direction from the first disk to the second at the start; exists : (blocks,)
+    uint8, the bits of the lanes that hold a pair.
     start : (3r + 1,) entries of each row of disks, by pairs of which the disk is the first, of which it is the second,
     and of which it is the second in a part of the copies: offset (e,) places from the first one of the column. mask :
-    (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1.
+    (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1. contact_type : (q,)
+    uint32 that of the pairs, see `Contacts`.
     """
 
     group_row: np.ndarray
@@ -115,12 +116,12 @@ class PairRows(NamedTuple):
     disk_rows: np.ndarray
     step: np.ndarray
     constants: np.ndarray
-    contact_type: np.ndarray
     exists: np.ndarray
     start: np.ndarray
     offset: np.ndarray
     mask: np.ndarray
     masks: np.ndarray
+    contact_type: np.ndarray
 
 
 class Cells(NamedTuple):
