@@ -149,13 +149,15 @@ class PairPlan:
 
         Offset −1 : the pair is in the same column and lane. group (q,) of each row of pairs.
         """
-        apart = (self.step_column != 0) | (self.step_lane != 0)
-        mask, masks, begin = np.full(len(group), -1), [np.zeros(0, np.uint8)], 0
-        for q in np.flatnonzero(apart):
-            columns = int(self.plan.columns[group[q]])
-            column = np.arange(columns) - self.step_column[q]
-            lane = np.arange(LANES) - self.step_lane[q]
+        apart = np.flatnonzero((self.step_column != 0) | (self.step_lane != 0))
+        steps = np.column_stack([self.plan.columns[group], self.step_column, self.step_lane])[apart]
+        kinds, kind = np.unique(steps, axis=0, return_inverse=True)
+        masks = [np.zeros(0, np.uint8)]
+        for columns, step_column, step_lane in kinds:
+            column = np.arange(columns) - step_column
+            lane = np.arange(LANES) - step_lane
             byte = np.packbits((lane >= 0) & (lane < LANES), bitorder="little")[0]
             masks.append(np.where((column >= 0) & (column < columns), byte, 0).astype(np.uint8))
-            mask[q], begin = begin, begin + columns
+        mask = np.full(len(group), -1)
+        mask[apart] = np.concatenate([[0], np.cumsum(kinds[:, 0])])[kind.reshape(-1)]
         return mask, np.concatenate(masks)
