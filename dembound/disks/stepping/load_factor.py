@@ -38,7 +38,7 @@ def limit_lines(constants: np.ndarray, limits: Limits) -> tuple[np.ndarray, np.n
 
     Parameters
     ----------
-    constants : (p, 12), see kernels/contacts.py. limits : friction and strength.
+    constants : (p, 12), see kernels/contacts.py. limits : friction and strength, numbers or columns (p,).
 
     Returns (a, b, c) (p, 7, 3) in the order of `LIMITS`, and d (p, 7), infinite where a pair has no such limit.
     """
