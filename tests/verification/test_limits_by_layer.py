@@ -9,14 +9,12 @@ import pytest
 
 from dembound.disks.contacts import contact_list, layout
 from dembound.disks.contacts.contact_list import ContactList
-from dembound.disks.contacts.row_plan import RowPlan
+from dembound.disks.contacts.row_plan import plan_rows
 from dembound.disks.material.constants import limits_between, limits_of
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping import contact_lists
-from dembound.kernels.lanes import LANES
 from dembound.motion.cracks import Cracks
 from dembound.motion.simulation import Simulation
-from dembound.packings.tiling import Assembly
 
 STEPS, JOINT = 250, 10.0
 SIDES = {"left": {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}, "right": "viscous"}
@@ -24,35 +22,17 @@ BRITTLE = {"law": "linearpbond", "elastic_start": False, "pb_ten": 4e5, "pb_coh"
 TOUGH = {"pb_ten": 1e9, "pb_coh": 1e9, "fric": 0.9}
 
 
-def by_level(assembly: Assembly) -> RowPlan:
-    """Rows of copies in which each row of bricks is a group of its own."""
-    tile, disks = assembly.tile.astype(np.int64), int(assembly.brick_particle.max()) + 1
-    brick_rows, row = np.unique(tile[:, 1] * disks + assembly.brick_particle, return_inverse=True)
-    group_row = np.searchsorted(brick_rows // disks, np.arange(tile[:, 1].max() + 2))
-    columns = np.full(len(group_row) - 1, -(-(tile[:, 0].max() + 1) // LANES))
-    return RowPlan(
-        row=row,
-        column=tile[:, 0] % columns[0],
-        lane=tile[:, 0] // columns[0],
-        group_row=group_row,
-        columns=columns,
-        group_block=np.concatenate([[0], np.cumsum(np.diff(group_row) * columns)]),
-        by_level=True,
-    )
-
-
 @pytest.fixture
 def run(lab, monkeypatch) -> Callable[..., Simulation]:
     """Runs a pulse through a body whose contacts below and above a joint are of different types."""
-    twice = contact_list.brick_constants
+    twice, by_level = contact_list.brick_constants, partial(plan_rows, by_level=True)
     monkeypatch.setattr(contact_list, "brick_constants", lambda *each, **more: np.vstack(2 * [twice(*each, **more)]))
 
     def make(
         pattern: str, geometry: str, columns: tuple[dict, dict] | None, joined: bool = True, steps: int = STEPS
     ) -> Simulation:
         for module in (layout, contact_lists):
-            plan = by_level if joined else lambda assembly: replace(by_level(assembly), by_level=False)
-            monkeypatch.setattr(module, "plan_rows", plan)
+            monkeypatch.setattr(module, "plan_rows", lambda part, **_: replace(by_level(part), by_level=joined))
         words = {"held": (), "boundary": SIDES, "wave": lab.pulse(0.01)}
         if pattern == "B":
             words["brick"] = (4.0, 4.0)

@@ -90,6 +90,7 @@ def plan_rows(assembly: Assembly, *, by_level: bool = False) -> RowPlan:
         group_row=group_row,
         columns=columns,
         group_block=np.concatenate([[0], np.cumsum(np.diff(group_row) * columns)]),
+        by_level=by_level,
     )
 
 

@@ -1,11 +1,12 @@
 """Contact data for the history-dependent law: constants, and the limits of contacts and bonds."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
 from dembound.kernels.limits import in_columns
@@ -41,6 +42,20 @@ def limits_between(
     """
     rows = [_weaker(of(one), of(other)) for one, other in pairings]
     return in_columns(np.repeat([row[:4] for row in rows], types, axis=0), rows[0].geometry)
+
+
+def ground_limits(
+    ground: PackedMaterial, materials: Sequence[Material], of: Callable[[Material], Limits] = limits_of
+) -> Limits:
+    """Limits of the contacts of a ground: numbers, in layered ground columns by their types, see `limits_between`.
+
+    materials : of its layers from the surface down.
+    """
+    if not isinstance(ground, LayeredGround):
+        return of(materials[0])
+    own = [materials[zone.layer] for zone in ground.zones]
+    pairings = [(own[one], own[other]) for one, other in ground.pairings]
+    return limits_between(pairings, 2 * len(ground.brick.pairs), of)
 
 
 def _weaker(one: Limits, other: Limits) -> Limits:
