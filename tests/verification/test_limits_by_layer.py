@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from dembound.disks.contacts import contact_list, layout
-from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.row_plan import plan_rows
 from dembound.disks.material.constants import limits_between, limits_of
 from dembound.disks.stability import choose_step
@@ -49,7 +48,7 @@ def run(lab, monkeypatch) -> Callable[..., Simulation]:
             below, on_top = materials
             friction = np.where(heights > JOINT, on_top.fric, below.fric)
             layers = limits_between([(below, on_top), (on_top, on_top)], types), friction
-        monkeypatch.setattr(contact_lists, "ContactList", partial(ContactList, layers=layers))
+        monkeypatch.setattr(contact_lists, "_layers", lambda *_: layers)
         simulation = Simulation(replace(scene, assembly=assembly), choose_step(scene)[0])
         (contacts,) = simulation.system.contacts.values()
         contacts.cells = contacts.cells._replace(reach=0.0)  # pairs are searched for as if any two disks might meet
