@@ -281,6 +281,13 @@ def copied(pairs: tables.Contacts) -> tables.Contacts:
     return tables.Contacts(pairs.begin, *(column.copy() for column in pairs[1:]))
 
 
+def alone(pairs: tables.Contacts, c: int) -> tables.Contacts:
+    """Pair c of several, with columns of its own."""
+    names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place")
+    one = {name: getattr(pairs, name)[c : c + 1].copy() for name in names}
+    return pairs._replace(**one, force=pairs.force[:, c : c + 1].copy())
+
+
 def behind(pairs: tables.Contacts, others: int) -> tables.Contacts:
     """Pairs whose particles are numbered anew: there are as many others before them."""
     first, second = ((ends + others).astype(np.uint32) for ends in (pairs.first, pairs.second))

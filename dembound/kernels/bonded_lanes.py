@@ -1,7 +1,7 @@
 """The history-dependent law on rows of copies, eight disks at once (lanes.py).
 
-The forces of pairs in rows are those of pair_lanes.py. Pairs that are in no row, found by search or between rows of
-different groups, are computed one by one, and their forces are added to those of the rows.
+The forces of pairs in rows are those of pair_lanes.py. Pairs that are in no row, found by search or between groups
+of different shapes, are computed one by one, and their forces are added to those of the rows.
 """
 
 import numpy as np

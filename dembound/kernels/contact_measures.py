@@ -6,6 +6,7 @@ from numba import njit, types
 from dembound.kernels.apart import apart, in_chunks
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum, largest
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
+from dembound.kernels.limits import limit_of
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
 
 TURN = 0.01
@@ -53,7 +54,8 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
                 room = min(room, overlap)
                 if ks > 0.0:
                     stuck = shear - slip[c] if keeps_slip else shear
-                    room = min(room, (friction * kn * overlap - ks * abs(stuck)) / (ks + friction * kn))
+                    most = limit_of(friction, k) * kn
+                    room = min(room, (most * overlap - ks * abs(stuck)) / (ks + most))
             else:
                 room = min(room, -overlap)
             if state[c] == INTACT:
@@ -64,9 +66,10 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
                 turned = bending * abs(u[U(2), j] - u[U(2), i])
                 normal = constants[k, U(7)] * per_area
                 sheared = constants[k, U(8)] * per_area
-                room = min(room, (tension - stress - turned) / (2.0 * normal))
-                strength = cohesion - stress * tan_fa - sheared * abs(shear)
-                room = min(room, strength / (sheared + normal * tan_fa))
+                room = min(room, (limit_of(tension, k) - stress - turned) / (2.0 * normal))
+                pressed = limit_of(tan_fa, k)
+                strength = limit_of(cohesion, k) - stress * pressed - sheared * abs(shear)
+                room = min(room, strength / (sheared + normal * pressed))
         closest[chunk] = -room
 
 

@@ -18,6 +18,7 @@ from numba import njit
 
 from dembound.kernels.apart import apart, in_chunks
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
+from dembound.kernels.limits import limit_of
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
@@ -43,12 +44,12 @@ arcsin(½ωΔt) per step: 2e-6 for waves of 1000 steps a period. A chain of cont
 
 
 @njit(**FAST, inline="always")
-def _bond_state(Fn, Fs, M, per_area, per_section, limits):
-    """State of an intact bond under its force and moment; per_area 1/A, per_section R/I."""
+def _bond_state(Fn, Fs, M, per_area, per_section, limits, k):
+    """State of an intact bond under its force and moment; per_area 1/A, per_section R/I; k its type."""
     stress = Fn * per_area
-    if stress + abs(M) * per_section >= limits.tension:
+    if stress + abs(M) * per_section >= limit_of(limits.tension, k):
         after = TENSION
-    elif abs(Fs) * per_area >= limits.cohesion - stress * limits.tan_fa:
+    elif abs(Fs) * per_area >= limit_of(limits.cohesion, k) - stress * limit_of(limits.tan_fa, k):
         after = SHEAR
     else:
         after = INTACT
@@ -101,7 +102,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
         if closed[c] != 0 or (overlapped <= 0.0) != (overlap <= 0.0):
             lost[2] += closing_work(constants[k, U(5)], overlapped, overlap, closed[c] != 0, N)
             closed[c] = overlapped <= 0.0 < overlap
-        most = limits.friction * N
+        most = limit_of(limits.friction, k) * N
         if abs(S) > most:
             before = constants[k, U(6)] * (was - all_slip[c])
             S = np.copysign(most, S)
@@ -118,7 +119,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
         Fn = constants[k, U(7)] * stretch
         Fs = constants[k, U(8)] * shear
         M = constants[k, U(9)] * turn
-        state[c] = _bond_state(Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits)
+        state[c] = _bond_state(Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits, k)
         if state[c] == INTACT:
             pull += Fn
             S += Fs

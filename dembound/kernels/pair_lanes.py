@@ -26,6 +26,7 @@ from dembound.kernels.lanes import (
     where_equal,
     with_sign,
 )
+from dembound.kernels.limits import limit_of
 
 _ALL = np.uint8(2**LANES - 1)
 _INTACT = np.uint8(INTACT)
@@ -103,14 +104,15 @@ def _closing_work(stiffness, before, now, had_closed, push):
 
 
 @njit(**INLINED)
-def _bond(k, q, stretch, shear, bent, whole, limits):
-    """Normal and shear force and moment of bonds, and the bits of those that would break."""
+def _bond(k, q, stretch, shear, bent, whole, limits, kind):
+    """Normal and shear force and moment of bonds of a type, and the bits of those that would break."""
     normal = k[q, U(7)] * stretch
     sheared = k[q, U(8)] * shear
     moment = k[q, U(9)] * bent
     stress = normal * k[q, U(10)]
-    torn = at_most(limits.tension, stress + magnitude(moment) * k[q, U(11)])
-    cut = at_most(limits.cohesion - stress * limits.tan_fa, magnitude(sheared) * k[q, U(10)])
+    torn = at_most(limit_of(limits.tension, kind), stress + magnitude(moment) * k[q, U(11)])
+    strength = limit_of(limits.cohesion, kind) - stress * limit_of(limits.tan_fa, kind)
+    cut = at_most(strength, magnitude(sheared) * k[q, U(10)])
     breaks = byte_of(torn) | byte_of(cut)
     return choose(whole, normal, 0.0), choose(whole, sheared, 0.0), choose(whole, moment, 0.0), breaks
 
@@ -139,21 +141,21 @@ def _act(
     gives way; follows : whether the geometry follows the motion. taken (16,) is advanced by the energies (J) that
     friction, and contacts that open and close, take in the eight pairs; where these are computed in turn lost (4,).
     """
-    k = pairs.constants
+    k, kind = pairs.constants, U(pairs.contact_type[q])
     nothing = splat(0.0)
     (nx, ny), (arm_i, arm_j), (stretch, shear, bent) = normal, arms, strain
     whole = where_equal(contacts.state, c, _INTACT)
     intact = byte_of(whole) & exists
     pull, side, moment = nothing, nothing, nothing
     if intact != 0:
-        pull, side, moment, breaks = _bond(k, q, stretch, shear, bent, whole, limits)
+        pull, side, moment, breaks = _bond(k, q, stretch, shear, bent, whole, limits, kind)
         if (breaks & intact) != 0:
             _push_one_by_one(block, exists, u, v, step, number, contacts, limits, lost)
             return
     if k[q, U(5)] > 0.0 or k[q, U(6)] > 0.0:
         N, S = _contact(
             k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts,
-            limits.friction, taken,
+            limit_of(limits.friction, kind), taken,
         )  # fmt: skip
         pull -= N
         side += S

@@ -8,7 +8,7 @@ from dembound.casefile.disks.material import Material
 from dembound.disks.contacts.arrays import ContactHistory, Pairs, bonds_of
 from dembound.disks.contacts.forces import acting
 from dembound.disks.contacts.neighbours import near_pairs, pair_keys
-from dembound.disks.contacts.pair_list import PairList
+from dembound.disks.contacts.pair_list import NO_LIMITS, PairList
 from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.contacts.row_plan import RowPlan
 from dembound.disks.material.constants import brick_constants, limits_of, shared_constants
@@ -17,6 +17,7 @@ from dembound.kernels import contacts as kernel
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
+from dembound.kernels.tables import Limits
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.layout import Layout
 from dembound.motion.state import Arrays
@@ -51,12 +52,14 @@ class ContactList(PairList):
     layout : the slots in which kernels hold the scene's particles; None: in their order. Nodes of continua, which
         follow the particles, are not among them, as a static stage may have fewer of them.
     plan : the rows of copies in which the part's particles are held, and their first block; None: one by one.
+    layers : in layered ground the limits of each type of contact in columns, see `limits_between`, and the friction
+        (m,) of each particle, for those that meet later.
 
     Attributes
     ----------
     In addition to those of `PairList`:
 
-    limits : strengths and friction.
+    limits : strengths and friction; in layered ground columns of the rows of constants.
     own_types : number of the types of the brick's contacts, which come before those of near pairs.
     skin : m, gap up to which the list is complete.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
@@ -73,16 +76,20 @@ class ContactList(PairList):
         held: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
         layout: Layout | None = None,
         plan: tuple[RowPlan, int] | None = None,
+        layers: tuple[Limits, np.ndarray] | None = None,
     ) -> None:
         super().__init__(assembly, periods, begin, layout)
         self.ground = ground
-        self.limits = limits_of(material)
+        self.limits = limits_of(material) if layers is None else layers[0]
+        self._friction = None if layers is None else layers[1]
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
         self._set_origin(np.zeros((2, len(assembly.radii))))
         self.keeps_slip = False
         self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
+        if layers is not None:
+            self.bonds = np.column_stack([self.bonds, *self.limits[:4]])
         first, second = assembly.pairs.T.astype(np.int64)
         images = self.images(first, second, self.bonds[assembly.contact_type, :2])
         pairs = Pairs(first, second, images, assembly.contact_type)
@@ -119,7 +126,8 @@ class ContactList(PairList):
 
         reference : with the geometry of the start, as under the elastic law.
         """
-        elastic = self.limits._replace(geometry=REFERENCE, tension=np.inf, cohesion=np.inf)
+        endless = {name: getattr(self.limits, name) + np.inf for name in ("tension", "cohesion")}
+        elastic = self.limits._replace(geometry=REFERENCE, **endless)
         limits = elastic if reference else self.limits
         u = self.spread(displacement)
         still = np.zeros_like(u)
@@ -182,7 +190,7 @@ class ContactList(PairList):
     def _met(self, moved: np.ndarray, kept: np.ndarray) -> tuple[Pairs, np.ndarray]:
         """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m.
 
-        Their types are rows of constants (p, 12), which are returned too.
+        Their types are rows of constants (p, 12), in layered ground with limits (p, 16), which are returned too.
         """
         positions, radii = self.assembly.positions, self.assembly.radii
         near, image = near_pairs(positions + moved, radii, self.skin, self.periods)
@@ -199,6 +207,10 @@ class ContactList(PairList):
             bonded=False,
             locked_in=self.locked_in,
         )
+        if self._friction is not None:
+            limits = np.repeat(NO_LIMITS, len(first), axis=0)
+            limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
+            constants = np.column_stack([constants, limits])
         constants, row_of = shared_constants(constants, pairing, self.skin)
         return Pairs(first, second, image, row_of), constants
 

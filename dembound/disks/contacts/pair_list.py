@@ -5,9 +5,13 @@ import numpy as np
 from dembound.disks.contacts.arrays import ContactHistory, Pairs, in_places
 from dembound.disks.contacts.neighbours import cells_of, pair_keys
 from dembound.disks.contacts.pair_rows import PairPlan
-from dembound.kernels.tables import PairRows
+from dembound.kernels.limits import in_columns
+from dembound.kernels.tables import Limits, PairRows
 from dembound.motion.layout import Layout, aligned_zeros
 from dembound.packings.tiling import Assembly
+
+NO_LIMITS = np.array([[0.0, np.inf, np.inf, 0.0]])
+"""Limits of a place without a pair."""
 
 
 class PairList:
@@ -26,9 +30,10 @@ class PairList:
         (3, slots) work space of the kernels.
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     cells : of the particles there.
-    bonds : (p, 12) constants of the contacts of the brick.
+    bonds : (p, 12) constants of the contacts of the brick; (p, 16) with the limits of each, see `ContactList.limits`.
     """
 
+    limits: Limits
     bonds: np.ndarray
     _constants: np.ndarray
 
@@ -96,7 +101,11 @@ class PairList:
 
     def _list(self, pairs: Pairs, history: ContactHistory) -> None:
         """Give the pairs their places, and list the contact ends of each particle."""
-        placed = in_places(pairs, history, self._slot, self._constants, self._plan)
+        constants, columns = np.ascontiguousarray(self._constants[:, :12]), self._constants[:, 12:]
+        if columns.size > 0:
+            columns = np.vstack([columns, NO_LIMITS])  # of places without a pair
+            self.limits = in_columns(columns, self.limits.geometry)
+        placed = in_places(pairs, history, self._slot, constants, self._plan)
         self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image
         if self._plan is not None:
             assert placed.strays is not None

@@ -18,6 +18,7 @@ class RowPlan:
 
     row (n,) row of each disk; column, lane (n,) its place there. group_row (g + 1,) the rows of each group, columns
     (g,) its columns, group_block (g + 1,) its blocks from 0 on, column by column, in each one block for every row.
+    by_level : whether each row of bricks is a group, or two, of its own, as in layered ground.
     """
 
     row: np.ndarray
@@ -26,6 +27,7 @@ class RowPlan:
     group_row: np.ndarray
     columns: np.ndarray
     group_block: np.ndarray
+    by_level: bool = False
 
     @property
     def group(self) -> np.ndarray:
@@ -88,6 +90,7 @@ def plan_rows(assembly: Assembly, *, by_level: bool = False) -> RowPlan:
         group_row=group_row,
         columns=columns,
         group_block=np.concatenate([[0], np.cumsum(np.diff(group_row) * columns)]),
+        by_level=by_level,
     )
 
 

@@ -1,11 +1,15 @@
 """Contact data for the history-dependent law: constants, and the limits of contacts and bonds."""
 
+from collections.abc import Callable, Iterable, Sequence
+
 import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
+from dembound.kernels.limits import in_columns
 from dembound.kernels.tables import Limits
 
 
@@ -26,6 +30,39 @@ def limits_of(material: Material) -> Limits:
     if not LAWS[material.law].has_history:
         return strength._replace(tension=np.inf, cohesion=np.inf)
     return strength._replace(geometry={"updated": UPDATED, "reference": BONDED}[material.geometry])
+
+
+def limits_between(
+    pairings: Iterable[tuple[Material, Material]], types: int, of: Callable[[Material], Limits] = limits_of
+) -> Limits:
+    """Columns (p,) of the limits of contacts between two materials: `types` rows for each pairing, in their order.
+
+    The smaller friction and tensile strength hold, and the line of shear strength with the smaller cohesion. of :
+    `limits_of` or `strength_of`.
+    """
+    rows = [_weaker(of(one), of(other)) for one, other in pairings]
+    return in_columns(np.repeat([row[:4] for row in rows], types, axis=0), rows[0].geometry)
+
+
+def ground_limits(
+    ground: PackedMaterial, materials: Sequence[Material], of: Callable[[Material], Limits] = limits_of
+) -> Limits:
+    """Limits of the contacts of a ground: numbers, in layered ground columns by their types, see `limits_between`.
+
+    materials : of its layers from the surface down.
+    """
+    if not isinstance(ground, LayeredGround):
+        return of(materials[0])
+    own = [materials[zone.layer] for zone in ground.zones]
+    pairings = [(own[one], own[other]) for one, other in ground.pairings]
+    return limits_between(pairings, 2 * len(ground.brick.pairs), of)
+
+
+def _weaker(one: Limits, other: Limits) -> Limits:
+    """Limits of contacts between materials of two limits."""
+    sheared = min(one, other, key=lambda each: (each.cohesion, each.tan_fa))
+    least = {name: min(getattr(one, name), getattr(other, name)) for name in ("friction", "tension")}
+    return sheared._replace(**least)
 
 
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:

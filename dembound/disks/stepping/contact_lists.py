@@ -1,9 +1,13 @@
 """The lists of the pairs of a scene under a history-dependent law, one for each part."""
 
+import numpy as np
+
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
-from dembound.kernels.tables import LaneRows
+from dembound.disks.material.constants import ground_limits
+from dembound.disks.material.layered import LayeredGround
+from dembound.kernels.tables import LaneRows, Limits
 from dembound.packings.tiling import Assembly
 
 
@@ -30,7 +34,17 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         held,
         scene.disk_layout,
         _row_plan(scene, name, part),
+        _layers(scene, part),
     )
+
+
+def _layers(scene: DiskBody, part: Assembly) -> tuple[Limits, np.ndarray] | None:
+    """In layered ground the limits of contacts in columns and the friction of each particle; None in other ground."""
+    ground, materials = scene.ground, scene.case.materials
+    if not isinstance(ground, LayeredGround):
+        return None
+    friction = np.array([each.fric for each in materials])[ground.layer_of(part.positions[:, 1])]
+    return ground_limits(ground, materials), friction
 
 
 def _row_plan(scene: DiskBody, name: str, part: Assembly) -> tuple[RowPlan, int] | None:

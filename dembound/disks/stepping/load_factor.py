@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.disks.material.constants import brick_constants, strength_of
+from dembound.disks.material.constants import brick_constants, ground_limits, strength_of
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.load_factor import least_factors
@@ -38,7 +38,7 @@ def limit_lines(constants: np.ndarray, limits: Limits) -> tuple[np.ndarray, np.n
 
     Parameters
     ----------
-    constants : (p, 12), see kernels/contacts.py. limits : friction and strength.
+    constants : (p, 12), see kernels/contacts.py. limits : friction and strength, numbers or columns (p,).
 
     Returns (a, b, c) (p, 7, 3) in the order of `LIMITS`, and d (p, 7), infinite where a pair has no such limit.
     """
@@ -81,7 +81,7 @@ class LoadFactor(Every):
         super().__init__(1)
         ground = system.scene.ground
         constants = brick_constants(ground, gaps_close=True, locked_in=0.0)
-        self._lines = limit_lines(constants, strength_of(case.material))
+        self._lines = limit_lines(constants, ground_limits(ground, case.materials, strength_of))
         self._pairs = [part.pairs._replace(constants=constants) for part in system.disks.parts]
         self._least, self._where = np.empty(CHUNKS), np.empty((CHUNKS, 2), dtype=np.int64)
         self._rest = np.zeros((3, 0))

@@ -83,15 +83,16 @@ class Contacts(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Friction of contacts and strength of bonds.
+    """Friction of contacts and strength of bonds: numbers, or columns (p,) by row of constants (limits.limit_of).
 
-    friction, tan_fa : pure numbers; tension, cohesion : Pa; geometry : one of those in kernels/contacts.py.
+    friction, tan_fa : pure numbers; tension, cohesion : Pa; geometry : one of those in kernels/contacts.py. Kernels for
+    columns are compiled separately, so all four are numbers or all are columns.
     """
 
-    friction: float
-    tension: float
-    cohesion: float
-    tan_fa: float
+    friction: float | np.ndarray
+    tension: float | np.ndarray
+    cohesion: float | np.ndarray
+    tan_fa: float | np.ndarray
     geometry: int
 
 
@@ -105,7 +106,8 @@ class PairRows(NamedTuple):
     uint8, the bits of the lanes that hold a pair.
     start : (3r + 1,) entries of each row of disks, by pairs of which the disk is the first, of which it is the second,
     and of which it is the second in a part of the copies: offset (e,) places from the first one of the column. mask :
-    (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1.
+    (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1. contact_type : (q,)
+    uint32 that of the pairs, see `Contacts`.
     """
 
     group_row: np.ndarray
@@ -119,6 +121,7 @@ class PairRows(NamedTuple):
     offset: np.ndarray
     mask: np.ndarray
     masks: np.ndarray
+    contact_type: np.ndarray
 
 
 class Cells(NamedTuple):

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from moving_pairs import PAIRS, PARTICLES, STEP, UNBREAKABLE, two
-from plain_kernels import PlainPairs, one_pair, random_pairs
+from plain_kernels import PlainPairs, alone, one_pair, random_pairs
 
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
+from dembound.kernels.limits import in_columns
 from dembound.kernels.tables import Contacts, Limits
 
 
@@ -60,6 +61,15 @@ def test_slack_is_negative_just_where_a_pair_is_outside() -> None:
         found.append(slack(u, pairs, LIMITS, False) < 0.0)
         assert found[-1] == (outside(u, pairs, LIMITS, law) > 0.0).any()
     assert 10 < sum(found) < 50
+
+
+def test_with_columns_of_limits_each_pair_has_those_of_its_type() -> None:
+    rng = np.random.default_rng(10)
+    pairs, columns = random_pairs(PARTICLES, PAIRS, gap=0.2), rng.uniform(0.4, 2.0, (PAIRS, 4))
+    u = 0.03 * rng.uniform(-1.0, 1.0, (3, PARTICLES))
+    each = [slack(u, alone(pairs, c), Limits(*columns[c].tolist(), REFERENCE), False) for c in range(PAIRS)]
+
+    assert slack(u, pairs, in_columns(columns, REFERENCE), False) == min(each)
 
 
 def test_the_slack_of_one_pair_by_hand() -> None:

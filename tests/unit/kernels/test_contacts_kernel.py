@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from moving_pairs import GEOMETRIES, PAIRS, PARTICLES, STEP, UNBREAKABLE, motion, pushed, two
-from plain_kernels import PlainPairs, one_pair, random_pairs
+from plain_kernels import PlainPairs, alone, one_pair, random_pairs
 
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import (
@@ -18,6 +18,7 @@ from dembound.kernels.contacts import (
     UPDATED,
     start_from_displacements,
 )
+from dembound.kernels.limits import in_columns
 from dembound.kernels.tables import Limits
 
 WEAK = Limits(friction=0.5, tension=0.6, cohesion=0.6, tan_fa=0.6, geometry=UPDATED)
@@ -55,6 +56,21 @@ def test_pairs_push_as_the_law_says_step_by_step(geometry: int) -> None:
     assert set(found.state) == {NONE, INTACT, TENSION, SHEAR}
     assert slid > 0
     assert opened > 0
+
+
+@GEOMETRIES
+def test_with_columns_of_limits_each_pair_has_those_of_its_type(geometry: int) -> None:
+    columns = np.random.default_rng(4).uniform(0.2, 1.2, (PAIRS, 4))
+    found = random_pairs(PARTICLES, PAIRS)
+    each = [alone(found, c) for c in range(PAIRS)]
+    for number, (u, v) in enumerate(motion(20)):
+        pushed(found, in_columns(columns, geometry), u, v, number)
+        for c, pair in enumerate(each):
+            pushed(pair, Limits(*columns[c].tolist(), geometry), u, v, number)
+
+    for name in ("force", "slip", "state", "cracked"):
+        assert np.array_equal(getattr(found, name), np.concatenate([getattr(pair, name) for pair in each], axis=-1))
+    assert len(set(found.cracked)) > 5
 
 
 @pytest.mark.parametrize("size", [1e-12, 1e-9, 1e-3])

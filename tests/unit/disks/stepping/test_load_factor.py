@@ -10,6 +10,7 @@ from dembound.accuracy.runner import measure
 from dembound.disks.kind import Disks
 from dembound.disks.stepping.load_factor import LIMITS, LOAD_FACTOR, limit_in_words, limit_lines, load_factor_in_words
 from dembound.errors import CaseError
+from dembound.kernels.limits import in_columns
 from dembound.kernels.tables import Limits
 from dembound.running import Progress, plan, resume_case, run_case
 
@@ -41,6 +42,14 @@ def test_lines_are_the_limits_of_the_law():
     for strain in np.random.default_rng(2).standard_normal((5, 3)) * 1e-3:
         room = allowed[0] - slopes[0] @ strain
         np.testing.assert_allclose(room, reached(CLOSED, STRENGTH, *strain), rtol=1e-12)
+
+
+def test_columns_of_limits_are_those_of_each_pair():
+    constants, limits = np.array([CLOSED] * 2), [STRENGTH, STRENGTH._replace(friction=0.1, tension=1e5, tan_fa=0.2)]
+    both = limit_lines(constants, in_columns(np.array([each[:4] for each in limits]), STRENGTH.geometry))
+    each = [limit_lines(constants[:1], one) for one in limits]
+    for found, expected in zip(both, zip(*each, strict=True), strict=True):
+        np.testing.assert_array_equal(found, np.vstack(expected))
 
 
 def test_pairs_have_only_the_limits_of_what_they_have():
