@@ -368,7 +368,7 @@ def _let_in_below(scene: DiskScene, signals: tuple[Incident | None, Incident | N
     """
     beneath = scene.outside if scene.foot is None else scene.foot
     assert beneath is not None
-    waves = rising_waves(beneath.body.medium, beneath.box[1], signals, scene.ground.brick.mean_diameter)
+    waves = rising_waves(beneath.body.ground.only, beneath.box[1], signals, scene.ground.brick.mean_diameter)
     disks = disks_on_foot(scene)
     twins = disks if scene.twin is None else scene.twin[disks]
     builder.side = "bottom"

@@ -311,7 +311,11 @@ class Mesh:
     @cached_property
     def areas(self) -> np.ndarray:
         """(n,) m², of the quadrature: mass over density and thickness."""
-        return np.bincount(self.nodes.ravel(), self.quadrature.ravel(), self.count)
+        return self.areas_of(slice(None))
+
+    def areas_of(self, chosen: np.ndarray | slice) -> np.ndarray:
+        """(n,) m², the part of the areas in some elements."""
+        return np.bincount(self.nodes[chosen].ravel(), self.quadrature[chosen].ravel(), self.count)
 
 
 def divided(length: float, largest: float) -> tuple[float, ...]:

@@ -171,7 +171,7 @@ def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) 
 
     Raises CaseError for an angle beyond the critical one, and for a wave that is in the body before the run begins.
     """
-    table, medium = case.incident, outside.body.medium
+    table, medium = case.incident, outside.body.ground.only
     if table is None:
         return None
     wave = incident_in(case, medium)

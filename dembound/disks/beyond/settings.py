@@ -15,7 +15,7 @@ from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.outside import sizing
 from dembound.outside.layer import Absorption
-from dembound.outside.medium import Medium
+from dembound.outside.medium import Ground
 from dembound.outside.mesh import Around, Mesh
 from dembound.outside.near_field import NearField
 from dembound.outside.sizing import Signal
@@ -75,7 +75,7 @@ class Settings(NamedTuple):
         return shorter.side(width), shorter.side(height)
 
 
-def settings_of(case: DiskCase, medium: Medium, diameter: float, box: Box, sides: Sequence[str]) -> Settings:
+def settings_of(case: DiskCase, medium: Ground, diameter: float, box: Box, sides: Sequence[str]) -> Settings:
     """Settings that a case gives for the continuum on some sides of a box (left, bottom, right, top; m).
 
     diameter : mean one of the disks, m.
@@ -94,7 +94,7 @@ def settings_of(case: DiskCase, medium: Medium, diameter: float, box: Box, sides
         damping=keys.damping,
     )
     if keys.margin is None:
-        inner = sizing.inner_length(lasting, fastest(medium), keys.shift, keys.accuracy)
+        inner = sizing.inner_length(lasting, sizing.fastest(medium), keys.shift, keys.accuracy)
         requested = [1, _margin(chosen, box, sides, inner) if lasting > 0.0 else 1]
         requested += [margin_below_surface(chosen, each, medium, keys.accuracy) for each in buried(case, box, sides)]
         chosen = chosen._replace(margin=max(requested))
@@ -111,10 +111,10 @@ class Buried(NamedTuple):
     beside: float
     size: tuple[float, float]
 
-    def error(self, settings: Settings, medium: Medium, margin: int) -> float:
+    def error(self, settings: Settings, medium: Ground, margin: int) -> float:
         """Velocity error by surface reflections that run along layers beyond `margin` elements."""
         beyond = (margin + sizing.WITHIN * settings.layers) * settings.sides(*self.size)[0]
-        speeds = sizing.slowest(medium) / fastest(medium)
+        speeds = sizing.slowest(medium) / sizing.fastest(medium)
         return sizing.grazing_error(self.depth, speeds, settings.absorption.reflection, self.beside + beyond)
 
 
@@ -129,9 +129,9 @@ def buried(case: DiskCase, box: Box, sides: Sequence[str]) -> list[Buried]:
     return [Buried(surface - y, abs(x - edge), size) for x, y in places for edge in edges if y < surface]
 
 
-def margin_below_surface(settings: Settings, source: Buried, medium: Medium, accuracy: float) -> int:
+def margin_below_surface(settings: Settings, source: Buried, medium: Ground, accuracy: float) -> int:
     """Number of elements beside a box with which layers absorb surface reflections to an accuracy; at least 1."""
-    speeds = sizing.slowest(medium) / fastest(medium)
+    speeds = sizing.slowest(medium) / sizing.fastest(medium)
     offset = sizing.offset(source.depth, speeds, settings.absorption.reflection, accuracy)
     elements = (offset - source.beside) / settings.sides(*source.size)[0] - sizing.WITHIN * settings.layers
     return max(math.ceil(elements - ROUNDING), 1)
@@ -217,11 +217,6 @@ def least_element(case: DiskCase, diameter: float) -> float:
     return sizing.least_size(case.outside.order, diameter, is_random=not case.packing.is_lattice)
 
 
-def fastest(medium: Medium) -> float:
-    """Speed (m/s) of P waves along the axis along which they are faster."""
-    return max(medium.normal_speed(axis) for axis in (0, 1))
-
-
 def signals_of(case: DiskCase) -> list[Signal]:
     """The forces of a case, and its other waves as velocities; steady forces jump, unless there is a static stage."""
     factors = {load.wave for load in case.load}
@@ -258,7 +253,7 @@ def _is_in_body(case: DiskCase, hole: Hole) -> bool:
 
 
 def near_fields(
-    case: DiskCase, medium: Medium, box: Box, sides: Sequence[str], lowest: float = math.inf
+    case: DiskCase, medium: Ground, box: Box, sides: Sequence[str], lowest: float = math.inf
 ) -> list[NearField]:
     """The static fields of the holes and forces of a case beside sides of a box (m).
 
@@ -313,7 +308,7 @@ def _why_nothing(case: DiskCase) -> str:
     return "the case has no wave or load to choose it from"
 
 
-def _element(case: DiskCase, medium: Medium, box: Box, sides: Sequence[str]) -> float:
+def _element(case: DiskCase, medium: Ground, box: Box, sides: Sequence[str]) -> float:
     """Largest side (m) of elements that suits the waves, and the fields beside forces and holes."""
     keys, signals = case.outside, signals_of(case)
     if not signals:
