@@ -196,6 +196,7 @@ def absorber_of(blocks: ElementBlocks, profiles: Profiles, settings: Absorption,
     """The layer's coefficients for time steps of `step` (s), and its convolution variables at rest."""
     mesh, count = blocks.mesh, blocks.mesh.order + 1
     elements = blocks.elements[len(blocks.elements) - blocks.layers :]
+    absorbs = mesh.absorbs[elements[:, 0]]
     columns = np.zeros((3, len(elements), 2, count, LANES))  # B, A and τ
     for axis in (0, 1):
         lines = mesh.order * mesh.elements[elements, axis][:, None] + np.arange(count)[:, None]  # (L, N, 8)
@@ -205,13 +206,15 @@ def absorber_of(blocks: ElementBlocks, profiles: Profiles, settings: Absorption,
                 q = np.clip(side * depth, 0.0, 1.0)
                 values = profile.decay(q, step), profile.gain(q, step), profile.delay(q, step)
                 columns[:, :, axis] = np.where(side * depth > 0.0, values, columns[:, :, axis])
-                if mesh.periodic[1 - axis]:
-                    along = [of(q, step, settings.along) for of in (profile.decay, profile.gain)]
-                    columns[:2, :, 1 - axis] = np.where(side * depth > 0.0, along, columns[:2, :, 1 - axis])
+                if mesh.periodic[1 - axis] or profile.guides:
+                    part = settings.guided * q**2 if profile.guides else settings.along
+                    along = [of(q, step, part) for of in (profile.decay, profile.gain)]
+                    there = (side * depth > 0.0) & ~absorbs[:, None, None, 1 - axis]
+                    columns[:2, :, 1 - axis] = np.where(there, along, columns[:2, :, 1 - axis])
     size = len(elements) * 4 * count**2 * LANES
     decay, gain, delay = (column.ravel() for column in columns)
     axes = blocks.kinds[len(blocks.kinds) - blocks.layers :].astype(np.int64)
     for axis in (0, 1):
-        if mesh.periodic[axis]:
-            axes |= (1 | ALONG) << axis
+        if mesh.periodic[axis] or any(profile and profile.guides for profile in profiles[1 - axis]):
+            axes[~absorbs[:, axis]] |= (1 | ALONG) << axis
     return Absorber(axes, decay, gain, delay, aligned_zeros(size), aligned_zeros(size))

@@ -91,8 +91,7 @@ class GridBody:
     def profile(self, side: str) -> Profile | None:
         """The absorbing layer at a side, None without; its speed is that of the fastest P waves in it.
 
-        One speed for all heights: derivatives across a layer are then stretched alike on both sides of a joint, which
-        therefore reflects nothing.
+        It is the same at all heights of layered ground, see layer.py.
         """
         axis, end = divmod(SIDES.index(side), 2)
         if (cells := self.mesh.layer.along(axis)[end]) == 0:
@@ -100,7 +99,8 @@ class GridBody:
         place = self.mesh.elements[:, axis]
         there = np.unique(self.layer[place >= self.mesh.cells[axis] - cells if end else place < cells])
         speed = max(self.ground.media[number].normal_speed(axis) for number in there)
-        return Profile(self.mesh.axes[axis].thickness[end], speed, self.mesh.inner, self.absorption)
+        thickness, guides = self.mesh.axes[axis].thickness[end], axis == 0 and len(there) > 1
+        return Profile(thickness, speed, self.mesh.inner, self.absorption, guides)
 
     def bundle(self, absorber: Absorber) -> Grid:
         """The arrays of its law."""
