@@ -164,7 +164,7 @@ def _scene(
     floors : left by its holes at left and right sides.
     """
     body, seam, beyond = assembly, None, case.outside_sides
-    around = ground.at(case.box[1]) if set(beyond) == {"bottom"} else ground
+    around = _beneath(case, ground) if set(beyond) == {"bottom"} else ground
     outline = Outline.of(case, around, body, beyond, case.periodic, floors) if beyond else None
     if sides := case.column_sides:
         beside = case.box[0] if outline is None else outline.mesh.origin[0]
@@ -204,8 +204,14 @@ def _scene(
 
 def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
     """The continuum below the free-field column, of equal width; layout : of all nodes before its own."""
-    column, ground = assembly.part(slice(0, seam.count)), ground.at(case.box[1])
+    column, ground = assembly.part(slice(0, seam.count)), _beneath(case, ground)
     return surroundings_of(ground, column, Outline.of(case, ground, column, ("bottom",), UPRIGHT), layout)
+
+
+def _beneath(case: DiskCase, ground: PackedMaterial) -> PackedMaterial:
+    """The ground below the box of a case: one material, or all layers if some begin below."""
+    deeper = ground.is_layered and case.joints[-1] < case.box[1]
+    return ground if deeper else ground.at(case.box[1])
 
 
 def column_alone(scene: DiskScene) -> DiskScene:
@@ -368,7 +374,9 @@ def _let_in_below(scene: DiskScene, signals: tuple[Incident | None, Incident | N
     """
     beneath = scene.outside if scene.foot is None else scene.foot
     assert beneath is not None
-    waves = rising_waves(beneath.body.ground.only, beneath.box[1], signals, scene.ground.brick.mean_diameter)
+    waves = rising_waves(
+        beneath.body.ground.at(beneath.box[1]), beneath.box[1], signals, scene.ground.brick.mean_diameter
+    )
     disks = disks_on_foot(scene)
     twins = disks if scene.twin is None else scene.twin[disks]
     builder.side = "bottom"
