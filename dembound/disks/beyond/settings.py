@@ -214,7 +214,7 @@ def mesh_of(
     most = max(width / element[0], height / element[1], ((surface or box[3]) - box[3]) / element[1])
     if most > MOST_ALONG:
         raise CaseError([f"outside.element: makes {most:.3g} elements along a side, must make at most {MOST_ALONG:,}"])
-    rows = _Rows(settings._replace(element=element[1]), None if ground is None else layered(ground))
+    rows = _Rows(settings._replace(element=element[1]), None if ground is None else layered(ground), element[0])
     beside = {} if tops is None and not rows.joints else _rows_to(box, tops, rows)
     if rows.joints:
         beside |= rows.beyond(box, surface)
@@ -233,10 +233,14 @@ def mesh_of(
 
 
 class _Rows(NamedTuple):
-    """Heights of rows of elements; settings : with their largest height as `element`. ground : its layers, if any."""
+    """Heights of rows of elements.
+
+    settings : with their largest height as `element`. ground : its layers, if any. width : of the elements, m.
+    """
 
     settings: Settings
     ground: Layered | None
+    width: float
 
     @property
     def joints(self) -> tuple[float, ...]:
@@ -248,7 +252,9 @@ class _Rows(NamedTuple):
         if not self.settings.taller or self.ground is None:
             return self.settings.element
         layer = int(np.searchsorted(self.joints, height, side="right"))
-        return self.settings.element * self.settings.taller[layer]
+        return max(
+            self.settings.element, min(self.settings.element * self.settings.taller[layer], TALLEST * self.width)
+        )
 
     def between(self, low: float, high: float) -> list[float]:
         """Heights (m) of rows from a height y (m) to another, with edges on the joints between them.
