@@ -12,10 +12,10 @@ from dembound.boundaries.support import BoundaryMedium, Edge, Incident, SupportB
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.beyond.edges import edges_beside_column, find_edges
-from dembound.disks.beyond.ground_waves import rising_waves
+from dembound.disks.beyond.ground_waves import GroundWaves, rising_waves
 from dembound.disks.beyond.hollowed import hollowed
 from dembound.disks.beyond.incident import let_in, let_in_below, power_through
-from dembound.disks.beyond.layered_waves import undisturbed
+from dembound.disks.beyond.layered_waves import LayeredWaves, rising_in_layers, undisturbed
 from dembound.disks.beyond.mesh import NO_FLOORS, Outline
 from dembound.disks.beyond.surroundings import Surroundings, surroundings_of
 from dembound.disks.body import DiskBody, parts_of
@@ -165,7 +165,7 @@ def _scene(
     floors : left by its holes at left and right sides.
     """
     body, seam, beyond = assembly, None, case.outside_sides
-    around = ground.at(case.box[1]) if set(beyond) == {"bottom"} else ground
+    around = _beneath(case, ground) if set(beyond) == {"bottom"} else ground
     outline = Outline.of(case, around, body, beyond, case.periodic, floors) if beyond else None
     if sides := case.column_sides:
         beside = case.box[0] if outline is None else outline.mesh.origin[0]
@@ -205,8 +205,14 @@ def _scene(
 
 def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
     """The continuum below the free-field column, of equal width; layout : of all nodes before its own."""
-    column, ground = assembly.part(slice(0, seam.count)), ground.at(case.box[1])
+    column, ground = assembly.part(slice(0, seam.count)), _beneath(case, ground)
     return surroundings_of(ground, column, Outline.of(case, ground, column, ("bottom",), UPRIGHT), layout)
+
+
+def _beneath(case: DiskCase, ground: PackedMaterial) -> PackedMaterial:
+    """The ground below the box of a case: one material, or all layers if some begin below."""
+    deeper = ground.is_layered and case.joints[-1] < case.box[1]
+    return ground if deeper else ground.at(case.box[1])
 
 
 def column_alone(scene: DiskScene) -> DiskScene:
@@ -361,6 +367,21 @@ def _supports(scene: DiskScene, waves: Waves) -> Supports:
     return builder.table()
 
 
+def _rising(
+    case: DiskCase, beneath: Surroundings, signals: tuple[Incident | None, Incident | None], grain: float
+) -> GroundWaves | LayeredWaves:
+    """The motion of the ground beneath a body under waves that run straight up, as if its layer there went on above.
+
+    They have the given velocities at the lower side of the body; with layers below it, at the top of the lowest layer.
+    """
+    ground, height = beneath.body.ground, beneath.box[1]
+    joints = tuple(joint for joint in ground.joints if joint < beneath.body.mesh.sides[2])
+    if not joints:
+        return rising_waves(ground.at(height), height, signals, grain)
+    media, span = ground.media[len(joints) :: -1], (min(wave.start for wave in case.wave.values()), case.run.duration)
+    return rising_in_layers(media, joints[::-1], None, signals, joints[0], span, grain)
+
+
 def _let_in_below(scene: DiskScene, signals: tuple[Incident | None, Incident | None], builder: SupportBuilder) -> None:
     """Add the waves along x and y, None for none, that enter through the continuum below to the support table.
 
@@ -369,7 +390,7 @@ def _let_in_below(scene: DiskScene, signals: tuple[Incident | None, Incident | N
     """
     beneath = scene.outside if scene.foot is None else scene.foot
     assert beneath is not None
-    waves = rising_waves(beneath.body.medium, beneath.box[1], signals, scene.ground.brick.mean_diameter)
+    waves = _rising(scene.case, beneath, signals, scene.ground.brick.mean_diameter)
     disks = disks_on_foot(scene)
     twins = disks if scene.twin is None else scene.twin[disks]
     builder.side = "bottom"

@@ -12,6 +12,7 @@ from dembound.disks.beyond.mesh import medium_of
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.wave_front import front_of, slowest_speed
 from dembound.motion.paths import Source
+from dembound.outside.medium import layered
 from dembound.table import EVERYWHERE, Box
 
 
@@ -40,7 +41,7 @@ def _incident(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
     """The oblique wave, which is everywhere: from its first arrival in the ground until its reflection has left."""
     if case.incident is None:
         return
-    wave, signal = incident_in(case, medium_of(ground)), case.wave[case.incident.wave]
+    wave, signal = incident_in(case, layered(medium_of(ground)).media[0]), case.wave[case.incident.wave]
     left, bottom, right, top = case.box
     corners = np.array([(left, bottom), (right, bottom), (left, top), (right, top)])
     delays, slowest = wave.delays(corners), slowest_speed(ground)

@@ -34,7 +34,7 @@ def shape_of(elements, blocks, block):
         elements.divergence_x[k],
         elements.divergence_y[k],
         elements.weight[k],
-        elements.moduli,
+        elements.moduli[k],
         elements.core,
         elements.rim,
     )

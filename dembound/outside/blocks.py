@@ -1,5 +1,6 @@
 """Blocks of eight elements for the kernels, and the slots of their nodes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,21 +15,26 @@ from dembound.outside.mesh import Mesh
 
 NO_ELEMENT = -1
 
+Profiles = Sequence[tuple[Profile | None, Profile | None]]
+"""Along x and y: the absorbing layers before and after; None: there is none."""
+
 
 @dataclass(frozen=True, eq=False)
 class ElementBlocks:
     """The elements of a mesh in blocks: first all elastic ones, then those that absorb along x, y, and both.
 
-    Within each kind they are sorted by shape.
+    Within each kind they are sorted by shape and medium.
 
     Attributes
     ----------
     mesh : the elements.
     begin : slot of the first node; a multiple of eight is fastest.
+    medium : (E,) number of the medium of every element; None: all have one.
     """
 
     mesh: Mesh
     begin: int = 0
+    medium: np.ndarray | None = None
 
     @cached_property
     def _kinds(self) -> np.ndarray:
@@ -36,11 +42,30 @@ class ElementBlocks:
         return self.mesh.absorbs @ np.array([1, 2])
 
     @cached_property
+    def _patterns(self) -> tuple[np.ndarray, np.ndarray]:
+        """The different shapes and media of elements, (S, 2) ascending numbers, and the number (E,) of each one's."""
+        shape = self.mesh.element_shape
+        medium = np.zeros_like(shape) if self.medium is None else self.medium
+        patterns, each = np.unique(np.stack([shape, medium], axis=1), axis=0, return_inverse=True)
+        return patterns, each.ravel()
+
+    @property
+    def sizes(self) -> np.ndarray:
+        """(S, 2) widths and heights of the different elements, m."""
+        return self.mesh.shapes[self._patterns[0][:, 0]]
+
+    @property
+    def media(self) -> np.ndarray:
+        """(S,) number of the medium of the different elements."""
+        return self._patterns[0][:, 1]
+
+    @cached_property
     def elements(self) -> np.ndarray:
-        """Elements (B, 8) of every block, −1 for none; all of one block have the same kind and shape."""
+        """Elements (B, 8) of every block, −1 for none; all of one block have the same kind, shape and medium."""
         blocks = []
-        for kind, shape in np.ndindex(4, len(self.mesh.shapes)):
-            members = np.flatnonzero((self._kinds == kind) & (self.mesh.element_shape == shape))
+        patterns, pattern = self._patterns
+        for kind, number in np.ndindex(4, len(patterns)):
+            members = np.flatnonzero((self._kinds == kind) & (pattern == number))
             padded = np.full(-(-len(members) // LANES) * LANES, NO_ELEMENT)
             padded[: len(members)] = members
             blocks.append(padded.reshape(-1, LANES))
@@ -126,7 +151,7 @@ class ElementBlocks:
         return Blocks(
             blocks=len(nodes),
             layers=self.layers,
-            shapes=self.mesh.element_shape[self.elements[:, 0]],
+            shapes=self._patterns[1][self.elements[:, 0]],
             core_begin=self.begin,
             rim_slot=np.where(nodes < 0, unused, self.slot[nodes]).astype(np.uint32).ravel(),
             shared_begin=self.shared_begin,
@@ -149,9 +174,9 @@ class ElementBlocks:
         return start, place.ravel()[order].astype(np.uint32)
 
 
-def elements_of(blocks: ElementBlocks, medium: Medium, thickness: float = 1.0) -> Elements:
-    """The elements of each shape, of a thickness (m), for the kernels."""
-    rule, sizes = blocks.mesh.rule, blocks.mesh.shapes
+def elements_of(blocks: ElementBlocks, media: Sequence[Medium], thickness: float = 1.0) -> Elements:
+    """The elements of each shape, of a thickness (m), for the kernels; media : by their numbers."""
+    rule, sizes = blocks.mesh.rule, blocks.sizes
     along_x, along_y = (2.0 / size[:, None, None] * rule.derivative for size in sizes.T)
     volumes = 0.25 * thickness * np.prod(sizes, axis=1)
     flat = len(sizes), -1
@@ -161,33 +186,35 @@ def elements_of(blocks: ElementBlocks, medium: Medium, thickness: float = 1.0) -
         divergence_x=-along_x.swapaxes(1, 2).reshape(flat),
         divergence_y=-along_y.swapaxes(1, 2).reshape(flat),
         weight=volumes[:, None] * np.outer(rule.weights, rule.weights).ravel(),
-        moduli=medium.moduli,
+        moduli=np.stack([media[number].moduli for number in blocks.media]),
         core=blocks.core,
         rim=blocks.rim,
     )
 
 
-def absorber_of(blocks: ElementBlocks, medium: Medium, settings: Absorption, step: float) -> Absorber:
+def absorber_of(blocks: ElementBlocks, profiles: Profiles, settings: Absorption, step: float) -> Absorber:
     """The layer's coefficients for time steps of `step` (s), and its convolution variables at rest."""
     mesh, count = blocks.mesh, blocks.mesh.order + 1
     elements = blocks.elements[len(blocks.elements) - blocks.layers :]
+    absorbs = mesh.absorbs[elements[:, 0]]
     columns = np.zeros((3, len(elements), 2, count, LANES))  # B, A and τ
     for axis in (0, 1):
         lines = mesh.order * mesh.elements[elements, axis][:, None] + np.arange(count)[:, None]  # (L, N, 8)
         depth = mesh.axes[axis].depth[lines % mesh.axes[axis].lines]
-        for side, thickness in zip((-1.0, 1.0), mesh.axes[axis].thickness, strict=True):
-            if thickness > 0.0:
-                profile = Profile(thickness, medium.normal_speed(axis), mesh.inner, settings)
+        for side, profile in zip((-1.0, 1.0), profiles[axis], strict=True):
+            if profile is not None:
                 q = np.clip(side * depth, 0.0, 1.0)
                 values = profile.decay(q, step), profile.gain(q, step), profile.delay(q, step)
                 columns[:, :, axis] = np.where(side * depth > 0.0, values, columns[:, :, axis])
-                if mesh.periodic[1 - axis]:
-                    along = [of(q, step, settings.along) for of in (profile.decay, profile.gain)]
-                    columns[:2, :, 1 - axis] = np.where(side * depth > 0.0, along, columns[:2, :, 1 - axis])
+                if mesh.periodic[1 - axis] or profile.guides:
+                    part = settings.guided * q**2 if profile.guides else settings.along
+                    along = [of(q, step, part) for of in (profile.decay, profile.gain)]
+                    there = (side * depth > 0.0) & ~absorbs[:, None, None, 1 - axis]
+                    columns[:2, :, 1 - axis] = np.where(there, along, columns[:2, :, 1 - axis])
     size = len(elements) * 4 * count**2 * LANES
     decay, gain, delay = (column.ravel() for column in columns)
     axes = blocks.kinds[len(blocks.kinds) - blocks.layers :].astype(np.int64)
     for axis in (0, 1):
-        if mesh.periodic[axis]:
-            axes |= (1 | ALONG) << axis
+        if mesh.periodic[axis] or any(profile and profile.guides for profile in profiles[1 - axis]):
+            axes[~absorbs[:, axis]] |= (1 | ALONG) << axis
     return Absorber(axes, decay, gain, delay, aligned_zeros(size), aligned_zeros(size))

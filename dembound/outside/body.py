@@ -6,15 +6,16 @@ from functools import cached_property
 import numba
 import numpy as np
 
+from dembound.boundaries.sides import SIDES
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.grid import fill_forces
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import Absorber, Grid
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.blocks import ElementBlocks, absorber_of, elements_of
-from dembound.outside.layer import USUAL, Absorption
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Mesh
+from dembound.outside.layer import USUAL, Absorption, Profile
+from dembound.outside.medium import Ground, Layered, layered
+from dembound.outside.mesh import WHOLE, Mesh
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -23,19 +24,37 @@ class GridBody:
 
     Attributes
     ----------
-    mesh, medium : its elements, and density and moduli.
+    mesh, medium : its elements, and density and moduli; of layers, edges of elements lie on their joints.
     absorption : settings of the layers of the mesh.
     thickness : m, across the plane; by default that of the disks.
     added_mass : (n,) kg on nodes, beyond that of the medium; by default none.
     first_slot : slot of its first node in the scene; multiples of eight are fastest.
+
+    Raises ValueError if a joint of layers lies inside elements.
     """
 
     mesh: Mesh
-    medium: Medium
+    medium: Ground
     absorption: Absorption = USUAL
     thickness: float = 1.0
     added_mass: np.ndarray | float = 0.0
     first_slot: int = 0
+
+    def __post_init__(self) -> None:
+        edges = self.mesh.origin[1] + self.mesh.axes[1].edges
+        for joint in self.ground.joints:
+            if edges[0] < joint < edges[-1] and np.abs(edges - joint).min() > WHOLE * self.mesh.size[1]:
+                raise ValueError(f"the joint of layers at y = {joint:g} m lies inside elements")
+
+    @cached_property
+    def ground(self) -> Layered:
+        """The layers of its medium."""
+        return layered(self.medium)
+
+    @cached_property
+    def layer(self) -> np.ndarray:
+        """(E,) number of the layer that every element is in."""
+        return self.ground.number_at(self.mesh.rectangles[:, 1::2].mean(axis=1))
 
     @property
     def count(self) -> int:
@@ -45,7 +64,14 @@ class GridBody:
     @cached_property
     def mass(self) -> np.ndarray:
         """(n,) kg."""
-        return self.medium.density * self.thickness * self.mesh.areas + self.added_mass
+        return self.own_mass + self.added_mass
+
+    @property
+    def own_mass(self) -> np.ndarray:
+        """(n,) kg, of the medium."""
+        areas = (self.mesh.areas_of(self.layer == number) for number in range(len(self.ground.media)))
+        each = [medium.density * self.thickness * of for medium, of in zip(self.ground.media, areas, strict=True)]
+        return np.sum(each, axis=0)
 
     @cached_property
     def mass_for_limit(self) -> np.ndarray:
@@ -60,11 +86,25 @@ class GridBody:
     @cached_property
     def blocks(self) -> ElementBlocks:
         """The elements in blocks, and the slots of the nodes."""
-        return ElementBlocks(self.mesh, self.first_slot)
+        return ElementBlocks(self.mesh, self.first_slot, self.layer)
+
+    def profile(self, side: str) -> Profile | None:
+        """The absorbing layer at a side, None without; its speed is that of the fastest P waves in it.
+
+        It is the same at all heights of layered ground, see layer.py.
+        """
+        axis, end = divmod(SIDES.index(side), 2)
+        if (cells := self.mesh.layer.along(axis)[end]) == 0:
+            return None
+        place = self.mesh.elements[:, axis]
+        there = np.unique(self.layer[place >= self.mesh.cells[axis] - cells if end else place < cells])
+        speed = max(self.ground.media[number].normal_speed(axis) for number in there)
+        thickness, guides = self.mesh.axes[axis].thickness[end], axis == 0 and len(there) > 1
+        return Profile(thickness, speed, self.mesh.inner, self.absorption, guides)
 
     def bundle(self, absorber: Absorber) -> Grid:
         """The arrays of its law."""
-        elements, blocks = elements_of(self.blocks, self.medium, self.thickness), self.blocks.bundle
+        elements, blocks = elements_of(self.blocks, self.ground.media, self.thickness), self.blocks.bundle
         space = 6 * elements.weight.shape[1] * LANES
         return Grid(
             points=tuple(self.mesh.rule.points.tolist()),
@@ -78,7 +118,9 @@ class GridBody:
 
     def law(self, time_step: float) -> Grid:
         """The arrays of its law for time steps Δt (s), with layers at rest."""
-        return self.bundle(absorber_of(self.blocks, self.medium, self.absorption, time_step))
+        left, right, bottom, top = (self.profile(side) for side in SIDES)
+        profiles = (left, right), (bottom, top)
+        return self.bundle(absorber_of(self.blocks, profiles, self.absorption, time_step))
 
     @cached_property
     def _elastic(self) -> Grid:

@@ -1,4 +1,4 @@
-"""The elastic continuum: density and the six constants of a plane medium without any symmetry."""
+"""The elastic continuum: density and the six constants of a plane medium without any symmetry, and layers of media."""
 
 from dataclasses import dataclass
 
@@ -57,3 +57,49 @@ class Medium:
     def normal_speed(self, axis: int) -> float:
         """Speed (m/s) of the faster plane wave along x (axis 0) or y (1): the P wave."""
         return float(self.plane_waves((1.0 - axis, float(axis)))[0][1])
+
+
+@dataclass(frozen=True)
+class Layered:
+    """Ground of horizontal layers, each a homogeneous medium.
+
+    Attributes
+    ----------
+    media : of the layers from the bottom up; the lowest one goes on downwards, and the highest one upwards.
+    joints : heights y of the boundaries between them, ascending, m.
+
+    Raises ValueError if there is not one joint less than media, or if joints do not ascend.
+    """
+
+    media: tuple[Medium, ...]
+    joints: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.media) != len(self.joints) + 1:
+            raise ValueError(f"{len(self.media)} layers have {len(self.media) - 1} joints, not {len(self.joints)}")
+        if not np.all(np.diff(self.joints) > 0.0):
+            raise ValueError("the joints of layers must ascend")
+
+    @property
+    def only(self) -> Medium:
+        """The medium of ground that is not layered; raises ValueError for layers."""
+        if self.joints:
+            raise ValueError(f"needs one medium, not {len(self.media)} layers")
+        return self.media[0]
+
+    def number_at(self, heights: np.ndarray) -> np.ndarray:
+        """Number (k,) of the layer at heights (k,) m, from the bottom; on a joint the lower one."""
+        return np.searchsorted(self.joints, heights)
+
+    def at(self, height: float) -> Medium:
+        """The medium at a height, m."""
+        return self.media[int(self.number_at(np.array([height]))[0])]
+
+
+Ground = Medium | Layered
+"""What a continuum consists of: one medium, or layers of several."""
+
+
+def layered(ground: Ground) -> Layered:
+    """The layers of a ground; one medium is a single layer."""
+    return ground if isinstance(ground, Layered) else Layered((ground,))

@@ -92,6 +92,9 @@ class Mesh:
         layer: Around,
         rows: Sequence[float] | None = None,
         surface: float | None = None,
+        below: Sequence[float] = (),
+        above: Sequence[float] | None = None,
+        base: float | None = None,
         **others: Any,
     ) -> "Mesh":
         """The mesh round a box (left, bottom, right, top; m), which may reach the free surface: no margin, no layer.
@@ -103,6 +106,9 @@ class Mesh:
         rows : heights of the rows beside the box from the bottom, m; those below have that of the first one. None: of
             equal height.
         surface : height y of a free surface above the box, m; None: the box reaches it, or there is a margin or layer.
+        below, above : heights of rows below the box, in place of as many of the margin, and up to the surface, from the
+            bottom, m; above is None: of equal height. base : height of the rows below all of them, m; None: that of the
+            lowest row beside the box.
         others : attributes of a mesh; levels : numbers of rows beside the box at left and right.
 
         Raises ValueError if the box is empty, or the surface is below its top or has a margin or layer below it.
@@ -112,20 +118,22 @@ class Mesh:
         if not (columns and rows):
             raise ValueError("the box is empty")
         left, right = ((columns[0],) * (margin.along(0)[side] + layer.along(0)[side]) for side in (0, 1))
-        bottom, top = ((rows[0],) * (margin.along(1)[side] + layer.along(1)[side]) for side in (0, 1))
+        base = rows[0] if base is None else base
+        bottom = (base,) * (max(margin.bottom - len(below), min(margin.bottom, 1)) + layer.bottom) + tuple(below)
+        top = (rows[-1],) * (margin.top + layer.top)
         if surface is not None:
             if top:
                 raise ValueError("a free surface above the box leaves no place for a margin or a layer at the top")
             if surface < box[3]:
                 raise ValueError(f"the free surface, y = {surface:g} m, is below the top of the box, {box[3]:g} m")
-            top = divided(surface - box[3], element[1])
+            top = divided(surface - box[3], element[1]) if above is None else tuple(above)
         if (levels := others.pop("levels", None)) is not None:
             levels = len(bottom) + levels[0], len(bottom) + levels[1]
         return cls(
             order=order,
             widths=left + columns + right,
             heights=bottom + rows + top,
-            origin=(box[0] - len(left) * columns[0], box[1] - len(bottom) * rows[0]),
+            origin=(box[0] - len(left) * columns[0], box[1] - (len(bottom) - len(below)) * base - sum(below)),
             box=(len(left), len(bottom), len(left) + len(columns), len(bottom) + len(rows)),
             levels=levels,
             layer=layer,
@@ -311,7 +319,11 @@ class Mesh:
     @cached_property
     def areas(self) -> np.ndarray:
         """(n,) m², of the quadrature: mass over density and thickness."""
-        return np.bincount(self.nodes.ravel(), self.quadrature.ravel(), self.count)
+        return self.areas_of(slice(None))
+
+    def areas_of(self, chosen: np.ndarray | slice) -> np.ndarray:
+        """(n,) m², the part of the areas in some elements."""
+        return np.bincount(self.nodes[chosen].ravel(), self.quadrature[chosen].ravel(), self.count)
 
 
 def divided(length: float, largest: float) -> tuple[float, ...]:

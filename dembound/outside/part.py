@@ -96,6 +96,9 @@ def stress(body: GridBody, displacement: np.ndarray) -> np.ndarray:
     along_x = steeper_x * np.einsum("ik,cejk->ceji", derivative, u)
     along_y = steeper_y * np.einsum("jk,ceki->ceji", derivative, u)
     strain = np.stack([along_x[0], along_y[1], along_y[0] + along_x[1]])
-    each = np.einsum("ab,beji->aeji", body.medium.matrix, strain)
+    each = np.empty_like(strain)
+    for number, medium in enumerate(body.ground.media):
+        chosen = body.layer == number
+        each[:, chosen] = np.einsum("ab,beji->aeji", medium.matrix, strain[:, chosen])
     node, weights = mesh.nodes.ravel(), mesh.quadrature.ravel()
     return np.stack([np.bincount(node, weights * row.ravel(), mesh.count) / mesh.areas for row in each], axis=1)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.outside.medium import Medium
+from dembound.outside.medium import Ground, Medium, layered
 from dembound.waves.wave import Wave
 
 SHARE = 1e-3
@@ -117,12 +117,22 @@ def cutoff(signal: Signal, share: float = SHARE) -> float:
 
 
 @lru_cache(maxsize=64)
-def slowest(medium: Medium) -> float:
-    """Speed (m/s) of the slowest plane waves of all directions."""
+def slowest(ground: Ground) -> float:
+    """Speed (m/s) of the slowest plane waves of all directions, in the slowest of layers."""
+    return min(_slowest_in(medium) for medium in layered(ground).media)
+
+
+def _slowest_in(medium: Medium) -> float:
+    """Speed (m/s) of the slowest plane waves of one medium."""
     return min(float(medium.plane_waves((math.cos(a), math.sin(a)))[0][0]) for a in np.linspace(0.0, math.pi, 37))
 
 
-def shortest_wave(signals: Sequence[Signal], medium: Medium, share: float = SHARE) -> float:
+def fastest(ground: Ground) -> float:
+    """Speed (m/s) of P waves along the axis along which they are faster, in the fastest of layers."""
+    return max(medium.normal_speed(axis) for medium in layered(ground).media for axis in (0, 1))
+
+
+def shortest_wave(signals: Sequence[Signal], medium: Ground, share: float = SHARE) -> float:
     """Length (m) of the slowest waves at the highest of the frequencies above which signals have a share of energy."""
     return slowest(medium) / max(cutoff(signal, share) for signal in signals)
 
@@ -150,13 +160,13 @@ def mean_frequency(signal: Signal, lowest: float = math.inf) -> float:
     return float(np.linalg.norm(rate)) / (2.0 * math.pi * size) if size > 0.0 else 0.0
 
 
-def wave_number(signals: Sequence[Signal], medium: Medium, lowest: float = math.inf) -> float:
+def wave_number(signals: Sequence[Signal], medium: Ground, lowest: float = math.inf) -> float:
     """The largest RMS wave number (1/m) of the slowest waves of signals, 0 without any; lowest : see `energies`."""
     frequencies = [mean_frequency(signal, lowest) for signal in signals]
     return 2.0 * math.pi * max(frequencies, default=0.0) / slowest(medium)
 
 
-def element_size(signals: Sequence[Signal], medium: Medium, order: int, accuracy: float) -> float:
+def element_size(signals: Sequence[Signal], medium: Ground, order: int, accuracy: float) -> float:
     """Largest side (m) of elements that transmit all but a share accuracy² of the energy of waves."""
     return order * shortest_wave(signals, medium, accuracy**2) / NODES[order]
 
@@ -212,7 +222,7 @@ def reflection(accuracy: float) -> float:
 
 
 def element_error(
-    signals: Sequence[Signal], medium: Medium, order: int, side: float, lowest: float = math.inf
+    signals: Sequence[Signal], medium: Ground, order: int, side: float, lowest: float = math.inf
 ) -> float:
     """Error of velocities with elements of this side (m), for the worst signal: the inverse of `element_size`.
 

@@ -16,7 +16,7 @@ from dembound.disks.stability import choose_step
 from dembound.motion import threads
 from dembound.outside.body import GridBody
 from dembound.outside.grid_scene import GridScene, step_limit
-from dembound.outside.medium import Medium
+from dembound.outside.medium import Layered, Medium
 from dembound.outside.mesh import Around, Mesh
 
 STEPS = 300
@@ -54,9 +54,10 @@ SCENES = {
 
 def scene_of(lab, name: str) -> tuple[DiskScene | GridScene, float]:
     """A scene under strong pulses, or of a continuum alone, and its step."""
-    if name == "continuum":
+    if name.endswith("continuum"):
         mesh = Mesh.around((0.0, 0.0, 40.0, 20.0), (10.0, 10.0), margin=Around(2, 2, 1, 0), layer=Around(3, 2, 3, 0))
-        body = GridBody(mesh=mesh, medium=Medium.isotropic(2500.0, 1000.0, 600.0))
+        rock, soil = Medium.isotropic(2500.0, 1000.0, 600.0), Medium.isotropic(1800.0, 400.0, 200.0)
+        body = GridBody(mesh=mesh, medium=Layered((rock, soil), (10.0,)) if name.startswith("layered") else rock)
         return GridScene(body), 0.9 * step_limit(body)
     words = {"held": (), **SCENES[name]}
     if "box" in words:
@@ -73,7 +74,7 @@ def run_with(number: int, lab, name: str) -> dict[str, np.ndarray]:
     assert threads.thread_count_for(1000) == number
     scene, step = scene_of(lab, name)
     simulation = lab.simulation(scene, settle(scene).start if name.startswith("settled") else None, step)
-    if name == "continuum":
+    if name.endswith("continuum"):
         noise = np.random.default_rng(0).standard_normal((3, scene.count)) * scene.moves
         simulation.state.velocity = noise
     ledger = lab.ledger(simulation, 10)
@@ -82,7 +83,7 @@ def run_with(number: int, lab, name: str) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
-@pytest.mark.parametrize("name", [*SCENES, "continuum"])
+@pytest.mark.parametrize("name", [*SCENES, "continuum", "layered continuum"])
 def test_same_bits_of_motion_contacts_and_energies(lab, name, monkeypatch):
     monkeypatch.setattr(threads, "PARTICLES_PER_THREAD", 1)  # else a scene as small as this has one thread
     before = numba.get_num_threads()

@@ -22,7 +22,7 @@ from dembound.disks.ram import stands_in_rows
 from dembound.disks.reduced.one_row import OneRow
 from dembound.disks.scene import DiskScene
 from dembound.motion.kind import Plan
-from dembound.outside.medium import Medium
+from dembound.outside.medium import Ground
 from dembound.outside.ram import GridSizes
 from dembound.packings.tiling import count_disks
 
@@ -136,7 +136,7 @@ class Counted:
         return Steps(self.given.scene.case, self.given.scene.ground)
 
     @cached_property
-    def _medium(self) -> Medium:
+    def _medium(self) -> Ground:
         return medium_of(self.given.scene.ground)
 
     @property

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.packings.cut import CutContacts
 
@@ -46,6 +47,8 @@ class CutBonds:
     @classmethod
     def of(cls, ground: PackedMaterial, cut: CutContacts, positions: np.ndarray) -> CutBonds:
         """Bonds of the cut contacts of a body with disks at these positions (n, 2) m."""
+        if isinstance(ground, LayeredGround):
+            return cls._of_layers(ground, cut, positions)
         law, kind, second = ground.stiffness, cut.contact_type, cut.is_second
         arms = np.where(second, [law.arm_j[kind], law.arm_i[kind]], [law.arm_i[kind], law.arm_j[kind]])
         vectors = cut.vectors(ground.brick).T
@@ -73,6 +76,18 @@ class CutBonds:
             force=force,
             side=cut.side,
         )
+
+    @classmethod
+    def _of_layers(cls, ground: LayeredGround, cut: CutContacts, positions: np.ndarray) -> CutBonds:
+        """The bonds of a layered ground: half a bond has the springs of the zone of its disk."""
+        zone, order, parts = ground.zone_of(positions[cut.node, 1]), [], []
+        for number in np.unique(zone).tolist():
+            order.append(np.flatnonzero(zone == number))
+            parts.append(vars(cls.of(ground.zones[number].material, cut.only(zone == number), positions)))
+        place = np.argsort(np.concatenate(order))
+        along = {name: 0 if name == "point" else -1 for name in parts[0]}
+        joined = {name: np.concatenate([part[name] for part in parts], axis=axis) for name, axis in along.items()}
+        return cls(**{name: np.take(values, place, axis=along[name]) for name, values in joined.items()})
 
     @property
     def on_disks(self) -> np.ndarray:

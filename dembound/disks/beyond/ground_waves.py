@@ -192,9 +192,10 @@ def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) 
 
     Raises CaseError for an angle beyond the critical one, and for a wave that is in the body before the run begins.
     """
-    table, medium = case.incident, outside.body.medium
+    table = case.incident
     if table is None:
         return None
+    medium = outside.body.ground.only
     wave = incident_in(case, medium)
     waves = [wave]
     if (surface := outside.free_surface) is not None:

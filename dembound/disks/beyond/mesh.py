@@ -15,11 +15,12 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.hollowed import ON_IT
 from dembound.disks.beyond.settings import Settings, least_element, mesh_of, settings_of
 from dembound.disks.material.free_surface import inset
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
 from dembound.holes.floor import Floor
 from dembound.outside.layer import LONG_WAVES
-from dembound.outside.medium import Medium
+from dembound.outside.medium import Ground, Layered, Medium
 from dembound.outside.mesh import WHOLE, Mesh
 from dembound.packings.tiling import Assembly
 from dembound.table import Box
@@ -94,7 +95,7 @@ class Level(NamedTuple):
         x, y = body.positions.T
         highest = float(y[x < x.min() + near if side == "left" else x > x.max() - near].max())
         height = floor.height + float(np.copysign(rounding, highest - floor.height + rounding))
-        mass_end, surface = ground.cut(height - float(body.origin[1]))
+        mass_end, surface = ground.at(floor.height).cut(height - float(body.origin[1]))
         return cls(floor.height, height, height + mass_end, height + surface)
 
 
@@ -136,13 +137,13 @@ class Rim(NamedTuple):
         for side in SIDES:
             if case.side(side).is_free and _is_beside(side, sides):
                 number, outwards = normal_axis(side) + 2 * is_far(side), 1.0 if is_far(side) else -1.0
-                skins[side] = ground.skin(side)
+                skins[side] = ground.at(box[1 if side == "bottom" else 3]).skin(side)
                 box[number] = inset(rim, skins)[number]
                 massless[side] = outwards * (mass[number] - box[number])
         surface = None
         if (gap := _gap_above(case, body)) > WHOLE * case.size[1] and "top" in sides:
             _refuse_thin(gap, least_element(case, ground.brick.mean_diameter))
-            skins["top"] = ground.skin("top")
+            skins["top"] = ground.at(case.box[3]).skin("top")
             surface = rim[3] + gap - skins["top"]
             massless["top"] = mass[3] + gap - surface
         levels = {side: Level.of(ground, body, floor, side) for side, floor in floors.items() if side in sides}
@@ -202,6 +203,7 @@ class Outline(NamedTuple):
             tops=rim.tops,
             periodic=periodic,
             mirrors=mirrors,
+            ground=medium_of(ground),
         )
         return cls(tuple(sides), size, rim, mesh)
 
@@ -254,8 +256,16 @@ def _refuse_low(rim: Rim, least: float) -> None:
             )
 
 
-def medium_of(ground: PackedMaterial) -> Medium:
-    """The continuum that a packing is equivalent to, with all six constants."""
+def medium_of(ground: PackedMaterial) -> Ground:
+    """The continuum that a packing is equivalent to, with all six constants, by layer."""
+    if isinstance(ground, LayeredGround):
+        media = tuple(_homogeneous(each.material) for each in ground.layers)
+        return Layered(media, tuple(each.low for each in ground.layers[1:]))
+    return _homogeneous(ground)
+
+
+def _homogeneous(ground: PackedMaterial) -> Medium:
+    """The continuum that one material is equivalent to."""
     c = ground.material_tensor
     return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])
 

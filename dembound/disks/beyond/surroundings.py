@@ -24,6 +24,8 @@ from dembound.kernels.wall import tie_forces
 from dembound.motion.layout import Layout, aligned_zeros
 from dembound.outside.body import GridBody
 from dembound.outside.edges import free_edges
+from dembound.outside.medium import Ground, Layered
+from dembound.outside.mesh import Mesh
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
 from dembound.table import Box
@@ -241,15 +243,29 @@ def surroundings_of(
         massless["top"] = on_top(mesh, rim.massless["top"], beyond)
     grid = GridBody(
         mesh=mesh,
-        medium=medium_of(ground),
+        medium=_on_edges(medium_of(ground), mesh),
         absorption=size.settings.absorption,
         thickness=float(np.prod(mass_extent(ground, body) / size.box)),
-        added_mass=mass_of(massless, mesh, ground.density),
         first_slot=-(-layout.count // LANES) * LANES,
     )
+    density = grid.own_mass / (grid.thickness * mesh.areas) if ground.is_layered else ground.density
+    grid = replace(grid, added_mass=mass_of(massless, mesh, density))
     bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
-    surface_mass = rim.massless.get("top", 0.0) * ground.density
+    surface_mass = rim.massless.get("top", 0.0) * ground.at(rim.surface or rim.box[3]).density
     return Surroundings(
         sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twin, surface_mass
     )
+
+
+def _on_edges(ground: Ground, mesh: Mesh) -> Ground:
+    """The ground with its joints on the edges of rows nearest to them: one beside the edge of the box lies on it."""
+    if not isinstance(ground, Layered):
+        return ground
+    edges = mesh.origin[1] + mesh.axes[1].edges
+    inside = [edges[0] < joint < edges[-1] for joint in ground.joints]
+    joints = [
+        float(edges[np.argmin(np.abs(edges - joint))]) if own else joint
+        for joint, own in zip(ground.joints, inside, strict=True)
+    ]
+    return replace(ground, joints=tuple(joints))

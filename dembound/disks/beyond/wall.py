@@ -26,6 +26,7 @@ from functools import cached_property
 import numpy as np
 
 from dembound.disks.beyond.cut_bonds import CutBonds
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
@@ -213,6 +214,10 @@ def _range(acts: np.ndarray, across: int) -> np.ndarray:
 
 
 def lag_of(ground: PackedMaterial, damping: float) -> float:
-    """η (s) of the ties: with half bonds of normal stiffness 2K, dashpots of `damping`·ρc_pD for K = ρc_p²."""
-    speed = float(np.sqrt(np.mean(np.diag(ground.material_tensor)[:2]) / ground.density))
+    """η (s) of the ties: with half bonds of normal stiffness 2K, dashpots of `damping`·ρc_pD for K = ρc_p².
+
+    In layers that of the fastest: the longest that shortens no step.
+    """
+    each = [layer.material for layer in ground.layers] if isinstance(ground, LayeredGround) else [ground]
+    speed = max(float(np.sqrt(np.mean(np.diag(one.material_tensor)[:2]) / one.density)) for one in each)
     return 0.5 * damping * ground.brick.mean_diameter / speed

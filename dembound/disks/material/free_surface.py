@@ -82,11 +82,11 @@ def inset(box: Box, skins: Mapping[str, float]) -> Box:
     return box[0] + left, box[1] + bottom, box[2] - right, box[3] - top
 
 
-def mass_of(skins: Mapping[str, float | np.ndarray], mesh: Mesh, density: float) -> np.ndarray:
+def mass_of(skins: Mapping[str, float | np.ndarray], mesh: Mesh, density: float | np.ndarray) -> np.ndarray:
     """Mass ρδ (n,) kg of skins on the nodes of a mesh's outer edges.
 
-    skins : side -> depth (m), uniform or per node (n,). density : kg/m³. Where the skin is stiff, nodes keep half their
-    mass; only elements smaller than some two diameters are that light.
+    skins : side -> depth (m), uniform or per node (n,). density : kg/m³, uniform or per node. Where the skin is
+    stiff, nodes keep half their mass; only elements smaller than some two diameters are that light.
     """
     added = sum((depth * density * edge_lengths(mesh, side) for side, depth in skins.items()), np.zeros(mesh.count))
     return np.maximum(added, (LEAST_MASS - 1.0) * density * mesh.areas)

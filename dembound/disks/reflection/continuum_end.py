@@ -82,7 +82,7 @@ class ContinuumEnd:
         begins = float(mesh.origin[self._axis]) + (0.0 if is_outwards(row.side) > 0 else float(mesh.size[self._axis]))
         bonds = CutBonds.of(ground, cut, assembly.positions).between([begins] * 4)
         self._wall = Wall.of(mesh, bonds, outside.wall.lag, outside.wall.mean)
-        self._elements = Elements(mesh, outside.body.medium, _layer(outside, row.side))
+        self._elements = Elements(mesh, outside.body.ground.only, _layer(outside, row.side))
 
         last = LastBrick(assembly, row)
         twin = assembly.brick_particle[last.disks]
@@ -220,5 +220,5 @@ def _layer(outside: Surroundings, side: str) -> Layer:
     """The layer of a continuum beyond a side."""
     axis, body = normal_axis(side), outside.body
     thickness = body.mesh.axes[axis].thickness[1 if is_outwards(side) > 0 else 0]
-    profile = Profile(thickness, body.medium.normal_speed(axis), body.mesh.inner, body.absorption)
+    profile = Profile(thickness, body.ground.only.normal_speed(axis), body.mesh.inner, body.absorption)
     return Layer(axis, profile, body.absorption.along if body.mesh.periodic[1 - axis] else 0.0)

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.boundaries.sides import normal_axis
-from dembound.disks.beyond.settings import ROUNDING, fastest, near_fields, signals_of
+from dembound.disks.beyond.settings import ROUNDING, near_fields, signals_of
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.packing_errors import lattice_errors, unevenness
 from dembound.disks.scene import DiskScene
@@ -139,7 +139,7 @@ def _parts(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal], l
     """The parts of the error; lowest : Hz, see `sizing.energies`."""
     settings, medium, mesh = outside.settings, outside.body.medium, outside.body.mesh
     passed = settings.order * sizing.slowest(medium) / (PASSED * largest_element(outside))
-    long = fastest(medium) / (2.0 * math.pi * mesh.inner)
+    long = sizing.fastest(medium) / (2.0 * math.pi * mesh.inner)
     elements, lasting = 0.0, 0.0
     for signal in signals:
         frequency, energy = sizing.energies(signal, lowest)

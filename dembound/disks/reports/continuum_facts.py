@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import product
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from dembound.disks import step_cost
 from dembound.disks.beyond.settings import (
     ROUNDING,
     buried,
-    fastest,
     lasting_time,
     least_element,
     margin_below_surface,
@@ -25,7 +25,6 @@ from dembound.disks.packing_errors import packing_facts
 from dembound.disks.reports.continuum_errors import largest_element, near_error
 from dembound.disks.scene import DiskScene
 from dembound.outside import sizing
-from dembound.outside.layer import Profile
 from dembound.outside.sizing import Signal
 from dembound.words import Entries, percent
 
@@ -153,11 +152,12 @@ def _reflections(outside: Surroundings, signals: Sequence[Signal]) -> tuple[list
     body = outside.body
     lowest = min((signal.wave.dominant_frequency() for signal in signals), default=math.inf)
     found = []
-    for axis in sorted({normal_axis(side) for side in outside.sides}):
-        slow, fast = body.medium.plane_waves((1.0 - axis, float(axis)))[0]
-        profile = Profile(max(body.mesh.axes[axis].thickness), float(fast), body.mesh.inner, body.absorption)
-        frequency = lowest if 0.0 < lowest < math.inf else float(fast) / body.mesh.inner
-        found.append([[profile.expected_reflection(frequency, a, float(c)) for a in ANGLES] for c in (fast, slow)])
+    for side, medium in product(outside.sides, body.ground.media):
+        axis, profile = normal_axis(side), body.profile(side)
+        if profile is not None:
+            slow, fast = medium.plane_waves((1.0 - axis, float(axis)))[0].tolist()
+            frequency = lowest if 0.0 < lowest < math.inf else fast / body.mesh.inner
+            found.append([[profile.expected_reflection(frequency, a, c) for a in ANGLES] for c in (fast, slow)])
     p, s = np.max(found, axis=0).tolist()
     return p, s
 
@@ -246,7 +246,7 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
 def _lasting(scene: DiskScene, outside: Surroundings, keys: OutsideTable, asked: str) -> Iterator[str]:
     """A warning about a margin that is too small for a force that stays."""
     lasting, body = lasting_time(scene.case), outside.body
-    speed = fastest(body.medium)
+    speed = sizing.fastest(body.medium)
     error = sizing.missing(lasting, speed, keys.shift, body.mesh.inner)
     if error > keys.accuracy:
         inner = sizing.inner_length(lasting, speed, keys.shift, keys.accuracy)

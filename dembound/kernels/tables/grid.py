@@ -11,9 +11,10 @@ import numpy as np
 
 
 class Elements(NamedTuple):
-    """The elements of a grid, which have S shapes: widths and heights. Its arrays are those of `Shape`.
+    """The elements of a grid of S shapes: width, height and medium. Its arrays are those of `Shape`.
 
-    gradient_x, gradient_y, divergence_x, divergence_y : (S, N·N). weight : (S, Q). moduli, core, rim : of all elements.
+    gradient_x, gradient_y, divergence_x, divergence_y : (S, N·N). weight : (S, Q). moduli : (S, 6). core, rim : of all
+    elements.
     """
 
     gradient_x: np.ndarray

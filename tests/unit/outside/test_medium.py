@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.outside.medium import Medium
+from dembound.outside.medium import Layered, Medium, layered
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
 
@@ -40,3 +40,27 @@ def test_a_rotated_medium_has_rotated_waves() -> None:
     np.testing.assert_allclose(turned.plane_waves((-s, c))[0], plain.plane_waves((0.0, 1.0))[0], rtol=1e-12)
     np.testing.assert_allclose(turned.matrix, m, rtol=1e-12)
     assert turned.moduli.tolist() == [m[0, 0], m[1, 1], m[0, 1], m[2, 2], m[0, 2], m[1, 2]]
+
+
+def test_layers_at_heights() -> None:
+    soil = Medium.isotropic(1800.0, 400.0, 200.0)
+    ground = Layered((ROCK, soil, ROCK), (10.0, 20.0))
+
+    assert ground.number_at(np.array([-5.0, 10.0, 10.1, 20.0, 99.0])).tolist() == [
+        0,
+        0,
+        1,
+        1,
+        2,
+    ]  # the lower on a joint
+    assert (ground.at(15.0), ground.at(10.0)) == (soil, ROCK)
+    assert layered(ground) is ground
+    assert layered(soil).only == soil
+    with pytest.raises(ValueError, match="needs one medium, not 3 layers"):
+        assert ground.only
+
+
+@pytest.mark.parametrize("joints", [(10.0,), (20.0, 10.0)])
+def test_joints_must_fit_the_layers(joints: tuple[float, ...]) -> None:
+    with pytest.raises(ValueError, match=r"3 layers have 2 joints, not 1|must ascend"):
+        Layered((ROCK, ROCK, ROCK), joints)

@@ -1,0 +1,91 @@
+"""The continuum round disks of layered ground: rows of elements, densities, and ties."""
+
+import numpy as np
+import pytest
+from small_cases import small
+
+from dembound.disks.beyond.cut_bonds import CutBonds
+from dembound.disks.beyond.mesh import medium_of
+from dembound.disks.beyond.settings import Settings, mesh_of
+from dembound.disks.material.layered import LayeredGround
+from dembound.disks.scene import DiskScene, build
+from dembound.outside.layer import Absorption
+from dembound.outside.medium import Layered, Medium
+from dembound.packings.cut import cut_contacts
+
+ROCK, SOIL = Medium.isotropic(2300.0, 1400.0, 700.0), Medium.isotropic(1800.0, 400.0, 200.0)
+BOX = (0.0, 0.0, 20.0, 30.0)
+SETTINGS = Settings(4, 10.0, 0.0, 1, 3, Absorption(), 0.1, taller=(2.0, 1.0), beside=6)
+SIDES = ("left", "right", "bottom")
+
+
+def heights(joint: float, **more: float) -> list[float]:
+    mesh = mesh_of(SETTINGS, BOX, SIDES, (10.0, 10.0), ground=Layered((ROCK, SOIL), (joint,)), **more)
+    assert mesh.layer == (6, 6, 3, 0)
+    assert mesh.sides == pytest.approx((BOX[0], BOX[2], BOX[1], BOX[3]), abs=1e-9)
+    return list(mesh.heights)
+
+
+def test_rows_end_at_joints_beside_and_below_the_box() -> None:
+    assert heights(-25.0) == pytest.approx([20.0] * 4 + [25.0 / 3.0] * 3 + [10.0] * 3)
+    assert heights(24.0) == pytest.approx([20.0] * 4 + [12.0] * 2 + [6.0])
+    assert heights(10.0, surface=45.0)[-2:] == pytest.approx([7.5] * 2)
+
+
+def test_a_joint_next_to_the_edge_of_the_box_has_no_row() -> None:
+    assert heights(0.5) == pytest.approx([20.0] * 4 + [10.0] * 3)
+
+
+CASE = {
+    "packing": {"pattern": "B", "bricks": [2, 3], "brick": [6.0, 6.0], "radius": 0.25, "radius_ratio": 1.5},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+    "boundary": {side: {"type": "outside"} for side in SIDES},
+    "outside": {"element": 4.0},
+    "run": {"duration": 1.0},
+}
+SLOW = {"density": 2000.0, "p_wave_speed": 500.0}
+
+
+def scene(*layers: dict[str, float], **changes: object) -> DiskScene:
+    """A body of 12 m × 18 m in layers."""
+    return build(small(CASE, changes=({"layer": list(layers)} if layers else {}) | changes))
+
+
+def test_layers_of_one_material_have_the_continuum_of_that_material() -> None:
+    one, two = scene(), scene({"thickness": 9.0}, {})
+
+    own = two.outside.body.ground
+    assert own.joints == pytest.approx([9.0], abs=0.5)
+    np.testing.assert_allclose([each.moduli for each in own.media], [one.outside.body.medium.moduli] * 2, rtol=1e-9)
+    # ties do not depend on it
+    a, b = one.outside.wall.bonds, two.outside.wall.bonds
+    assert np.sort(a.stiffness[0]) == pytest.approx(np.sort(b.stiffness[0]), rel=1e-9)
+
+
+def test_ties_have_the_springs_of_the_layer_of_their_disk() -> None:
+    """Far from the joint: half a bond is twice as stiff as the bond of the layer, with the layer's correctors."""
+    layered = scene(SLOW | {"thickness": 9.0}, {})
+    ground, body = layered.ground, layered.assembly
+    assert isinstance(ground, LayeredGround)
+    cut = cut_contacts(ground.brick, body, SIDES)
+    bonds = CutBonds.of(ground, cut, body.positions)
+    for high, material in ((False, ground.layers[0].material), (True, ground.layers[1].material)):
+        away = bonds.height > 9.0 + 3.0 if high else bonds.height < 9.0 - 3.0
+        alone = CutBonds.of(material, cut, body.positions)
+        assert away.any()
+        for name in ("particle", "normal", "stiffness", "corrector", "force", "side"):
+            np.testing.assert_array_equal(getattr(bonds, name)[..., away], getattr(alone, name)[..., away])
+
+
+def test_media_and_densities_of_layers() -> None:
+    layered = scene(SLOW | {"thickness": 9.0}, {})
+    ground = medium_of(layered.ground)
+    assert isinstance(ground, Layered)
+    assert ground.joints == (9.0,)
+    assert [each.density for each in ground.media] == [2500.0, 2000.0]
+
+    body = layered.outside.body
+    y = body.mesh.positions[:, 1]
+    density = body.mass / body.mesh.areas
+    inner = (y < y.max() - 0.1) & (np.abs(y - body.ground.joints[0]) > 0.1)
+    np.testing.assert_allclose(density[inner], np.where(y[inner] > body.ground.joints[0], 2000.0, 2500.0))
