@@ -26,7 +26,7 @@ from dembound.disks.beyond.ground_waves import (
     must_not_be_there,
     reference_point,
 )
-from dembound.disks.beyond.mesh import medium_of
+from dembound.disks.beyond.mesh import homogeneous
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.material.layered import ON_JOINT, LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
@@ -261,7 +261,7 @@ def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -
         return ground_waves(case, ground, outside)
     wave, grain = case.wave[table.wave], ground.brick.mean_diameter
     found = rising_in_layers(
-        [medium_of(material) for material in layers],
+        [homogeneous(material) for material in layers],
         case.joints,
         outside.free_surface,
         (wave, None) if table.type == "sv" else (None, wave),

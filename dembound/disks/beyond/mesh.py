@@ -259,12 +259,12 @@ def _refuse_low(rim: Rim, least: float) -> None:
 def medium_of(ground: PackedMaterial) -> Ground:
     """The continuum that a packing is equivalent to, with all six constants, by layer."""
     if isinstance(ground, LayeredGround):
-        media = tuple(_homogeneous(each.material) for each in ground.layers)
+        media = tuple(homogeneous(each.material) for each in ground.layers)
         return Layered(media, tuple(each.low for each in ground.layers[1:]))
-    return _homogeneous(ground)
+    return homogeneous(ground)
 
 
-def _homogeneous(ground: PackedMaterial) -> Medium:
+def homogeneous(ground: PackedMaterial) -> Medium:
     """The continuum that one material is equivalent to."""
     c = ground.material_tensor
     return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])

@@ -199,11 +199,12 @@ class ContactList(PairList):
         fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, len(radii)), keys)
         (first, second), image = near[fresh].T, image[fresh]
         vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
-        pairing = self.ground.pairing_of(positions[first, 1], positions[second, 1])
+        zone = self.ground.zone_of(positions[:, 1])
+        zones = zone[first], zone[second]
         constants = self.ground.pair_constants(
             (radii[first], radii[second]),
             vectors,
-            pairing,
+            zones,
             bonded=False,
             locked_in=self.locked_in,
         )
@@ -211,7 +212,7 @@ class ContactList(PairList):
             limits = np.repeat(NO_LIMITS, len(first), axis=0)
             limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
             constants = np.column_stack([constants, limits])
-        constants, row_of = shared_constants(constants, pairing, self.skin)
+        constants, row_of = shared_constants(constants, np.column_stack(zones), self.skin)
         return Pairs(first, second, image, row_of), constants
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:

@@ -73,7 +73,7 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
     brick = ground.brick
     first, second = brick.radii[brick.pairs].T
     found = []
-    for pairing in range(len(ground.pairings)):
+    for pairing in ground.pairings:
         constants = ground.pair_constants(
             (first, second), brick.vectors, pairing, gaps_close=gaps_close, locked_in=locked_in
         )
@@ -84,12 +84,12 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
     return np.vstack(found)
 
 
-def shared_constants(constants: np.ndarray, pairing: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+def shared_constants(constants: np.ndarray, zones: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
     """Distinct rows (p, 12) of the constants of pairs, to rounding, and the row of each pair (b,).
 
-    Pairs at the same place of different bricks then share a row, if they have the same pairing (b,) of zones; length
+    Pairs at the same place of different bricks then share a row, if they are in the same zones (b, 2); length
     (m) is the scale for rounding errors.
     """
-    places = np.column_stack([np.round(constants[:, :5] / (1e-6 * length)), pairing])
+    places = np.column_stack([np.round(constants[:, :5] / (1e-6 * length)), zones])
     _, first, row_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
     return constants[first], row_of.reshape(-1)

@@ -118,9 +118,7 @@ class LayeredGround(PackedMaterial):
         if pairing[0] == pairing[1]:
             return one
         radii = self.brick.radii[self.brick.pairs].T
-        constants = self.pair_constants(
-            (radii[0], radii[1]), self.brick.vectors, self.pairings.index(pairing), gaps_close=False
-        )
+        constants = self.pair_constants((radii[0], radii[1]), self.brick.vectors, pairing, gaps_close=False)
         normal, shear = (constants[:, 5:7] + constants[:, 7:9]).T
         return Stiffness(normal, shear, constants[:, 9], one.arm_i, one.arm_j)
 
@@ -128,17 +126,17 @@ class LayeredGround(PackedMaterial):
         self,
         radii: tuple[np.ndarray, np.ndarray],
         vectors: np.ndarray,
-        pairing: np.ndarray | int = 0,
+        zones: tuple[np.ndarray | int, np.ndarray | int] = (0, 0),
         *,
         bonded: bool | None = None,
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 12) of pairs, see `PackedMaterial.pair_constants`; pairing : (b,) their zones."""
-        pairing = np.broadcast_to(pairing, len(vectors))
+        """Constants (b, 12) of pairs, see `PackedMaterial.pair_constants`."""
         found = np.empty((len(vectors), 12))
-        for number in np.unique(pairing).tolist():
-            chosen = pairing == number
+        ends = np.stack([np.broadcast_to(zone, len(vectors)) for zone in zones], axis=1)
+        for pair in np.unique(ends, axis=0):
+            chosen = (ends == pair).all(axis=1)
             one, other = (
                 self.zones[zone].material.pair_constants(
                     (radii[0][chosen], radii[1][chosen]),
@@ -147,10 +145,11 @@ class LayeredGround(PackedMaterial):
                     gaps_close=gaps_close,
                     locked_in=locked_in,
                 )
-                for zone in self.pairings[number]
+                for zone in pair.tolist()
             )
             found[chosen] = one
-            found[chosen, 5:10] = _in_series(one[:, 5:10], other[:, 5:10])
+            if pair[0] != pair[1]:
+                found[chosen, 5:10] = _in_series(one[:, 5:10], other[:, 5:10])
         return found
 
     @cached_property

@@ -79,6 +79,10 @@ class PackedMaterial:
         """The material at a height (m): the same everywhere, except in a layered ground."""
         return self
 
+    def zone_of(self, heights: np.ndarray) -> np.ndarray:
+        """Number of the zone, from the bottom, of disks at heights (n,) m: one, except in a layered ground."""
+        return np.zeros(len(heights), dtype=np.int64)
+
     def layer_of(self, heights: np.ndarray) -> np.ndarray:
         """Number of the layer, from the top, of disks at heights (n,) m."""
         return np.zeros(len(heights), dtype=np.int64)
@@ -109,7 +113,7 @@ class PackedMaterial:
         self,
         radii: tuple[np.ndarray, np.ndarray],
         vectors: np.ndarray,
-        pairing: np.ndarray | int = 0,
+        zones: tuple[np.ndarray | int, np.ndarray | int] = (0, 0),
         *,
         bonded: bool | None = None,
         gaps_close: bool = True,
@@ -117,8 +121,8 @@ class PackedMaterial:
     ) -> np.ndarray:
         """Constants (b, 12) of pairs, see `Law.pair_constants`.
 
-        radii : (b,) m of first and second disks. pairing : numbers (b,) in `pairings`. bonded : whether the pairs have
-        bonds; None: if the material has bonds.
+        radii : (b,) m of first and second disks. zones : (b,) of first and second disks, see `zone_of`. bonded : whether the
+        pairs have bonds; None: if the material has bonds.
         """
         return self.law.pair_constants(
             self.moduli,
