@@ -85,11 +85,11 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
 
 
 def shared_constants(constants: np.ndarray, zones: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Distinct rows (p, 12) of the constants of pairs, to rounding, and the row of each pair (b,).
+    """Distinct rows (p, 12 or 16) of the constants of pairs, to rounding, and the row of each pair (b,).
 
-    Pairs at the same place of different bricks then share a row, if they are in the same zones (b, 2); length
-    (m) is the scale for rounding errors.
+    Pairs at the same place of different bricks then share a row, if they are in the same zones (b, 2) and have the same
+    limits; length (m) is the scale for rounding errors.
     """
-    places = np.column_stack([np.round(constants[:, :5] / (1e-6 * length)), zones])
+    places = np.column_stack([np.round(constants[:, :5] / (1e-6 * length)), zones, constants[:, 12:]])
     _, first, row_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
     return constants[first], row_of.reshape(-1)

@@ -121,8 +121,8 @@ class PackedMaterial:
     ) -> np.ndarray:
         """Constants (b, 12) of pairs, see `Law.pair_constants`.
 
-        radii : (b,) m of first and second disks. zones : (b,) of first and second disks, see `zone_of`. bonded : whether the
-        pairs have bonds; None: if the material has bonds.
+        radii : (b,) m of first and second disks. zones : (b,) of both disks, see `zone_of`. bonded : whether the pairs have
+        bonds; None: if the material has bonds.
         """
         return self.law.pair_constants(
             self.moduli,
