@@ -43,7 +43,7 @@ BESIDE = 2
 
 The width of elements is that for the slowest layer, so that as many are a smaller part of the waves in faster layers,
 and slow layers guide waves along the ground. Returned motion round a force on a slow layer, 40 m from the layers: three
-elements 3 to 5 %, six 0.7 to 1.4 %, eight 0.4 to 0.9 % of all."""
+elements 3 %, six 0.7 to 1.4 %, eight 0.4 to 0.9 % of all."""
 
 SLIVER = 0.1
 """Part of an element: joints of layers nearer to an edge of the box lie on it."""
