@@ -6,10 +6,11 @@ from functools import cached_property
 import numba
 import numpy as np
 
+from dembound.damping.quality import Mechanisms
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.grid import fill_forces
 from dembound.kernels.lanes import LANES
-from dembound.kernels.tables import Absorber, Grid
+from dembound.kernels.tables import Absorber, DampedGrid, Grid
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.blocks import ElementBlocks, absorber_of, elements_of
 from dembound.outside.layer import USUAL, Absorption
@@ -23,7 +24,8 @@ class GridBody:
 
     Attributes
     ----------
-    mesh, medium : its elements, and density and moduli.
+    mesh, medium : its elements, and density and moduli. mechanisms : of its damping, whose moduli are those of the
+    medium at one frequency; None without damping.
     absorption : settings of the layers of the mesh.
     thickness : m, across the plane; by default that of the disks.
     added_mass : (n,) kg on nodes, beyond that of the medium; by default none.
@@ -32,6 +34,7 @@ class GridBody:
 
     mesh: Mesh
     medium: Medium
+    mechanisms: Mechanisms | None = None
     absorption: Absorption = USUAL
     thickness: float = 1.0
     added_mass: np.ndarray | float = 0.0
@@ -46,6 +49,11 @@ class GridBody:
     def mass(self) -> np.ndarray:
         """(n,) kg."""
         return self.medium.density * self.thickness * self.mesh.areas + self.added_mass
+
+    @property
+    def stepped_medium(self) -> Medium:
+        """The medium with the unrelaxed moduli with which it is stepped."""
+        return self.medium if self.mechanisms is None else self.medium.times(self.mechanisms.unrelaxed)
 
     @cached_property
     def mass_for_limit(self) -> np.ndarray:
@@ -64,7 +72,7 @@ class GridBody:
 
     def bundle(self, absorber: Absorber) -> Grid:
         """The arrays of its law."""
-        elements, blocks = elements_of(self.blocks, self.medium, self.thickness), self.blocks.bundle
+        elements, blocks = elements_of(self.blocks, self.stepped_medium, self.thickness), self.blocks.bundle
         space = 6 * elements.weight.shape[1] * LANES
         return Grid(
             points=tuple(self.mesh.rule.points.tolist()),
@@ -79,6 +87,17 @@ class GridBody:
     def law(self, time_step: float) -> Grid:
         """The arrays of its law for time steps Δt (s), with layers at rest."""
         return self.bundle(absorber_of(self.blocks, self.medium, self.absorption, time_step))
+
+    def damped(self, grid: Grid, time_step: float) -> DampedGrid | None:
+        """The arrays of its law with memories for time steps Δt (s), at rest; None without damping."""
+        if self.mechanisms is None:
+            return None
+        each = self.mechanisms.per_step(time_step)
+        blocks, count = grid.blocks.blocks, each.shape[1]
+        factors = np.broadcast_to(each[None, :, :, None], (blocks, 2, count, LANES)).ravel()
+        memory = aligned_zeros(blocks * count * 2 * grid.elements.weight.shape[1] * LANES)
+        held = np.zeros((2, blocks * grid.elements.core.size * LANES))
+        return DampedGrid(grid, count, factors, memory, held, np.zeros(1))
 
     @cached_property
     def _elastic(self) -> Grid:

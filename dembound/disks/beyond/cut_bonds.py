@@ -46,7 +46,7 @@ class CutBonds:
     @classmethod
     def of(cls, ground: PackedMaterial, cut: CutContacts, positions: np.ndarray) -> CutBonds:
         """Bonds of the cut contacts of a body with disks at these positions (n, 2) m."""
-        law, kind, second = ground.stiffness, cut.contact_type, cut.is_second
+        law, kind, second = ground.springs, cut.contact_type, cut.is_second
         arms = np.where(second, [law.arm_j[kind], law.arm_i[kind]], [law.arm_i[kind], law.arm_j[kind]])
         vectors = cut.vectors(ground.brick).T
         normal = vectors / np.hypot(*vectors)

@@ -242,6 +242,7 @@ def surroundings_of(
     grid = GridBody(
         mesh=mesh,
         medium=medium_of(ground),
+        mechanisms=ground.mechanisms,
         absorption=size.settings.absorption,
         thickness=float(np.prod(mass_extent(ground, body) / size.box)),
         added_mass=mass_of(massless, mesh, ground.density),
