@@ -220,6 +220,7 @@ MEANINGS: dict[str, Meaning] = {
         *(1e-14, 0.01, "bodies at rest have", (1e-8, 0.01)),
         slips=(_times(1e-2, "%"),),
     ),
+    "quality factor": Meaning("from soft soil to intact rock", 3.0, 2e3, "ground has"),
     "factor of springs": Meaning("0.5 to 2 in theory", 0.01, 20.0, "springs of a half-plane have"),
     "share": _free("its limits, from 0 to 1, are those of the key"),
     "Poisson's ratio": _free("its limits, from −1 to 0.5, are those of the key"),

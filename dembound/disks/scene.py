@@ -16,6 +16,7 @@ from dembound.disks.beyond.ground_waves import GroundWaves, rising_waves
 from dembound.disks.beyond.hollowed import hollowed
 from dembound.disks.beyond.incident import let_in, let_in_below, power_through
 from dembound.disks.beyond.layered_waves import LayeredWaves, rising_in_layers, undisturbed
+from dembound.disks.beyond.mechanisms import mechanisms_of
 from dembound.disks.beyond.mesh import NO_FLOORS, Outline
 from dembound.disks.beyond.surroundings import Surroundings, surroundings_of
 from dembound.disks.body import DiskBody, parts_of
@@ -244,7 +245,10 @@ def ground_of(case: DiskCase) -> PackedMaterial:
     """The case's brick, packed or from the cache, with its material."""
     brick = case.packing.pack(nominal_moduli(case.materials[-1]).emod)
     along = 1 if case.layer else 0  # waves in layers run upwards
-    materials = [make_packed_material(brick, each, case.motion.held, along) for each in reversed(case.materials)]
+    materials = [
+        make_packed_material(brick, each, case.motion.held, along, mechanisms_of(case, each.quality_factor))
+        for each in reversed(case.materials)
+    ]
     if len(materials) == 1:
         return materials[0]
     return layered(materials, case.joints[::-1], case.packing.origin[1])

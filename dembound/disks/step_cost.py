@@ -18,9 +18,14 @@ DISK = {(True, False): 7.0, (False, False): 27.0, (True, True): 20.0, (False, Tr
 """Nanoseconds of a step of a disk (benchmarks/rates.py), in rows of copies or one by one, with a history or without."""
 
 
+DAMPED = 7.0
+"""Nanoseconds of a step of a disk by three mechanisms of damping."""
+
+
 def of_disk(scene: DiskScene) -> float:
     """Nanoseconds of a step per disk of a scene."""
-    return DISK[scene.slots is not None and not scene.slots.is_plain, scene.has_history]
+    damped = 0.0 if scene.ground.mechanisms is None else DAMPED
+    return DISK[scene.slots is not None and not scene.slots.is_plain, scene.has_history] + damped
 
 
 def of_continuum(nodes: float, absorbing: float, ties: float) -> dict[str, float]:

@@ -106,7 +106,7 @@ def _force_blocks(rows, first, last, u, force):
 
 
 @njit(**INLINED)
-def _gathered(rows, block, r, column, u, body):
+def gathered(rows, block, r, column, u, body):
     """Forces on the disks of a block without steady loads, displacements, and factors from forces to speeds.
 
     Returns forces and moment, displacements, Δt over mass and over moment of inertia, and whether the block is special.
@@ -140,7 +140,7 @@ def _move_blocks(rows, first, last, u, v, body, u_next):
         if block > first:
             group, column, r = next_place(rows, block, group, column, r)
         i = U(LANES * block)
-        fx, fy, moment, x, y, turn, b, b_turn, special = _gathered(rows, block, r, column, u, body)
+        fx, fy, moment, x, y, turn, b, b_turn, special = gathered(rows, block, r, column, u, body)
         now_x = kick(load(v[0], i), fx, across * b)
         now_y = kick(load(v[1], i), fy, up * b)
         now_t = kick(load(v[2], i), moment, about * b_turn)
@@ -161,7 +161,7 @@ def _move_loaded_blocks(rows, first, last, u, v, body, u_next, arms):
         if block > first:
             group, column, r = next_place(rows, block, group, column, r)
         i = U(LANES * block)
-        fx, fy, moment, x, y, turn, b, b_turn, special = _gathered(rows, block, r, column, u, body)
+        fx, fy, moment, x, y, turn, b, b_turn, special = gathered(rows, block, r, column, u, body)
         if body.load.shape[1] > 0:
             fx += load(body.load[0], i)
             fy += load(body.load[1], i)

@@ -23,7 +23,7 @@ _STEP = U(LANES)
 
 
 @njit(**WITHIN)
-def _sum(values):
+def sum_of(values):
     """Sum over the lanes, in order."""
     total = 0.0
     for k in range(LANES):
@@ -32,7 +32,7 @@ def _sum(values):
 
 
 @njit(**WITHIN)
-def _store_rim(shape, block, space, force):
+def store_rim(shape, block, space, force):
     """Store the forces in the first two fields of the work space on rim points."""
     size = U(shape.weight.size) * _STEP
     entry = U(2) * U(block) * U(shape.rim.size) * _STEP
@@ -44,7 +44,7 @@ def _store_rim(shape, block, space, force):
 
 
 @njit(**WITHIN)
-def _move_core(shape, blocks, block, space, u, v, body, u_next):
+def move_core(shape, blocks, block, space, u, v, body, u_next):
     """Move the core nodes of a block by a step; returns Σ F·v⁻ and Σ F·v⁺ of those that are not supported."""
     size = U(shape.weight.size) * _STEP
     nothing = splat(0.0)
@@ -77,22 +77,22 @@ def _move_blocks(points, elements, blocks, absorber, force, first, last, u, v, b
     for block in range(first, min(last, elastic)):
         shape = shape_of(elements, blocks, block)
         block_forces(points, shape, blocks, block, u, space)
-        _store_rim(shape, block, space, force)
-        _move_core(shape, blocks, block, space, u, v, body, u_next)
+        store_rim(shape, block, space, force)
+        move_core(shape, blocks, block, space, u, v, body, u_next)
     whole, half = splat(0.0), splat(0.0)
     for block in range(max(first, elastic), last):
         shape = shape_of(elements, blocks, block)
         absorbing_forces(points, shape, blocks, absorber, block, u, v, space)
-        _store_rim(shape, block, space, force)
-        before, after = _move_core(shape, blocks, block, space, u, v, body, u_next)
+        store_rim(shape, block, space, force)
+        before, after = move_core(shape, blocks, block, space, u, v, body, u_next)
         half += before
         whole += before + after
-    taken[0] = -0.5 * body.step * _sum(whole)
-    taken[1] = -0.5 * body.step * _sum(half)
+    taken[0] = -0.5 * body.step * sum_of(whole)
+    taken[1] = -0.5 * body.step * sum_of(half)
 
 
 @njit(**WITHIN)
-def _sum_at(blocks, k, force):
+def sum_at(blocks, k, force):
     """Force (x, y) of all elements on the k-th shared node."""
     first, end = blocks.start[k], blocks.start[k + U(1)]
     entry = U(blocks.entry[U(first)])
@@ -105,7 +105,7 @@ def _sum_at(blocks, k, force):
 
 
 @njit(**WITHIN)
-def _sums_at(blocks, k, force):
+def sums_at(blocks, k, force):
     """Sums at a node, and the part of them of elements that absorb."""
     x, y, ax, ay = 0.0, 0.0, 0.0, 0.0
     for e in range(blocks.start[k], blocks.start[k + U(1)]):
@@ -120,7 +120,7 @@ def _sums_at(blocks, k, force):
 
 
 @njit(**WITHIN)
-def _move_node(i, x, y, u, v, body, u_next):
+def move_node(i, x, y, u, v, body, u_next):
     """Move node i by a step under a force (x, y) and steady loads; u_next gets the forces on a supported one."""
     if body.load.shape[1] > 0:
         x += body.load[U(0), i]
@@ -143,15 +143,15 @@ def _move_shared(blocks, force, first, last, u, v, body, u_next, taken):
     """Sum the forces on shared nodes first to last − 1, and move them."""
     elastic = blocks.shared_layer - blocks.shared_begin
     for n in range(first, min(last, elastic)):
-        x, y = _sum_at(blocks, U(n), force)
-        _move_node(U(blocks.shared_begin + n), x, y, u, v, body, u_next)
+        x, y = sum_at(blocks, U(n), force)
+        move_node(U(blocks.shared_begin + n), x, y, u, v, body, u_next)
     half = 0.0
     whole = 0.0
     for n in range(max(first, elastic), last):
         i = U(blocks.shared_begin + n)
-        x, y, ax, ay = _sums_at(blocks, U(n), force)
+        x, y, ax, ay = sums_at(blocks, U(n), force)
         before = ax * v[U(0), i] + ay * v[U(1), i]
-        _move_node(i, x, y, u, v, body, u_next)
+        move_node(i, x, y, u, v, body, u_next)
         half += before
         whole += before
         if body.mobility[i] > 0.0:  # `finish` adds that of supported ones
@@ -201,7 +201,7 @@ def finish(grid, v, body, nodes, work):
         i = U(nodes[s])
         k = nodes[s] - begin
         if grid.blocks.shared_layer - begin <= k < grid.blocks.start.size - 1:
-            _, _, ax, ay = _sums_at(grid.blocks, U(k), grid.force)
+            _, _, ax, ay = sums_at(grid.blocks, U(k), grid.force)
             late += ax * v[U(0), i] + ay * v[U(1), i]
     work[1, 1] += column_sum(grid.taken, 1) + column_sum(grid.taken, 3)
     work[0, 1] += column_sum(grid.taken, 0) + column_sum(grid.taken, 2) - 0.5 * body.step * late
@@ -217,7 +217,7 @@ def _store_forces(points, elements, blocks, force, first, last, u, result, space
         shape = shape_of(elements, blocks, block)
         size = U(shape.weight.size) * _STEP
         block_forces(points, shape, blocks, block, u, space)
-        _store_rim(shape, block, space, force)
+        store_rim(shape, block, space, force)
         slot = U(blocks.core_begin) + U(block) * U(shape.core.size) * _STEP
         for p in range(shape.core.size):
             i = U(shape.core[p]) * _STEP
@@ -241,7 +241,7 @@ def _fill_shared(begin, end, blocks, force, result):
     m = blocks.start.size - 1
     for chunk in range(begin, end):
         for k in range(chunk * m // CHUNKS, (chunk + 1) * m // CHUNKS):
-            x, y = _sum_at(blocks, U(k), force)
+            x, y = sum_at(blocks, U(k), force)
             result[U(0), U(blocks.shared_begin + k)] = x
             result[U(1), U(blocks.shared_begin + k)] = y
 
@@ -265,7 +265,7 @@ def _block_energies(points, elements, blocks, first, last, u, energy, space):
         for k in range(2 * shape.weight.size):
             i = U(k) * _STEP
             doubled += load(space, i) * load(space, i + U(2) * size)
-        energy[block] = -0.5 * _sum(doubled)
+        energy[block] = -0.5 * sum_of(doubled)
 
 
 @in_chunks

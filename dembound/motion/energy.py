@@ -110,6 +110,7 @@ class Ledger(Tracker):
         self._unit, self._weight = run.scene.energy_unit, run.scene.weight
         self._inertia = run.scene.mass, run.scene.mass, run.scene.inertia
         self._first = run.system.stored(run.state.u)
+        self._counted = run.system.counted(run.state.u)
         self._came = 0.0  # energy of the motion at the start, which impacts may take part of at once
         self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
         self._begun: _Begun | None = None
@@ -149,6 +150,7 @@ class Ledger(Tracker):
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
         outside, damping, friction, crack, law_switch, turning, closing = (float(work) for work in state.work[1])
+        damping -= system.counted(u) - self._counted
         shift = system.spring_shift(u)
         outside += shift
         balance = turning + balancing - shift
@@ -167,7 +169,7 @@ class Ledger(Tracker):
         time = (state.step - 1) * run.time_step
         self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
         self.sides.append(sides)
-        self._watch()
+        self._watch(run, u)
 
     def _of_motion(self, before: np.ndarray, state: State) -> tuple[float, float]:
         """Σ ⅛m (v⁻ + v⁺)² and −Σ ⅛m (v⁺ − v⁻)²; before : (3, slots) v⁻."""
@@ -191,10 +193,17 @@ class Ledger(Tracker):
         """Energy (s,) J in the springs of every side at displacements (3, slots), of a settled body since the start."""
         return np.zeros(0) if run.sides is None else run.sides.stored(u, run.state.datum)
 
-    def _watch(self) -> None:
-        """Raise RunError if the run has gained energy without supply, as with too large a step for its law."""
+    def _watch(self, run: Run, u: np.ndarray) -> None:
+        """Raise RunError if the run has gained energy without supply, as with too large a step for its law.
+
+        Damping may give back what it has taken and, as strain energy is that of unrelaxed moduli, at most as much as is
+        stored at displacements u (3, slots), which are then measured from the start.
+        """
         first, last = self.entries[0], self.entries[-1]
         came, gained = last.supplied, (last.error - last.closing) - (first.error - first.closing)
+        if last.damping < 0.0:
+            strain = sum(run.system.stored(u - run.state.layout.spread(run.state.datum)))
+            gained = max(gained, -last.damping - self._weight * strain)
         stored = self._weight * sum(self._first)
         if gained > GAIN * came + ROUNDING * (stored + last.kinetic - last.stepping + abs(last.outside)):
             raise RunError(
@@ -220,6 +229,7 @@ class Ledger(Tracker):
             "entries": self.columns,
             "sides": self.side_columns,
             "first": np.array(self._first),
+            "counted": np.array(self._counted),
             "came": np.array(self._came),
             "most": np.array(self._most),
             "has_begun": np.array(self._begun is not None),
@@ -235,6 +245,7 @@ class Ledger(Tracker):
         self.entries = [Entry(*row) for row in saved["entries"].tolist()]
         self.sides = list(saved["sides"])
         self._first = tuple(saved["first"].tolist())
+        self._counted = float(saved["counted"])
         self._came, self._most = float(saved["came"]), tuple(saved["most"].tolist())
         begun = _Begun(saved["u"].copy(), saved["before"].copy(), float(saved["balancing"]), int(saved["laws"]))
         self._begun = begun if saved["has_begun"] else None

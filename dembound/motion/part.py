@@ -37,6 +37,10 @@ class Part(ABC):
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Strain energy (J) at displacements (3, slots): in contacts and in bonds, of a bar in springs and in bonds."""
 
+    def counted(self, u: np.ndarray) -> float:
+        """Strain energy (J) at displacements (3, slots) that the loop counts as taken by damping; by default none."""
+        return 0.0
+
     @abstractmethod
     def take_cracks(self, steps: int) -> Cracks:
         """The bonds that broke since this was last called; steps : number of steps done."""
@@ -142,6 +146,10 @@ class System:
         """Strain energy (J) at displacements (3, slots), see `Part.stored`."""
         stored = [part.stored(u) for part in self.parts]
         return sum(first for first, _ in stored), sum(second for _, second in stored)
+
+    def counted(self, u: np.ndarray) -> float:
+        """Strain energy (J) at displacements (3, slots) that is counted as taken by damping, see `Part.counted`."""
+        return sum(part.counted(u) for part in self.parts)
 
     def balancing_work(self, u: np.ndarray) -> float:
         """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""

@@ -7,14 +7,15 @@ import numba
 import numpy as np
 
 from dembound.boundaries.sides import SIDES
+from dembound.damping.quality import Mechanisms
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.grid import fill_forces
 from dembound.kernels.lanes import LANES
-from dembound.kernels.tables import Absorber, Grid
+from dembound.kernels.tables import Absorber, DampedGrid, Grid
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.blocks import ElementBlocks, absorber_of, elements_of
 from dembound.outside.layer import USUAL, Absorption, Profile
-from dembound.outside.medium import Ground, Layered, layered
+from dembound.outside.medium import Ground, Layered, Medium, layered
 from dembound.outside.mesh import WHOLE, Mesh
 
 
@@ -24,7 +25,8 @@ class GridBody:
 
     Attributes
     ----------
-    mesh, medium : its elements, and density and moduli; of layers, edges of elements lie on their joints.
+    mesh, medium : its elements, and density and moduli; of layers, edges of elements lie on their joints. mechanisms :
+    of its damping, whose moduli are those of the medium at one frequency; None without damping.
     absorption : settings of the layers of the mesh.
     thickness : m, across the plane; by default that of the disks.
     added_mass : (n,) kg on nodes, beyond that of the medium; by default none.
@@ -35,6 +37,7 @@ class GridBody:
 
     mesh: Mesh
     medium: Ground
+    mechanisms: Mechanisms | None = None
     absorption: Absorption = USUAL
     thickness: float = 1.0
     added_mass: np.ndarray | float = 0.0
@@ -73,6 +76,13 @@ class GridBody:
         each = [medium.density * self.thickness * of for medium, of in zip(self.ground.media, areas, strict=True)]
         return np.sum(each, axis=0)
 
+    @property
+    def stepped_media(self) -> tuple[Medium, ...]:
+        """The medium of each layer with the unrelaxed moduli with which it is stepped."""
+        if self.mechanisms is None:
+            return self.ground.media
+        return tuple(medium.times(self.mechanisms.unrelaxed) for medium in self.ground.media)
+
     @cached_property
     def mass_for_limit(self) -> np.ndarray:
         """(n,) kg, less than the mass where the delay τ acts, so that M⁻¹K bounds the time step with the delay.
@@ -104,7 +114,7 @@ class GridBody:
 
     def bundle(self, absorber: Absorber) -> Grid:
         """The arrays of its law."""
-        elements, blocks = elements_of(self.blocks, self.ground.media, self.thickness), self.blocks.bundle
+        elements, blocks = elements_of(self.blocks, self.stepped_media, self.thickness), self.blocks.bundle
         space = 6 * elements.weight.shape[1] * LANES
         return Grid(
             points=tuple(self.mesh.rule.points.tolist()),
@@ -121,6 +131,17 @@ class GridBody:
         left, right, bottom, top = (self.profile(side) for side in SIDES)
         profiles = (left, right), (bottom, top)
         return self.bundle(absorber_of(self.blocks, profiles, self.absorption, time_step))
+
+    def damped(self, grid: Grid, time_step: float) -> DampedGrid | None:
+        """The arrays of its law with memories for time steps Δt (s), at rest; None without damping."""
+        if self.mechanisms is None:
+            return None
+        each = self.mechanisms.per_step(time_step)
+        blocks, count = grid.blocks.blocks, each.shape[1]
+        factors = np.broadcast_to(each[None, :, :, None], (blocks, 2, count, LANES)).ravel()
+        memory = aligned_zeros(blocks * count * 2 * grid.elements.weight.shape[1] * LANES)
+        held = np.zeros((2, blocks * grid.elements.core.size * LANES))
+        return DampedGrid(grid, count, factors, memory, held, np.zeros(1))
 
     @cached_property
     def _elastic(self) -> Grid:

@@ -32,6 +32,10 @@ class Medium:
         p, s = density * p_wave_speed**2, density * s_wave_speed**2
         return cls(density, p, p, p - 2.0 * s, s)
 
+    def times(self, factor: float) -> "Medium":
+        """The medium with all moduli multiplied by a factor."""
+        return Medium(self.density, *(factor * self.moduli))
+
     @property
     def moduli(self) -> np.ndarray:
         """(6,) Pa: c11, c22, c12, c66, c16, c26, the order of the kernels."""

@@ -17,6 +17,7 @@ from dembound.casefile.bar.monitor import BarMonitor
 from dembound.casefile.bar.range import BarRange
 from dembound.casefile.bar.run import BarRun
 from dembound.casefile.chart import Chart, ChartChoice
+from dembound.casefile.disks.damping import Damping
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.layer import Layer
@@ -71,6 +72,7 @@ DISKS = (
     Part("`[ground]`", (Ground,), guide="tasks/absorb_waves"),
     Part("`[material]`", (Material,), guide="tasks/cracks"),
     Part("`[[layer]]`", (Layer,)),
+    Part("`[damping]`", (Damping,), guide="tasks/damping"),
     Part("`[motion]`", (Motion,)),
     Part("`[reduce]`", (Reduce,), guide="evidence/reductions"),
     Part(

@@ -75,6 +75,21 @@ CASES = {
         "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2},
         "monitor": [{"name": "middle", "position": [10.0, 10.0]}, {"name": "beside", "position": [4.0, 10.0]}],
     },
+    "damped by Q, settled beside a free field": DISKS
+    | {
+        "packing": LATTICE,
+        "material": MATERIAL | {"quality_factor": 10.0},
+        "boundary": FREE_FIELD | {"bottom": INPUT},
+        "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+        "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2},
+    },
+    "damped by Q in a continuum": DISKS
+    | {
+        "material": MATERIAL | {"quality_factor": 10.0},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        "outside": {"element": 2.0, "margin": 2},
+        "load": [{"name": "blow", "force": [1e3, -2e4], "region": [8.0, 3.0, 10.0, 4.0], "wave": "pulse"}],
+    },
     "finite differences": BAR | {"method": {"type": "finite_difference"}},
     "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
     "ranges": BAR | {"bar": RANGES},

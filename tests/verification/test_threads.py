@@ -39,6 +39,12 @@ SCENES = {
         "size": (10.0, 10.0),
         "boundary": dict.fromkeys(("left", "right"), "periodic") | {"bottom": {"type": "outside", "wave_s": "pulse"}},
     },
+    "damped by Q": {"size": ROWS, "boundary": ENDS, "material": {"quality_factor": 10.0}},
+    "damped by Q, disk by disk, continuum below": {
+        "size": (10.0, 10.0),
+        "boundary": dict.fromkeys(("left", "right"), "periodic") | {"bottom": {"type": "outside", "wave_s": "pulse"}},
+        "material": {"quality_factor": 10.0},
+    },
     "breaking": {"size": ROWS, "boundary": ENDS, "material": WEAK},
     "breaking, disk by disk": {"size": FEW, "boundary": ENDS, "material": WEAK},
     "settled, free field": {

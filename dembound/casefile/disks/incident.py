@@ -34,6 +34,8 @@ class IncidentWave(Table):
 
 def incident_problems(incident: IncidentWave, tables: Mapping[str, Any]) -> Iterator[str]:
     """Check the wave against the sides; an invalid side is None."""
+    if tables["material"] and tables["material"].quality_factor is not None:
+        yield "incident: is a wave of undamped ground; leave material.quality_factor out, or let it enter at the bottom"
     for side in SIDES:
         table = tables["boundary"].get(side, Free())
         if table is None or table.is_outside or (side == "top" and table.is_free):

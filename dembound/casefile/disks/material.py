@@ -79,6 +79,14 @@ class Material(Table):
     damp: float = quantity(
         0.0, unit="1", means="local damping", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0
     )
+    quality_factor: float | None = quantity(
+        None,
+        unit="1",
+        means="quality factor",
+        help="quality factor Q of P and S waves, see [damping]; absent: no damping",
+        ge=2.0,
+        le=1e4,
+    )
     law: LawName = quantity(
         "elastic",
         unit="1",
@@ -121,6 +129,8 @@ class Material(Table):
         problems += self._problems_with_strength()
         if not LAWS[self.law].has_history:
             problems += self._problems_without_history()
+        if self.quality_factor is not None:
+            problems += self._problems_with_quality()
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -160,6 +170,16 @@ class Material(Table):
             for key in HISTORY_KEYS
             if key in self.model_fields_set
         ]
+
+    def _problems_with_quality(self) -> list[str]:
+        """What damping by a quality factor does not go with."""
+        problems = []
+        if LAWS[self.law].has_history:
+            why = f'contacts slide and open and bonds break under law = "{self.law}"'
+            problems.append(f'quality_factor: is for ground without cracks, but {why}; give law = "elastic"')
+        if self.damp > 0.0:
+            problems.append("quality_factor: is not allowed together with damp, local damping; leave damp out")
+        return problems
 
     def _problems_with_strength(self) -> list[str]:
         """Mistakes in the strength of the bonds."""

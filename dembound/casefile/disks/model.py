@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from dembound.casefile.disks.damping import Damping
 from dembound.casefile.disks.floors import floors, lowered
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
@@ -28,13 +29,14 @@ class DiskCase(Case):
 
     Attributes
     ----------
-    ground, packing, material, motion, outside, reduce : the tables of these names.
+    ground, packing, material, damping, motion, outside, reduce : the tables of these names.
     static, incident : the tables of these names; None: no static stage, no wave at an angle.
     layer : from the surface down; none: the ground is uniform. hole : in the order of the file.
     """
 
     packing: Packing
     material: Material
+    damping: Damping = field(default_factory=Damping)
     motion: Motion = field(default_factory=Motion)
     ground: Ground = field(default_factory=Ground)
     outside: OutsideTable = field(default_factory=OutsideTable)

@@ -14,6 +14,7 @@ from dembound.casefile.cross_checks import (
     too_many,
     unknown_waves,
 )
+from dembound.casefile.disks.damping import damping_problems
 from dembound.casefile.disks.floors import lowered_in, lowered_problems
 from dembound.casefile.disks.ground import Box, Ground, ground_problems, is_in, reach
 from dembound.casefile.disks.hole_problems import hole_problems
@@ -66,6 +67,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     yield from lowered_problems(tables)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
+    if tables["damping"] and tables["material"]:
+        yield from damping_problems(tables["damping"], tables["material"])
     if tables["output"] and tables["material"]:
         yield from _no_load_factor(tables["output"], tables["material"], tables["load"], "static" in given)
         if not (LAWS[tables["material"].law].has_history or tables["output"].load_factor):
@@ -120,6 +123,8 @@ def _no_load_factor(
         yield f'output.load_factor: is of linear laws, material.law is "{material.law}"; give "elastic"'
     if material.damp > 0.0:
         yield f"output.load_factor: needs material.damp = 0, as local damping is not linear; it is {material.damp:g}"
+    if material.quality_factor is not None:
+        yield "output.load_factor: is of undamped ground; leave material.quality_factor out"
     for place, load in numbered("load", loads):
         if load.wave is None and not has_static:
             yield f"output.load_factor: needs a [static] stage, in which the body comes to rest under {place}"

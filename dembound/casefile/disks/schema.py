@@ -3,6 +3,7 @@
 from pydantic import TypeAdapter
 
 from dembound.casefile.chart import Chart
+from dembound.casefile.disks.damping import Damping
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.layer import Layer
@@ -30,6 +31,7 @@ SCHEMA = Schema(
         "ground": TypeAdapter(Ground),
         "packing": TypeAdapter(PackingTable),
         "material": TypeAdapter(Material),
+        "damping": TypeAdapter(Damping),
         "motion": TypeAdapter(Motion),
         "outside": TypeAdapter(OutsideTable),
         "reduce": TypeAdapter(Reduce),

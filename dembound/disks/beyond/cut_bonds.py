@@ -49,7 +49,7 @@ class CutBonds:
         """Bonds of the cut contacts of a body with disks at these positions (n, 2) m."""
         if isinstance(ground, LayeredGround):
             return cls._of_layers(ground, cut, positions)
-        law, kind, second = ground.stiffness, cut.contact_type, cut.is_second
+        law, kind, second = ground.springs, cut.contact_type, cut.is_second
         arms = np.where(second, [law.arm_j[kind], law.arm_i[kind]], [law.arm_i[kind], law.arm_j[kind]])
         vectors = cut.vectors(ground.brick).T
         normal = vectors / np.hypot(*vectors)

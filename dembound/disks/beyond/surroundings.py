@@ -244,6 +244,7 @@ def surroundings_of(
     grid = GridBody(
         mesh=mesh,
         medium=_on_edges(medium_of(ground), mesh),
+        mechanisms=ground.mechanisms,
         absorption=size.settings.absorption,
         thickness=float(np.prod(mass_extent(ground, body) / size.box)),
         first_slot=-(-layout.count // LANES) * LANES,

@@ -114,7 +114,7 @@ class LayeredGround(PackedMaterial):
 
     def stiffness_of(self, pairing: tuple[int, int]) -> Stiffness:
         """Constants of the brick's contacts between two zones: contacts in series, and bonds in series."""
-        one = self.zones[pairing[0]].material.stiffness
+        one = self.zones[pairing[0]].material.springs
         if pairing[0] == pairing[1]:
             return one
         radii = self.brick.radii[self.brick.pairs].T
@@ -163,6 +163,7 @@ def layered(layers: Sequence[PackedMaterial], joints: Sequence[float], origin: f
     layers : from the bottom up, one more than joints : heights (m) between them, ascending. origin : height (m) of the
     lower edge of a brick.
     """
+    damped, layers = layers, [replace(each, mechanisms=None) for each in layers]  # joints are found without damping
     ends = [-np.inf, *joints, np.inf]
     plain = [Zone(*each) for each in zip(ends[:-1], ends[1:], range(len(layers) - 1, -1, -1), layers, strict=True)]
     zones, found = [plain[0]], []
@@ -172,8 +173,11 @@ def layered(layers: Sequence[PackedMaterial], joints: Sequence[float], origin: f
         below = zones.pop()
         zones += [below._replace(high=height - reach), *nearby, above._replace(low=height + reach)]
         found.append(joint)
-    zones = [zone for zone in zones if zone.high > zone.low]
-    slowest = min(layers, key=lambda each: float(np.nanmin([each.wave_speeds(axis) for axis in (0, 1)])))
+    zones, plain = (
+        [each._replace(material=replace(each.material, mechanisms=damped[-1 - each.layer].mechanisms)) for each in some]
+        for some in ([zone for zone in zones if zone.high > zone.low], plain)
+    )
+    slowest = min(damped, key=lambda each: float(np.nanmin([each.wave_speeds(axis) for axis in (0, 1)])))
     own = {each.name: getattr(slowest, each.name) for each in fields(PackedMaterial) if each.init}
     return LayeredGround(**own, zones=tuple(zones), layers=tuple(plain), joints=tuple(found))
 

@@ -15,6 +15,7 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
+from dembound.damping.quality import Mechanisms
 from dembound.disks.material.free_surface import cut_at, skin_depths
 from dembound.disks.material.homogenise import HomogenisedMaterial, homogenise
 from dembound.errors import CaseError
@@ -44,6 +45,8 @@ class PackedMaterial:
     law : the bond law.
     held : components (0 x, 1 y, 2 rotation) that are held for all particles.
     given_speeds : speeds (m/s) of P and S waves that the case gives; None for those it does not give.
+    mechanisms : of its damping; None without damping. Moduli, stiffness and wave speeds are then those at the frequency
+    at which they are given, and springs are stiffer.
     """
 
     brick: Brick
@@ -52,6 +55,7 @@ class PackedMaterial:
     law: Law
     held: tuple[int, ...] = ()
     given_speeds: tuple[float | None, float | None] = (None, None)
+    mechanisms: Mechanisms | None = None
     _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _continua: dict[tuple[int, ...], HomogenisedMaterial] = field(
@@ -63,6 +67,24 @@ class PackedMaterial:
         """Constants of the brick's contacts."""
         first, second = self.brick.radii[self.brick.pairs].T
         return self.law.stiffness(self.moduli, first, second, np.hypot(*self.brick.vectors.T))
+
+    @property
+    def unrelaxed(self) -> float:
+        """Stiffness of the springs with which it is stepped over `stiffness`; 1 without damping."""
+        return 1.0 if self.mechanisms is None else self.mechanisms.unrelaxed
+
+    @property
+    def springs(self) -> Stiffness:
+        """Constants of the contacts of the brick as it is stepped, unrelaxed."""
+        if self.mechanisms is None:
+            return self.stiffness
+        return self.stiffness.times(np.full(len(self.brick.pairs), self.unrelaxed))
+
+    @property
+    def spring_moduli(self) -> Moduli:
+        """Micro-parameters of `springs`."""
+        moduli, factor = self.moduli, self.unrelaxed
+        return replace(moduli, emod=factor * moduli.emod, pb_emod=factor * moduli.pb_emod)
 
     @cached_property
     def mass(self) -> np.ndarray:
@@ -106,8 +128,8 @@ class PackedMaterial:
         return np.zeros(len(first), dtype=np.int64)
 
     def stiffness_of(self, pairing: tuple[int, int]) -> Stiffness:
-        """Constants of the brick's contacts between two zones."""
-        return self.stiffness
+        """Constants of the brick's contacts between two zones, unrelaxed."""
+        return self.springs
 
     def pair_constants(
         self,
@@ -121,11 +143,11 @@ class PackedMaterial:
     ) -> np.ndarray:
         """Constants (b, 12) of pairs, see `Law.pair_constants`.
 
-        radii : (b,) m of first and second disks. zones : (b,) of both disks, see `zone_of`. bonded : whether the pairs have
-        bonds; None: if the material has bonds.
+        radii : (b,) m of first and second disks. zones : (b,) of both disks, see `zone_of`. bonded : whether the pairs
+        have bonds; None: if the material has them.
         """
         return self.law.pair_constants(
-            self.moduli,
+            self.spring_moduli,
             *radii,
             vectors,
             bonded=self.moduli.pb_emod > 0.0 if bonded is None else bonded,
@@ -208,14 +230,17 @@ class PackedMaterial:
         return float(np.sqrt(p_square)), float(np.sqrt(s_square))
 
 
-def make_packed_material(brick: Brick, material: Material, held: Iterable[str], along: int = 0) -> PackedMaterial:
+def make_packed_material(
+    brick: Brick, material: Material, held: Iterable[str], along: int = 0, mechanisms: Mechanisms | None = None
+) -> PackedMaterial:
     """Combine a brick with its material; if match is "assembly", the moduli are scaled to the given wave speed.
 
     An S-wave speed alone always scales them. along : axis of the waves with the given speed, 0 (x) or 1 (y).
+    mechanisms : of its damping.
 
     Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
     """
-    ground = _scaled(brick, material, held, along)
+    ground = replace(_scaled(brick, material, held, along), mechanisms=mechanisms)
     if material.locked_in is not None:
         most = LARGEST_OVERLAP * ground.moduli.emod
         if ground.packed_pressure <= 0.0:

@@ -35,7 +35,7 @@ def front_of(ground: PackedMaterial, safety: float) -> Front:
     ratio = _largest_ratio(
         ground.density, ground.moduli, ground.law, ground.held, 0.5 * ground.brick.mean_diameter, min(safety, SHARE)
     )
-    return Front(max(1.0, ratio) * speed, grain)
+    return Front(max(1.0, ratio) * np.sqrt(ground.unrelaxed) * speed, grain)
 
 
 @lru_cache(maxsize=64)

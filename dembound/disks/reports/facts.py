@@ -31,6 +31,7 @@ def disk_facts(scene: DiskScene) -> Entries:
         yield "vector lanes", f"{100.0 * fill(scene.layout):.0f} % hold particles"
     yield from _packing_facts(scene)
     yield from _law_facts(scene)
+    yield from _damping_facts(scene)
     yield from _hole_facts(case)
     yield from _static_facts(case)
     if scene.outside is not None:
@@ -142,6 +143,24 @@ def _law_facts(scene: DiskScene) -> Entries:
             if strength is not None
         ]
         yield "locked-in stress", ", ".join([f"{with_unit(material.locked_in, 'Pa')} before the static stage", *shares])
+
+
+def _damping_facts(scene: DiskScene) -> Entries:
+    """Q over its band, the frequency at which wave speeds hold, the unrelaxed stiffness, and what the step costs."""
+    found = scene.ground.mechanisms
+    if found is None:
+        return
+    (low, high), (least, most) = found.band, found.range
+    texts, unit = in_one_unit((low, high), "Hz")
+    yield (
+        "damping",
+        f"Q = {least:.3g} to {most:.3g} over {texts[0]} to {texts[1]} {unit}, by {len(found.weights)} mechanisms; wave "
+        f"speeds hold at {with_unit(found.frequency, 'Hz')}",
+    )
+    yield (
+        "unrelaxed stiffness",
+        f"{found.unrelaxed:.4g} times that of the wave speeds: the step is {found.unrelaxed**-0.5:.3g} times as long",
+    )
 
 
 def _static_facts(case: DiskCase) -> Entries:

@@ -75,10 +75,10 @@ def tied_nodes(scene: DiskBody) -> np.ndarray:
     return np.concatenate(tied)
 
 
-def grids(scene: DiskBody, time_step: float) -> list[GridPart]:
-    """The continua of a scene, as parts to be stepped by time_step (s)."""
+def grids(scene: DiskBody, time_step: float, *, damped: bool) -> list[GridPart]:
+    """The continua of a scene, as parts to be stepped by time_step (s); damped : whether their damping acts."""
     return [
-        GridPart(each.body, time_step, name=name, first_node=each.first, supported=each.wall.nodes)
+        GridPart(each.body, time_step, name=name, first_node=each.first, supported=each.wall.nodes, damped=damped)
         for each, name in ((scene.outside, "continuum"), (scene.foot, "foot"))
         if each is not None
     ]

@@ -9,6 +9,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.layout import with_supports
 from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.continuum_ties import tied_nodes
+from dembound.disks.stepping.damped_ground import disk_memories, ties_remembering
 from dembound.disks.stepping.part import DiskPart, FreeFieldSeam
 from dembound.disks.stepping.start import Start
 from dembound.kernels.contacts import UPDATED
@@ -20,15 +21,17 @@ class DiskParts:
     Parameters
     ----------
     scene : the scene. start : gives the contacts if the scene's law has a history; None: contacts as built.
-    watches : whether the loop returns before a contact leaves the elastic law.
+    watches : whether the loop returns before a contact leaves the elastic law. time_step : s, for which damped ground
+    remembers forces; None: damping is left out, as in a static stage.
 
     Attributes
     ----------
     parts : the free-field column, if there is one, and the body. seams : one if there is a column. contacts : the pairs
-    of each part by name, empty if the scene's law has no history.
+    of each part by name, empty if the scene's law has no history. damped_ties : the memories of ties; None without ties
+    or damping.
     """
 
-    def __init__(self, scene: DiskBody, start: Start | None, *, watches: bool) -> None:
+    def __init__(self, scene: DiskBody, start: Start | None, time_step: float | None, *, watches: bool) -> None:
         lists: Mapping[str, ContactList] = {}
         if scene.has_history:
             lists = contact_lists(scene) if start is None else start.contacts
@@ -36,7 +39,7 @@ class DiskParts:
         self.parts = tuple(
             DiskPart(
                 name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
-                lists.get(name),
+                lists.get(name), None if time_step is None else disk_memories(scene, nodes, rows, supported, time_step),
             )
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
         )  # fmt: skip
@@ -44,6 +47,7 @@ class DiskParts:
             part.watches = watches
         self.contacts = {part.name: part.contacts for part in self.parts if part.contacts is not None}
         self.seams = () if scene.seam is None else (FreeFieldSeam(scene.seam, self.parts[0]),)
+        self.damped_ties = None if time_step is None else ties_remembering(scene, tied_nodes(scene), time_step)
 
     @property
     def law_name(self) -> str:
@@ -69,6 +73,22 @@ class DiskParts:
         """Use the history-dependent law in all parts from now on."""
         for part in self.parts:
             part.uses_history = True
+
+    @property
+    def are_damped(self) -> bool:
+        """Whether forces are remembered."""
+        return any(part.memories is not None for part in self.parts)
+
+    def rest_at(self, displacement: np.ndarray, of_ties: np.ndarray) -> None:
+        """Let memories begin at rest at displacements (3, n), with forces of ties (3, n) other than of seams."""
+        for part in self.parts:
+            if part.memories is not None:
+                part.memories.rest_at(part.elastic_forces(displacement))
+        if self.damped_ties is not None:
+            force = of_ties.copy()
+            for tie in self.seams:
+                force[:, tie.nodes] += tie.elastic_forces(displacement)
+            self.damped_ties.rest_at(force)
 
     def stop_at_breaks(self, stops: bool) -> None:
         """Set whether the loop returns after a step in which a bond broke."""

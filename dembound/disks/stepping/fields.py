@@ -8,6 +8,7 @@ import numpy as np
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.forces import contact_columns, pieces
+from dembound.disks.stepping.damped_ground import unrelaxed
 from dembound.disks.stepping.disk_parts import DiskParts
 from dembound.disks.stepping.part import DiskPart
 from dembound.disks.stepping.stress import part_stress
@@ -30,6 +31,7 @@ class RecordedDisks(System):
     ) -> None:
         super().__init__([*disks.parts, *beyond], ties, load)
         self.scene, self.disks = scene, disks
+        self._stress_at_rest: np.ndarray | None = None
 
     @property
     def recorded_parts(self) -> tuple[DiskPart, ...]:
@@ -37,8 +39,25 @@ class RecordedDisks(System):
         return self.disks.parts
 
     def stress(self, displacement: np.ndarray) -> np.ndarray:
-        """Stress (m, 3) xx, yy, xy in Pa of all particles at displacements (3, n), tension positive."""
+        """Stress (m, 3) xx, yy, xy in Pa of all particles at displacements (3, n), tension positive.
+
+        In damped ground differences from the stress at rest are those of the moduli of the given wave speeds, which are
+        right at their frequency.
+        """
+        stress = self._unrelaxed_stress(displacement)
+        if not self.disks.are_damped:
+            return stress
+        rest = 0.0 if self._stress_at_rest is None else self._stress_at_rest
+        return rest + (stress - rest) / unrelaxed(self.scene)[: len(stress), None]
+
+    def _unrelaxed_stress(self, displacement: np.ndarray) -> np.ndarray:
+        """Stress (m, 3) at displacements (3, n) that have just been reached."""
         return np.concatenate([part_stress(self.scene, part, displacement) for part in self.disks.parts])
+
+    def _note_rest(self, datum: np.ndarray) -> None:
+        """Note the stress at rest at displacements (3, n), if it will be needed."""
+        if self.disks.are_damped and self.scene.case.output.stress:
+            self._stress_at_rest = self._unrelaxed_stress(datum)
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Fields of every disk at displacements (3, n) other than its motion; stress only with output.stress."""

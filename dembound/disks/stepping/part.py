@@ -10,11 +10,22 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.layout import Rows, with_special
 from dembound.disks.contacts.rows import elastic_constants
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.kernels import bonded, bonded_lanes, elastic, elastic_lanes  # noqa: F401  # they register their laws
+from dembound.disks.stepping.memories import DiskMemories
+from dembound.kernels import bonded, bonded_lanes, damped, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import REFERENCE, SLID
-from dembound.kernels.tables import Bonded, Contacts, LaneBonded, LaneRows, Links, Seam, SeamEnds, WatchedLinks
+from dembound.kernels.tables import (
+    Bonded,
+    Contacts,
+    DampedLinks,
+    LaneBonded,
+    LaneRows,
+    Links,
+    Seam,
+    SeamEnds,
+    WatchedLinks,
+)  # fmt: skip
 from dembound.motion.cracks import NO_CRACKS, Cracks
 from dembound.motion.layout import Layout
 from dembound.motion.part import Part, Tie
@@ -35,6 +46,7 @@ class DiskPart(Part):
     rows : the same contacts in the form for a linear law.
     layout : the slots in which kernels hold the scene's particles.
     contacts : its pairs with their history; None where the material's law has none.
+    memories : of its forces; None without damping.
 
     Attributes
     ----------
@@ -52,12 +64,14 @@ class DiskPart(Part):
         rows: Rows,
         layout: Layout,
         contacts: ContactList | None,
+        memories: DiskMemories | None = None,
     ) -> None:
         self.name = name
         self.ground = ground
         self.assembly = assembly
         self.nodes, self.layout = nodes, layout
         self.contacts = contacts
+        self.memories = memories
         self.uses_history = False
         self.watches = True
         self.stops_at_breaks = False
@@ -73,6 +87,8 @@ class DiskPart(Part):
     def law(self) -> NamedTuple:
         """The arrays of the law in use; before a history-dependent one begins, a linear law that may check contacts."""
         links, contacts = Links(self.rows, self._fastest, self._damped), self.contacts
+        if self.memories is not None:
+            return DampedLinks(links, self.memories.arrays)
         if contacts is None or not (self.uses_history or self.watches):
             return links
         listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.cells)
@@ -93,10 +109,15 @@ class DiskPart(Part):
 
     def add_elastic_forces(self, displacement: np.ndarray, total: np.ndarray) -> None:
         """Add forces and moments of the elastic law at displacements (3, n) to those of all nodes, total (3, n)."""
-        u = self.layout.spread(displacement)
-        force = np.empty_like(u)
-        elastic.contact_forces(u, self.rows, force)
+        force = self.elastic_forces(displacement)
         total[:, self.nodes] += force[:, self.layout.slot[self.nodes]]
+
+    def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces and moments (3, slots) of the elastic law on its disks at displacements (3, n)."""
+        u = self.layout.spread(displacement)
+        force = np.zeros_like(u)
+        elastic.contact_forces(u, self.rows, force)
+        return force
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and in bonds at displacements (3, slots)."""
@@ -113,13 +134,16 @@ class DiskPart(Part):
     def saved_arrays(self) -> Arrays:
         """Whether the law in use has a history, and the pairs, for a checkpoint."""
         pairs = {} if self.contacts is None else self.contacts.saved_arrays()
-        return {"uses_history": np.array(self.uses_history), **pairs}
+        memories = {} if self.memories is None else self.memories.saved_arrays()
+        return {"uses_history": np.array(self.uses_history), **pairs, **memories}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         self.uses_history = bool(saved["uses_history"])
         if self.contacts is not None:
             self.contacts.restore(saved)
+        if self.memories is not None:
+            self.memories.restore(saved)
 
     @property
     def geometry(self) -> int:

@@ -48,9 +48,17 @@ class DiskSystem(RecordedDisks):
         settling: bool = False,
         load: np.ndarray | None = None,
     ) -> None:
-        disks = DiskParts(scene, start, watches=not settling)
+        disks = DiskParts(scene, start, None if settling else time_step, watches=not settling)
         ties = [*walls(scene), *disks.seams]
-        super().__init__(scene, disks, grids(scene, time_step), ties, scene.steady_load if load is None else load)
+        if disks.damped_ties is not None:
+            ties.append(disks.damped_ties)
+        super().__init__(
+            scene,
+            disks,
+            grids(scene, time_step, damped=not settling),
+            ties,
+            scene.steady_load if load is None else load,
+        )
         self.forces = RestForces(scene, disks)
         self.balance: Balance | None = None
         self.is_elastic_again = False
@@ -81,6 +89,7 @@ class DiskSystem(RecordedDisks):
             steady = not_balanced(law, self.scene, self.forces, self.load)
         else:
             self.balance, steady = balanced(law, self.scene, self.disks, self.forces, self.load, state.datum)
+        self._begin_at_rest()
         if steady.any():
             self.steady = steady.copy()
         if law.has_history:
@@ -173,6 +182,14 @@ class DiskSystem(RecordedDisks):
         if self.near_ties is not None:
             self.near_ties.restore(within(saved, "near_ties"))
         self._set_balance_in_use()
+        self._begin_at_rest()
+
+    def _begin_at_rest(self) -> None:
+        """Let nothing be remembered of the forces at rest, if these are balanced."""
+        if self.balance is not None and self.disks.are_damped:
+            datum = self.balance.datum
+            self.disks.rest_at(datum, self.forces.of_ties(datum))
+            self._note_rest(datum)
 
     def _set_balance_in_use(self) -> None:
         """Let the loop return after a break if balancing forces may have to end, and rotate them if their law does."""

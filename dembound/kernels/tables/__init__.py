@@ -2,6 +2,7 @@
 
 from dembound.kernels.tables.bar_layers import BarLayers
 from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
+from dembound.kernels.tables.damping import DampedGrid, DampedLinks, Memories, TieMemories
 from dembound.kernels.tables.grid import ALONG, Absorber, Blocks, Elements, Grid, Shape
 from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
 from dembound.kernels.tables.motion import Body, Followers, Log, Supports
@@ -21,6 +22,8 @@ __all__ = [
     "Bonded",
     "Cells",
     "Contacts",
+    "DampedGrid",
+    "DampedLinks",
     "Elements",
     "Followers",
     "Grid",
@@ -29,6 +32,7 @@ __all__ = [
     "Limits",
     "Links",
     "Log",
+    "Memories",
     "NeighbourTable",
     "PairRows",
     "Repeats",
@@ -38,6 +42,7 @@ __all__ = [
     "Sides",
     "Softening",
     "Supports",
+    "TieMemories",
     "WallTies",
     "WatchedLinks",
 ]

@@ -97,7 +97,7 @@ duration = 0.1 | duration = 0.1\ntime_step = "car" | run.time_step: is "car", mu
 duration = 0.1 |  | run.duration: is missing, must be a number greater than 0 (s)
 duration = 0.1 | duration = 0.1\nq = 1 | run.q: unknown key; allowed: duration, time_step, safety
 [boundary.right] | [boundary.rigth] | boundary.rigth: unknown side; allowed: left, right, bottom, top (did you mean righ
-[output] | [outputs] | outputs: unknown table; allowed: title, ground, packing, material, motion, outside, reduce, boun
+[output] | [outputs] | outputs: unknown table; allowed: title, ground, packing, material, damping, motion, outside
 [output]\nsnapshots = 3 | [[output]]\nsnapshots = 3 | output: is [{"snapshots": 3}], must be a table
 [[monitor]] | [monitor] | monitor: is a table, must be a list of tables, each [[monitor]] in TOML
 [motion] | [[static]]\n[motion] | static: is [{}], must be a table

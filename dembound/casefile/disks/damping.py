@@ -1,0 +1,50 @@
+"""The ``[damping]`` table."""
+
+from collections.abc import Iterator
+
+from pydantic import model_validator
+
+from dembound.casefile.disks.material import Material
+from dembound.table import Table, quantity
+
+LEAST_RATIO = 1.5
+"""Least ratio of the highest to the lowest frequency of a band."""
+
+
+class Damping(Table):
+    """How `material.quality_factor` damps: Q is nearly constant over a band of frequencies, the same for P and S.
+
+    Every disk and node remembers past forces by a few relaxation mechanisms. The stiffness of damped ground grows with
+    the frequency, so that wave speeds hold at one frequency.
+    """
+
+    band: tuple[float, float] | None = quantity(
+        None,
+        unit="Hz",
+        help="lowest and highest frequency of nearly constant Q; absent: that of the waves, or 0.3 to 10 Hz",
+    )
+    frequency: float | None = quantity(
+        None,
+        unit="Hz",
+        help="frequency at which the wave speeds and moduli hold; absent: the geometric mean of the band",
+        gt=0.0,
+    )
+    mechanisms: int = quantity(
+        3, unit="1", means="count", help="relaxation mechanisms; 3 keep 1/Q within 1 % over 0.3 to 10 Hz", ge=2, le=6
+    )
+
+    @model_validator(mode="after")
+    def _ascending(self) -> "Damping":
+        if self.band is not None and not 0.0 < LEAST_RATIO * self.band[0] <= self.band[1]:
+            low, high = self.band
+            raise ValueError(
+                f"band: is [{low:g}, {high:g}], must be two frequencies above 0, the second at least {LEAST_RATIO:g} "
+                "times the first"
+            )
+        return self
+
+
+def damping_problems(damping: Damping, material: Material) -> Iterator[str]:
+    """A table [damping] that changes nothing."""
+    if damping.model_fields_set and material.quality_factor is None:
+        yield "damping: is of no use without material.quality_factor"

@@ -1,0 +1,63 @@
+"""Arrays of memories of forces: of disks, and of the forces of ties. K mechanisms, n slots of a part."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.kernels.tables.grid import Grid
+from dembound.kernels.tables.laws import Links
+
+
+class Memories(NamedTuple):
+    """Memories of the contact forces of a part, in blocks of eight slots from number `block` on.
+
+    layer : (slots,) uint8, row of each disk in factors (layers, 2, K), e and g of the mechanisms. special : (blocks,)
+    uint8 of the scene, 1 for blocks with supported disks, 2 more for those with disks of several layers. memory : (3K,
+    n) N and N·m, component by component. rest : (3, slots) contact forces at rest, which nothing remembers, or (3, 0)
+    for none. force (3, slots), held (1,) : work space.
+    """
+
+    block: int
+    layer: np.ndarray
+    special: np.ndarray
+    factors: np.ndarray
+    memory: np.ndarray
+    rest: np.ndarray
+    force: np.ndarray
+    held: np.ndarray
+
+
+class DampedLinks(NamedTuple):
+    """The elastic law with memories of forces."""
+
+    links: Links
+    memories: Memories
+
+
+class DampedGrid(NamedTuple):
+    """The law of a grid with memories of the forces of its B blocks of elements, by `mechanisms`, K in number.
+
+    factors : (B·2·K·8,) e, then g of the elements of each block. memory : (B·K·2·Q·8,) N, of the forces on the points
+    of the elements along x, then y. held (2, core slots) N, power (1,) W : work space, forces on supported core nodes
+    and their power before a step.
+    """
+
+    grid: Grid
+    mechanisms: int
+    factors: np.ndarray
+    memory: np.ndarray
+    held: np.ndarray
+    power: np.ndarray
+
+
+class TieMemories(NamedTuple):
+    """Memories of the forces of all ties on t supported nodes.
+
+    line : (t,) of the node in the support table. factors : (t, 2, K) e and g. memory : (t, 3, K) N and N·m. rest : (t,
+    3) forces at rest, which nothing remembers.
+    """
+
+    line: np.ndarray
+    factors: np.ndarray
+    memory: np.ndarray
+    rest: np.ndarray

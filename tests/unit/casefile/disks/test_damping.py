@@ -1,0 +1,44 @@
+"""Mistakes in [damping] and material.quality_factor."""
+
+import pytest
+
+from dembound.disks.beyond.mechanisms import BAND, band_of, mechanisms_of
+from dembound.errors import CaseError
+
+Q = {"material.quality_factor": 20.0}
+HISTORY = {"material.law": "linearpbond", "material.fric": 0.5}
+STILL = {"boundary": {}, "wave": {}}
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"damping.band": [1.0, 10.0]}, "damping: is of no use without material.quality_factor"),
+        (Q | {"damping.band": [10.0, 1.0]}, r"damping.band: is \[10, 1\], must be two frequencies above 0"),
+        (Q | {"damping.band": [0.0, 1.0]}, r"damping.band: is \[0, 1\]"),
+        (Q | {"damping.mechanisms": 1}, "damping.mechanisms: is 1, must be at least 2"),
+        ({"material.quality_factor": 1.0}, "material.quality_factor: is 1.0, must be at least 2"),
+        (Q | {"material.damp": 0.1}, "quality_factor: is not allowed together with damp"),
+        (Q | HISTORY, 'quality_factor: .* bonds break under law = "linearpbond"; give law = "elastic"'),
+    ],
+)
+def test_each_mistake_names_what_works(bar, changes: dict, line: str) -> None:
+    with pytest.raises(CaseError, match=line):
+        bar(changes)
+
+
+def test_the_band_is_that_of_the_waves(bar) -> None:
+    low, high = band_of(bar())
+
+    assert high / low == pytest.approx(BAND[1] / BAND[0], rel=5e-3)  # three digits
+    assert band_of(bar({"wave.pulse.period": 2.0 * bar().wave["pulse"].period}))[1] == pytest.approx(
+        0.5 * high, rel=0.01
+    )
+    assert band_of(bar({**STILL, "monitor": []})) == BAND
+
+
+def test_speeds_hold_at_the_middle_of_the_band_unless_a_frequency_is_given(bar) -> None:
+    for changes, frequency in (({}, 3.16), ({"damping.frequency": 2.0}, 2.0)):
+        found = mechanisms_of(bar(Q | {"damping.band": [1.0, 10.0]} | changes), 20.0)
+        assert found.frequency == frequency
+        assert found.band == (1.0, 10.0)

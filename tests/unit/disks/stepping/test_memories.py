@@ -1,0 +1,86 @@
+"""Steps of damped disks beside the same arithmetic in numpy, particle by particle."""
+
+import numpy as np
+import pytest
+
+from dembound.damping.quality import fitted
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.disks.stepping import damped_ground
+from dembound.errors import RunError
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+
+STEPS, STEP = 40, 1e-4
+SOFT, STIFF = fitted(5.0, (1.0, 50.0), 10.0, 3), fitted(40.0, (1.0, 50.0), 10.0, 2)
+GRAINS = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+BODY = {"boundary": {"right": {"type": "viscous"}}, "wave": {}, "monitor": [], "motion.held": []}
+
+
+def stepped(scene, layers, layer: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, float]:
+    """Displacements (3, n) after all steps from velocities (3, n), and energy taken by damping, without sides."""
+    part = scene.system(STEP).parts[0]
+    inertia = np.stack([scene.mass, scene.mass, scene.inertia])
+    factors = damped_ground.factors_of(layers, STEP)[layer]  # (n, 2, K)
+    e, g = factors[:, 0].T[:, None], factors[:, 1].T[:, None]
+    u, v, p, taken = np.zeros_like(first), first.copy(), np.zeros((factors.shape[2], *first.shape)), 0.0
+    for _ in range(STEPS):
+        f = scene.layout.gather(part.elastic_forces(u))
+        r = p + g * f
+        p = e * r + g * f
+        now = v + STEP * (f - r.sum(axis=0)) / inertia
+        taken += 0.5 * STEP * float(np.sum(r.sum(axis=0) * (v + now)))
+        u, v = u + STEP * now, now
+    return u, taken
+
+
+@pytest.mark.parametrize("size", [[4.0, 4.0], [32.0, 8.0]], ids=["one by one", "rows of copies"])
+@pytest.mark.parametrize("mixed", [False, True])
+def test_a_damped_body_moves_as_its_arithmetic_says(bar, monkeypatch, size: list[float], mixed: bool) -> None:
+    """Two layers of unlike damping, one disk after the other, are as mixed as layers can be."""
+    changes = {**BODY, "boundary": {}, "packing": GRAINS | {"size": size}, "material.quality_factor": 5.0}
+    scene = build(bar(changes))
+    layers = [SOFT, STIFF, None] if mixed else [SOFT]
+    layer = np.random.default_rng(1).integers(0, len(layers), scene.count)
+    monkeypatch.setattr(damped_ground, "layers_of", lambda scene, nodes: (layers, layer[nodes].astype(np.uint8)))
+    simulation = Simulation(scene, STEP)
+    first = np.random.default_rng(2).normal(0.0, 1e-3, (3, scene.count))
+    simulation.state.velocity = first
+    simulation.run(STEPS)
+    expected, taken = stepped(scene, layers, layer, first)
+
+    # each sum of some fifty products is rounded by 1e-15 of its terms, in every step
+    assert np.abs(simulation.state.displacement - expected).max() < STEPS * 1e-14 * np.abs(expected).max()
+    assert simulation.state.work[0, 1] == pytest.approx(taken, rel=1e-10)
+
+
+@pytest.mark.parametrize("boundary", ["viscous", "outside"])
+def test_the_ledger_closes(bar, boundary: str) -> None:
+    sides = {side: {"type": boundary} for side in ("left", "right", "bottom")}
+    more = {"outside.element": 2.0} if boundary == "outside" else {}
+    changes = {**BODY, "boundary": sides, "packing": GRAINS | {"size": [16.0, 8.0]}, "material.quality_factor": 5.0}
+    scene = build(bar(changes | more))
+    simulation = Simulation(scene, choose_step(scene)[0])
+    ledger = Ledger(simulation, 50)
+    simulation.track(ledger)
+    simulation.state.velocity = np.random.default_rng(2).normal(0.0, 1e-3, (3, scene.count)) * scene.moves
+    simulation.run(301)
+    entries = ledger.entries
+
+    assert max(abs(entry.error) for entry in entries) < 1e-11 * entries[0].kinetic
+    assert entries[-1].damping > 0.1 * entries[0].kinetic
+
+
+def test_energy_from_memories_that_grow_stops_the_run(bar) -> None:
+    """Mechanisms of negative weight add energy, which the ledger counts as negative damping without an error."""
+    scene = build(
+        bar({**BODY, "boundary": {}, "packing": GRAINS | {"size": [8.0, 8.0]}, "material.quality_factor": 5.0})
+    )
+    simulation = Simulation(scene, choose_step(scene)[0])
+    memories = simulation.system.parts[0].memories
+    memories.arrays.factors[:, 1] *= -1.0
+    simulation.track(Ledger(simulation, 50))
+    simulation.state.velocity = np.random.default_rng(2).normal(0.0, 1e-3, (3, scene.count))
+
+    with pytest.raises(RunError, match="has gained"):
+        simulation.run(3000)
