@@ -14,6 +14,7 @@ from dembound.disks.beyond.ground_waves import GroundWaves
 from dembound.disks.beyond.recorded import RecordedContinuum
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.contacts.layout import Rows
+from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.motion.between import Between
 from dembound.motion.layout import Layout
@@ -210,6 +211,11 @@ class DiskBody(Scene):
         for each in self.continua:
             moves[:2, each.nodes] &= ~each.body.mesh.held
         return moves
+
+    @cached_property
+    def at_rest(self) -> StressAtRest | None:
+        """The stress of undisturbed ground with which contacts begin; None if they begin without forces."""
+        return stress_at_rest(self.case, self.ground)
 
     @property
     def has_history(self) -> bool:  # type: ignore[override]  # a constant of other kinds

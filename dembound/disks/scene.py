@@ -90,7 +90,7 @@ class DiskScene(DiskBody):
         part of a side, sides are recorded with their actual forces.
         """
         static = self.case.static
-        if static is None or static.stress is None:
+        if static is None or static.stress is None or self.at_rest is not None:
             return {}
         stress, found, rests = np.array(static.stress), {}, np.zeros(2)
         for side, each in side_forces(self).items():

@@ -61,6 +61,8 @@ CASES = {
         "load": [{"name": "blow", "force": [1e3, -2e4], "region": [8.0, 3.0, 10.0, 4.0], "wave": "pulse"}],
         "monitor": [*GRAINS["monitor"], {"name": "beside", "position": [-1.0, 2.0]}],
     },
+    "stress at rest beside a free field": DISKS
+    | {"packing": LATTICE, "material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}, "static": SQUEEZED},
     "settled box in the ground": DISKS
     | {
         "ground": {"size": [20.0, 20.0]},
@@ -72,7 +74,7 @@ CASES = {
         },
         "outside": {"element": 4.0},
         "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
-        "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2},
+        "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2, "k0": 0.5},
         "monitor": [{"name": "middle", "position": [10.0, 10.0]}, {"name": "beside", "position": [4.0, 10.0]}],
     },
     "finite differences": BAR | {"method": {"type": "finite_difference"}},

@@ -26,7 +26,7 @@ class PairList:
         (3, slots) work space of the kernels.
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     cells : of the particles there.
-    bonds : (p, 12) constants of the contacts of the brick.
+    bonds : (p, 15) constants of the contacts of the brick.
     """
 
     bonds: np.ndarray

@@ -29,7 +29,7 @@ def limits_of(material: Material) -> Limits:
 
 
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
-    """Constants (2b, 12) of the brick's contacts, followed by the same with half their stiffness, for half cells.
+    """Constants (2b, 15) of the brick's contacts, followed by the same with half their stiffness, for half cells.
 
     For each pairing of zones in a layered ground. Arguments as for `pair_constants`.
     """
@@ -42,13 +42,13 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
         )
         half = constants.copy()
         half[:, 5:10] *= 0.5  # stiffnesses
-        half[:, 10:] *= 2.0  # and areas and section moduli too, so that stresses do not change
+        half[:, 10:12] *= 2.0  # and areas and section moduli too, so that stresses do not change
         found += [constants, half]
     return np.vstack(found)
 
 
 def shared_constants(constants: np.ndarray, pairing: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Distinct rows (p, 12) of the constants of pairs, to rounding, and the row of each pair (b,).
+    """Distinct rows (p, 15) of the constants of pairs, to rounding, and the row of each pair (b,).
 
     Pairs at the same place of different bricks then share a row, if they have the same pairing (b,) of zones; length
     (m) is the scale for rounding errors.

@@ -132,9 +132,9 @@ class LayeredGround(PackedMaterial):
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 12) of pairs, see `PackedMaterial.pair_constants`; pairing : (b,) their zones."""
+        """Constants (b, 15) of pairs, see `PackedMaterial.pair_constants`; pairing : (b,) their zones."""
         pairing = np.broadcast_to(pairing, len(vectors))
-        found = np.empty((len(vectors), 12))
+        found = np.empty((len(vectors), 15))
         for number in np.unique(pairing).tolist():
             chosen = pairing == number
             one, other = (

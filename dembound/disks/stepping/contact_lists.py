@@ -30,6 +30,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         held,
         scene.disk_layout,
         _row_plan(scene, name, part),
+        scene.at_rest,
     )
 
 

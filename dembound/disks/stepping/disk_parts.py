@@ -36,7 +36,7 @@ class DiskParts:
         self.parts = tuple(
             DiskPart(
                 name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
-                lists.get(name),
+                lists.get(name), scene.at_rest,
             )
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
         )  # fmt: skip
