@@ -228,3 +228,8 @@ def parts_of(count: int, seam: Seam | None) -> dict[str, slice]:
     if seam is None:
         return {"body": slice(0, count)}
     return {"column": slice(0, seam.count), "body": slice(seam.count, count)}
+
+
+def differs_by_level(case: DiskCase, ground: PackedMaterial) -> bool:
+    """Whether each row of bricks has constants of its own: of layers, or of a history-dependent law with K0."""
+    return ground.is_layered or (ground.law.has_history and case.static is not None and case.static.k0 is not None)

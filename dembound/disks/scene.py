@@ -17,7 +17,7 @@ from dembound.disks.beyond.hollowed import hollowed
 from dembound.disks.beyond.incident import let_in, let_in_below, power_through
 from dembound.disks.beyond.mesh import NO_FLOORS, Outline
 from dembound.disks.beyond.surroundings import Surroundings, surroundings_of
-from dembound.disks.body import DiskBody, parts_of
+from dembound.disks.body import DiskBody, differs_by_level, parts_of
 from dembound.disks.body_sides import sides_of, tied_of
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
@@ -174,7 +174,13 @@ def _scene(
     count = len(assembly.radii)
     assembly, seam = with_layers(ground, assembly, seam)
     edges = with_shares(count, edges, case.boundary)
-    slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
+    slots, rows = lay_out(
+        assembly,
+        ground,
+        parts_of(count, seam),
+        mass_factor(count, edges, case.boundary),
+        by_level=differs_by_level(case, ground),
+    )
     outside = None
     if outline is not None:
         first, twin = (0, None) if seam is None else (seam.count, seam.twin)

@@ -164,7 +164,7 @@ STEPS, CUTS = 240, (0, 1, 57, 58, 100, 161, 239)
 there is one every 57 steps, and steps that follow."""
 
 CHANGING = [name for name, tables in CASES.items() if tables.get("method", {}).get("type") in ("switch", "patch")]
-CHANGING += ["law changes, bonds break", "free field that breaks"]
+CHANGING += ["law changes, bonds break", "free field that breaks", "stress at rest beside a free field"]
 """Cases in which a law or a method takes over from another one, and bonds break."""
 
 BREAKING = (*CHANGING, "settled, updated", "finite differences")

@@ -94,6 +94,31 @@ def test_k0_stays_what_it_is_given_as(lab, name: str, law: str) -> None:
     assert speed(lab, scene, found) < 1e-9
 
 
+@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
+def test_each_layer_has_its_own_k0(lab, law: str) -> None:
+    """On the lattice, whose disks bear all their weight, it is exact where contacts on all sides are of one layer."""
+    layers = [{"thickness": 10.0, "density": 1800.0, "p_wave_speed": 400.0, "k0": 0.8}, {"density": 2300.0}]
+    case = lab.case(
+        "A",
+        (10.0, 20.0),
+        held=(),
+        material={"law": law, "fric": 0.5},
+        boundary={"left": "periodic", "right": "periodic", "bottom": "viscous"},
+        static=K0,
+        load=WEIGHT,
+    )
+    scene = build(with_changes(case, {"layer": layers}))
+    found = settle(scene)
+    simulation = lab.simulation(scene, found.start)
+    xx, yy, _ = simulation.system.stress(simulation.state.displacement).T
+    height = scene.assembly.positions[:, 1]
+    weight = -9.81 * (1800.0 * np.minimum(20.0 - height, 10.0) + 2300.0 * np.maximum(10.0 - height, 0.0))
+    inner = (height > 1.0) & (height < 19.0) & (np.abs(height - 10.0) > 3.0)  # nor of corrected springs
+    np.testing.assert_allclose(yy[inner], weight[inner], rtol=1e-9)
+    np.testing.assert_allclose((xx / yy)[inner], np.where(height > 10.0, 0.8, 0.5)[inner], rtol=1e-9)
+    assert speed(lab, scene, found) < 1e-9
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SIDES)
 @pytest.mark.parametrize("static", [{"stress": STRESS}, K0])

@@ -1,6 +1,6 @@
 """The lists of the pairs of a scene under a history-dependent law, one for each part."""
 
-from dembound.disks.body import DiskBody
+from dembound.disks.body import DiskBody, differs_by_level
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
 from dembound.kernels.tables import LaneRows
@@ -39,4 +39,4 @@ def _row_plan(scene: DiskBody, name: str, part: Assembly) -> tuple[RowPlan, int]
     rows = scene.rows[list(scene.parts).index(name)]
     if not isinstance(rows, LaneRows):
         return None
-    return plan_rows(part, by_level=scene.ground.is_layered), int(rows.group_block[0])
+    return plan_rows(part, by_level=differs_by_level(scene.case, scene.ground)), int(rows.group_block[0])
