@@ -164,10 +164,10 @@ STEPS, CUTS = 240, (0, 1, 57, 58, 100, 161, 239)
 there is one every 57 steps, and steps that follow."""
 
 CHANGING = [name for name, tables in CASES.items() if tables.get("method", {}).get("type") in ("switch", "patch")]
-CHANGING += ["law changes, bonds break", "free field that breaks", "stress at rest beside a free field"]
+CHANGING += ["law changes, bonds break", "free field that breaks"]
 """Cases in which a law or a method takes over from another one, and bonds break."""
 
-BREAKING = (*CHANGING, "settled, updated", "finite differences")
+BREAKING = (*CHANGING, "settled, updated", "stress at rest beside a free field", "finite differences")
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n == LATE else n for n in CASES])
