@@ -159,15 +159,15 @@ class PlainPairs:
         n = vector / length
         t = np.array([-n[1], n[0]])
         arms = np.array([length / 2.0 + row[4], length / 2.0 - row[4]])
-        stretch = n @ apart if still else length - row[2]
+        stretch = (n @ apart if still else length - row[2]) + row[12]
         slide = t @ along - arms @ [v_i[2], v_j[2]]
-        shear = t @ apart - arms @ [u_i[2], u_j[2]] if still else p.shear[c] + step * slide
+        shear = t @ apart - arms @ [u_i[2], u_j[2]] + row[13] if still else p.shear[c] + step * slide
         return n, t, arms, stretch, shear, n @ along, slide
 
     def _push_one(self, c, u_i, u_j, v_i, v_j, step, number):
         """Force on the first disk, and the moments on both."""
         p, limits = self.arrays, self.limits
-        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = p.constants[p.contact_type[c]]
+        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend, _, _, turned = p.constants[p.contact_type[c]]
         n, t, arms, stretch, shear, opening, slide = self.strain(c, u_i, u_j, v_i, v_j, step)
         before, p.shear[c] = shear - step * slide, shear
         push, rub = k_n * (touch - rest - stretch), k_s * (shear - p.slip[c])
@@ -191,7 +191,7 @@ class PlainPairs:
         force, moment = -push * n + rub * t, 0.0
         side = rub
         if p.state[c] == INTACT:
-            turn, turning = u_j[2] - u_i[2], v_j[2] - v_i[2]
+            turn, turning = u_j[2] - u_i[2] + turned, v_j[2] - v_i[2]
             tension = b_n * stretch * per_area + abs(b_m * turn) * bend
             strength = limits.cohesion - b_n * stretch * per_area * limits.tan_fa
             if tension >= limits.tension or abs(b_s * shear) * per_area >= strength:
@@ -201,7 +201,11 @@ class PlainPairs:
                 broken = 0.5 * b_n * stretch * (stretch - step * opening)
                 broken += 0.5 * b_s * shear * before + 0.5 * b_m * turn * (turn - step * turning)
                 if limits.geometry == BONDED:  # from here on the contact has its true length
-                    longer = np.hypot(*(p.constants[p.contact_type[c], :2] + (u_j - u_i)[:2])) - rest
+                    longer = (
+                        np.hypot(*(p.constants[p.contact_type[c], :2] + (u_j - u_i)[:2]))
+                        - rest
+                        + p.constants[p.contact_type[c], 12]
+                    )
                     overlaps = [max(touch - rest - each, 0.0) for each in (stretch, longer)]
                     broken += 0.5 * k_n * (overlaps[0] ** 2 - overlaps[1] ** 2)
                 self.lost[1 if broken > 0.0 else 2] += broken
@@ -215,14 +219,16 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
     """A list of pairs as kernels take it, each with a row of constants of its own in the order of the pairs.
 
     vectors (b, 2); columns first, second, state (b,); touch, offset, normal, shear, bond_normal, bond_shear, bending,
-    area, bond_radius (b,).
+    area, bond_radius (b,); began (3, b) strain at the start, absent: none.
     """
     first, second = columns["first"], columns["second"]
     b = len(first)
     names = ("touch", "offset", "normal", "shear", "bond_normal", "bond_shear", "bending")
     springs = [columns[name] for name in names]
     bonds = [1.0 / columns["area"], 1.5 / columns["bond_radius"] ** 2]  # R̄/J with J = 2 R̄³/3
-    constants = np.ascontiguousarray(np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds]))
+    constants = np.ascontiguousarray(
+        np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds, *columns.get("began", np.zeros((3, b)))])
+    )
     owner, end = np.concatenate([first, second]), np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
     return tables.Contacts(
         0,
@@ -264,6 +270,7 @@ def random_pairs(count: int, b: int, gap: float = 0.05) -> tables.Contacts:
         bending=bond_normal * bond_radius**2 / 3.0,
         area=2.0 * bond_radius,
         bond_radius=bond_radius,
+        began=0.02 * rng.uniform(-1.0, 1.0, (3, b)),
     )
 
 

@@ -257,8 +257,9 @@ NAMES: dict[tuple[str, ...], Advice] = {
         ("max_steps", f"write stress = [sxx, syy, sxy], Pa, tension positive{_MORE}"),
         ("", _IN_SITU),
     ),
-    ("k0", "k_0", "lateral_pressure"): (
-        ("", f"there is none: [static] has stress = [sxx, syy, sxy]; under weight it is C12/C11, see `check`{_MORE}"),
+    ("k0", "k_0", "k_zero", "lateral_pressure"): (
+        ("max_steps", f"write k0, the stress along x over that along y due to weight{_MORE}"),
+        ("", f"[static] has k0, the stress along x over that along y due to weight{_MORE}"),
     ),
     ("stress", "traction", "sigma_n"): (
         ("pressure", "write pressure, Pa, on the wall of a hole, or force, N/m"),

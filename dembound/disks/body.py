@@ -15,6 +15,7 @@ from dembound.disks.beyond.layered_waves import LayeredWaves
 from dembound.disks.beyond.recorded import RecordedContinuum
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.contacts.layout import Rows
+from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.motion.between import Between
 from dembound.motion.layout import Layout
@@ -212,6 +213,11 @@ class DiskBody(Scene):
             moves[:2, each.nodes] &= ~each.body.mesh.held
         return moves
 
+    @cached_property
+    def at_rest(self) -> StressAtRest | None:
+        """The stress of undisturbed ground with which contacts begin; None if they begin without forces."""
+        return stress_at_rest(self.case, self.ground)
+
     @property
     def has_history(self) -> bool:  # type: ignore[override]  # a constant of other kinds
         """Whether the scene's law is history-dependent: contacts that open and slide, bonds that break."""
@@ -223,3 +229,8 @@ def parts_of(count: int, seam: Seam | None) -> dict[str, slice]:
     if seam is None:
         return {"body": slice(0, count)}
     return {"column": slice(0, seam.count), "body": slice(seam.count, count)}
+
+
+def differs_by_level(case: DiskCase, ground: PackedMaterial) -> bool:
+    """Whether each row of bricks has constants of its own: of layers, or of a history-dependent law with K0."""
+    return ground.is_layered or (ground.law.has_history and case.static is not None and case.static.k0 is not None)

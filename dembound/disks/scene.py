@@ -19,7 +19,7 @@ from dembound.disks.beyond.layered_waves import LayeredWaves, rising_in_layers, 
 from dembound.disks.beyond.mechanisms import mechanisms_of
 from dembound.disks.beyond.mesh import NO_FLOORS, Outline
 from dembound.disks.beyond.surroundings import Surroundings, surroundings_of
-from dembound.disks.body import DiskBody, parts_of
+from dembound.disks.body import DiskBody, differs_by_level, parts_of
 from dembound.disks.body_sides import sides_of, tied_of
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
@@ -92,7 +92,7 @@ class DiskScene(DiskBody):
         part of a side, sides are recorded with their actual forces.
         """
         static = self.case.static
-        if static is None or static.stress is None:
+        if static is None or static.stress is None or self.at_rest is not None:
             return {}
         stress, found, rests = np.array(static.stress), {}, np.zeros(2)
         for side, each in side_forces(self).items():
@@ -176,7 +176,13 @@ def _scene(
     count = len(assembly.radii)
     assembly, seam = with_layers(ground, assembly, seam)
     edges = with_shares(count, edges, case.boundary)
-    slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
+    slots, rows = lay_out(
+        assembly,
+        ground,
+        parts_of(count, seam),
+        mass_factor(count, edges, case.boundary),
+        by_level=differs_by_level(case, ground),
+    )
     outside = None
     if outline is not None:
         first, twin = (0, None) if seam is None else (seam.count, seam.twin)

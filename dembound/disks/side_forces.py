@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.boundaries.support import Edge
 from dembound.disks.beyond.cut_bonds import CutBonds
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.forces import PIECE, Piece
+from dembound.disks.material.at_rest import gradients_of_stresses
 from dembound.disks.material.constants import brick_constants
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.packings.cut import CutContacts, cut_contacts
+from dembound.packings.tiling import Assembly
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +45,8 @@ class SideForces:
 
 def side_forces(scene: DiskBody) -> dict[str, SideForces]:
     """Forces on all sides of a body that are not periodic, by side."""
-    ends, part = _ends(scene)
-    per_stress, as_built = _through(scene, ends)
+    ends, part = _ends(scene, scene.assembly, scene.edges, scene.case.periodic)
+    per_stress, as_built = _through(scene, scene.assembly, ends)
     per_stress, as_built = per_stress * part[:, None], as_built * part
     found = {}
     for number, side in enumerate(SIDES):
@@ -55,6 +59,56 @@ def side_forces(scene: DiskBody) -> dict[str, SideForces]:
     return found
 
 
+def forces_at_rest(scene: DiskBody) -> np.ndarray:
+    """Forces and moments (3, n) N and N·m of the contacts that the sides cut, under the scene's stress at rest.
+
+    Without those through the seam of a free field, which the column's contacts exert.
+    """
+    force, at_rest = np.zeros((3, scene.count)), scene.at_rest
+    if at_rest is None:
+        return force
+    for name, nodes in scene.parts.items():
+        body, upright = scene.assembly.part(nodes), name == "column"
+        sides = SIDES[2:] if upright else tuple(scene.edges)
+        edges = {side: _among(scene.edges[side], nodes) for side in sides if side in scene.edges}
+        ends, part = _ends(scene, body, edges, (True, False) if upright else scene.case.periodic)
+        if not upright and scene.seam is not None:
+            part = np.where(_in_seam(scene, ends, nodes.start), 0.0, part)
+        heights = body.positions[ends.node, 1] + 0.5 * ends.vectors(scene.ground.brick)[:, 1]
+        layer, each = scene.ground.layer_of(heights), np.zeros((3, len(heights)))
+        for number in np.unique(layer):
+            own = layer == number
+            ground = scene.ground.at(float(heights[own][0]))
+            per_stress = _per_stress(ground, CutBonds.of(ground, ends.only(own), body.positions))
+            each[:, own] = part[own] * np.einsum("cts,st->ct", per_stress, at_rest.at(heights[own]))
+        for component in range(3):
+            np.add.at(force[component], nodes.start + ends.node, each[component])
+    return force
+
+
+def _among(edge: Edge, nodes: slice) -> Edge:
+    """The nodes of an edge in a part of the scene, numbered from its first one."""
+    own = edge.only((edge.nodes >= nodes.start) & (edge.nodes < nodes.stop), edge.length)
+    return replace(own, nodes=own.nodes - nodes.start)
+
+
+def _in_seam(scene: DiskBody, ends: CutContacts, begin: int) -> np.ndarray:
+    """Whether the free-field column exerts the forces of contact ends (e,); begin : number of the body's first disk."""
+    seam = scene.seam
+    assert seam is not None
+    whole = len(scene.ground.brick.pairs)
+    owner = np.repeat(seam.node - begin, seam.contact_counts)
+    keys = [
+        (2 * node + second) * whole + kind
+        for node, kind, second in (
+            (owner, seam.contact_type % whole, seam.twin_is_second),
+            (ends.node, ends.contact_type, ends.is_second),
+        )
+    ]
+    there: np.ndarray = np.isin(keys[1], keys[0])
+    return there
+
+
 def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:
     """The contacts of a body with the forces that they have in the endless packing under a stress (3,) Pa."""
     brick, body = scene.ground.brick, scene.assembly
@@ -62,22 +116,22 @@ def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:
     (first, second), zero = brick.pairs.T.astype(np.int64), np.zeros(whole, dtype=np.int64)
     none = np.zeros((whole, 2), dtype=np.int64)
     each = CutContacts(zero, np.arange(whole), zero > 0, second, none, none, zero)
-    per_stress, as_built = _through(scene, each)
+    per_stress, as_built = _through(scene, body, each)
     force = (per_stress @ stress + as_built)[:2]
     force = np.concatenate([force, 0.5 * force], axis=1)  # of half cells
     vectors = np.concatenate([brick.vectors, brick.vectors])
     for begin in range(0, len(body.pairs), PIECE):
         part = slice(begin, begin + PIECE)
-        kind, (first, second) = body.contact_type[part], body.pairs[part].T
+        kind, (first, second) = body.contact_type[part] % (2 * whole), body.pairs[part].T
         every = np.ones(len(kind), dtype=np.bool_)
         yield Piece(first, second, every, every, vectors[kind].T, np.full(len(kind), 0.5), force[:, kind])
 
 
-def _through(scene: DiskBody, cut: CutContacts) -> tuple[np.ndarray, np.ndarray]:
+def _through(scene: DiskBody, body: Assembly, cut: CutContacts) -> tuple[np.ndarray, np.ndarray]:
     """Forces (3, e, 3) per stress and (3, e) as built, see `SideForces`, of contacts on the disks of one end."""
     ground, brick, locked_in = scene.ground, scene.ground.brick, scene.case.material.locked_in
-    bonds = CutBonds.of(ground, cut, scene.assembly.positions)
-    per_stress = np.einsum("cgt,gs->cts", bonds.on_disks, _gradients(ground.continuum.tensor))
+    bonds = CutBonds.of(ground, cut, body.positions)
+    per_stress = _per_stress(ground, bonds)
     as_built = np.zeros(per_stress.shape[:2])
     if locked_in is not None:
         share = locked_in / ground.packed_pressure
@@ -88,28 +142,25 @@ def _through(scene: DiskBody, cut: CutContacts) -> tuple[np.ndarray, np.ndarray]
     return per_stress, as_built
 
 
-def _gradients(tensor: np.ndarray) -> np.ndarray:
-    """Displacement gradients (4, 3), in the order of `GRADIENTS`, of unit stresses xx, yy, xy; tensor (4, 4) Pa.
-
-    The smallest of those that differ by a rotation, which the packing does not resist.
-    """
-    stresses = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
-    found: np.ndarray = np.linalg.lstsq(tensor, stresses, rcond=1e-9)[0]
-    return found
+def _per_stress(ground: PackedMaterial, bonds: CutBonds) -> np.ndarray:
+    """Forces (3, e, 3) of cut bonds on their disks per stress of the endless packing."""
+    return np.einsum("cgt,gs->cts", bonds.on_disks, gradients_of_stresses(ground.continuum.tensor))
 
 
-def _ends(scene: DiskBody) -> tuple[CutContacts, np.ndarray]:
+def _ends(
+    scene: DiskBody, body: Assembly, edges: Mapping[str, Edge], periodic: tuple[bool, bool]
+) -> tuple[CutContacts, np.ndarray]:
     """The contacts that end at sides, and the share (e,) of each that does.
 
     All of a contact cut by a side, and half of a contact along a side of half cells, at both disks.
     """
-    brick, body = scene.ground.brick, scene.assembly
-    cut = cut_contacts(brick, body, tuple(scene.edges), scene.case.periodic)
+    brick = scene.ground.brick
+    cut = cut_contacts(brick, body, tuple(edges), periodic)
     found = [cut]
     halved = np.flatnonzero(body.contact_type % (2 * len(brick.pairs)) >= len(brick.pairs))
     kind = body.contact_type[halved].astype(np.int64) % len(brick.pairs)
     first, second = body.pairs[halved].T.astype(np.int64)
-    side = _side_along(scene, first, second)
+    side = _side_along(body, edges, first, second)
     for near, far, is_second in ((first, second, False), (second, first, True)):
         found.append(
             CutContacts(
@@ -126,13 +177,13 @@ def _ends(scene: DiskBody) -> tuple[CutContacts, np.ndarray]:
     return CutContacts(**joined), np.repeat([1.0, 0.5], [len(cut.node), 2 * len(kind)])
 
 
-def _side_along(scene: DiskBody, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+def _side_along(body: Assembly, edges: Mapping[str, Edge], first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Number (h,) of the side along which contacts of half cells run, between disks first and second (h,)."""
     side = np.full(len(first), -1)
-    way = np.abs(scene.assembly.positions[second] - scene.assembly.positions[first])
+    way = np.abs(body.positions[second] - body.positions[first])
     for number, name in enumerate(SIDES):
-        if name in scene.edges:
-            axis, nodes = normal_axis(name), scene.edges[name].nodes
+        if name in edges:
+            axis, nodes = normal_axis(name), edges[name].nodes
             along = (way[:, 1 - axis] > way[:, axis]) & np.isin(first, nodes) & np.isin(second, nodes)
             side[along & (side < 0)] = number
     return side

@@ -63,7 +63,7 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
                 per_area = constants[k, U(10)]
                 bending = constants[k, U(9)] * constants[k, U(11)]
                 stress = constants[k, U(7)] * stretch * per_area
-                turned = bending * abs(u[U(2), j] - u[U(2), i])
+                turned = bending * abs(u[U(2), j] - u[U(2), i] + constants[k, U(14)])
                 normal = constants[k, U(7)] * per_area
                 sheared = constants[k, U(8)] * per_area
                 room = min(room, (limit_of(tension, k) - stress - turned) / (2.0 * normal))
@@ -113,7 +113,7 @@ def _strain_energies(begin, end, u, contacts, geometry, stored):
                 slid -= slip[c]
             in_contacts += 0.5 * (constants[k, U(5)] * overlap * overlap + constants[k, U(6)] * slid * slid)
             if intact:
-                turn = u[U(2), j] - u[U(2), i]
+                turn = u[U(2), j] - u[U(2), i] + constants[k, U(14)]
                 in_bonds += 0.5 * (constants[k, U(7)] * stretch * stretch + constants[k, U(8)] * shear * shear)
                 in_bonds += 0.5 * constants[k, U(9)] * turn * turn
         stored[chunk, 0] = in_contacts

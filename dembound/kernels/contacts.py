@@ -5,12 +5,13 @@ A pair's motion is three numbers: the distance of the centres, the tangential di
 its unloaded state; the contact resists overlap and the part of `shear` that has not slid. No other history is needed:
 in two dimensions a shear force has one component, which rotates with the pair automatically.
 
-A row of constants (12,) of a pair with first disk i and second disk j:
+A row of constants (15,) of a pair with first disk i and second disk j:
 
-    [d_x, d_y, |d|, touch, (R_i − R_j)/2, k_n, k_s, k̄_n A, k̄_s A, k̄_n J, 1/A, R̄/J]
+    [d_x, d_y, |d|, touch, (R_i − R_j)/2, k_n, k_s, k̄_n A, k̄_s A, k̄_n J, 1/A, R̄/J, e_0, s_0, θ_0]
 
 d is the vector from i to j at the start, touch the distance at which the contact begins to act; then the stiffnesses of
-the contact and of the bond. Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
+the contact and of the bond; last the stretch, shear and rotation that the pair has from the start, under a stress at
+rest. Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
 """
 
 import numpy as np
@@ -115,7 +116,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
     pull = -N
     moment = 0.0
     if intact:
-        turn = u[U(2), j] - u[U(2), i]
+        turn = u[U(2), j] - u[U(2), i] + constants[k, U(14)]
         Fn = constants[k, U(7)] * stretch
         Fs = constants[k, U(8)] * shear
         M = constants[k, U(9)] * turn

@@ -33,12 +33,12 @@ def _least_factors(begin, end, u, rest, contacts, slopes, allowed, least, where)
             c = U(p)
             i, j, k, x, y = pair(c, rest, first, second, contact_type, constants)
             _, _, _, still_stretch, still_shear = reference_strain(i, j, k, x, y, rest, constants)
-            still_turn = rest[U(2), j] - rest[U(2), i]
+            still_turn = rest[U(2), j] - rest[U(2), i] + constants[k, U(14)]
             i, j, k, x, y = pair(c, u, first, second, contact_type, constants)
             _, _, _, stretch, shear = reference_strain(i, j, k, x, y, u, constants)
             stretch -= still_stretch
             shear -= still_shear
-            turn = u[U(2), j] - u[U(2), i] - still_turn
+            turn = u[U(2), j] - u[U(2), i] + constants[k, U(14)] - still_turn
             for number in range(limits):
                 m = U(number)
                 to_stretch = slopes[k, m, U(0)]

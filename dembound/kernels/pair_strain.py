@@ -21,9 +21,9 @@ def reference_strain(i, j, k, dx, dy, u, constants):
     rest = constants[k, U(2)]
     nx = constants[k, U(0)] / rest
     ny = constants[k, U(1)] / rest
-    stretch = nx * dx + ny * dy
+    stretch = nx * dx + ny * dy + constants[k, U(12)]
     arm_i = 0.5 * rest + constants[k, U(4)]
-    shear = nx * dy - ny * dx - arm_i * u[U(2), i] - (rest - arm_i) * u[U(2), j]
+    shear = nx * dy - ny * dx - arm_i * u[U(2), i] - (rest - arm_i) * u[U(2), j] + constants[k, U(13)]
     return nx, ny, rest, stretch, shear
 
 
@@ -31,13 +31,13 @@ def reference_strain(i, j, k, dx, dy, u, constants):
 def updated_stretch(k, dx, dy, constants):
     """Normal and distance of a pair whose vector has changed by dx, dy, and its stretch.
 
-    The stretch is (d² − d_0²)/(d + d_0), which keeps the digits that d − d_0 loses.
+    The stretch is (d² − d_0²)/(d + d_0), which keeps the digits that d − d_0 loses, and that at the start.
     """
     x = constants[k, U(0)]
     y = constants[k, U(1)]
     rest = constants[k, U(2)]
     distance = np.sqrt((x + dx) * (x + dx) + (y + dy) * (y + dy))
-    stretch = ((x + x + dx) * dx + (y + y + dy) * dy) / (distance + rest)
+    stretch = ((x + x + dx) * dx + (y + y + dy) * dy) / (distance + rest) + constants[k, U(12)]
     return (x + dx) / distance, (y + dy) / distance, distance, stretch
 
 

@@ -104,7 +104,7 @@ class Law(ABC):
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 12) of pairs, in the columns explained in kernels/contacts.py.
+        """Constants (b, 15) of pairs, in the columns explained in kernels/contacts.py.
 
         Parameters
         ----------
@@ -134,6 +134,7 @@ class Law(ABC):
                 has_bond * pair.bending,
                 1.0 / pair.area,
                 1.5 / pair.bond_radius**2,  # R̄/J
+                np.zeros((len(vectors), 3)),  # unstrained
             ]
         )
 

@@ -61,6 +61,8 @@ CASES = {
         "load": [{"name": "blow", "force": [1e3, -2e4], "region": [8.0, 3.0, 10.0, 4.0], "wave": "pulse"}],
         "monitor": [*GRAINS["monitor"], {"name": "beside", "position": [-1.0, 2.0]}],
     },
+    "stress at rest beside a free field": DISKS
+    | {"packing": LATTICE, "material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}, "static": SQUEEZED},
     "settled box in the ground": DISKS
     | {
         "ground": {"size": [20.0, 20.0]},
@@ -72,7 +74,7 @@ CASES = {
         },
         "outside": {"element": 4.0},
         "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
-        "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2},
+        "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2, "k0": 0.5},
         "monitor": [{"name": "middle", "position": [10.0, 10.0]}, {"name": "beside", "position": [4.0, 10.0]}],
     },
     "damped by Q, settled beside a free field": DISKS
@@ -180,7 +182,7 @@ CHANGING = [name for name, tables in CASES.items() if tables.get("method", {}).g
 CHANGING += ["law changes, bonds break", "free field that breaks"]
 """Cases in which a law or a method takes over from another one, and bonds break."""
 
-BREAKING = (*CHANGING, "settled, updated", "finite differences")
+BREAKING = (*CHANGING, "settled, updated", "stress at rest beside a free field", "finite differences")
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n == LATE else n for n in CASES])

@@ -48,6 +48,14 @@ class Layer(Table):
     pb_ten: float | None = _as_in_material("pb_ten")
     pb_coh: float | None = _as_in_material("pb_coh")
     pb_fa: float | None = _as_in_material("pb_fa")
+    quality_factor: float | None = _as_in_material("quality_factor")
+    k0: float | None = quantity(
+        None,
+        unit="1",
+        help="stress along x over that along y due to weight; absent: static.k0, which it needs",
+        ge=0.0,
+        le=5.0,
+    )
 
     @model_validator(mode="after")
     def _one_end(self) -> "Layer":

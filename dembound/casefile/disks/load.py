@@ -1,5 +1,6 @@
 """The ``[[load]]`` tables."""
 
+from collections.abc import Iterable
 from typing import Literal
 
 from pydantic import model_validator
@@ -111,3 +112,9 @@ class Load(Table):
         stray = [key for key in ("position", "region") if getattr(self, key) is not None]
         missing = [] if self.hole is not None else ["hole: is missing; a pressure needs the name of a hole"]
         return [*missing, *(f"{key}: is not allowed together with pressure; give hole" for key in stray)]
+
+
+def gravity(loads: Iterable[Load | None]) -> list[float]:
+    """Accelerations (m/s²) along y of the steady ones among some loads that act on all particles."""
+    everywhere = [load for load in loads if load and load.acceleration is not None and load.is_everywhere]
+    return [load.vector[1] for load in everywhere if load.wave is None]

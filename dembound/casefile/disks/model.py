@@ -15,7 +15,7 @@ from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.reduce import Reduce
-from dembound.casefile.disks.static import Static
+from dembound.casefile.disks.static import Static, begins_stressed
 from dembound.casefile.model import Case
 from dembound.holes import Hole
 from dembound.holes.floor import Floor
@@ -112,6 +112,11 @@ class DiskCase(Case):
     def periodic(self) -> tuple[bool, bool]:
         """Whether the scene is periodic along x and along y."""
         return self.side("left").is_periodic, self.side("bottom").is_periodic
+
+    @property
+    def begins_stressed(self) -> bool:
+        """Whether contacts begin with the forces of a stress at rest, see `static.begins_stressed`."""
+        return self.static is not None and begins_stressed(self.static, self.boundary)
 
     @property
     def entering(self) -> set[str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from dembound.boundaries import Boundary
 from dembound.casefile.types import StaticSide
 from dembound.table import Table, quantity
 
@@ -14,7 +15,8 @@ class Static(Table):
 
     Its supports replace the boundaries of the sides during the stage; their reactions then act as constant forces.
     It needs a `stress`, a steady load or `material.locked_in`; the body must be held along every axis on which a steady
-    load acts. Under a stress no side may be periodic or a free field.
+    load acts. Under `k0`, and under a stress beside periodic, free-field and outside sides, contacts begin with the
+    forces of that stress; otherwise forces on the sides make it.
     """
 
     stress: tuple[float, float, float] | None = quantity(
@@ -22,6 +24,13 @@ class Static(Table):
         unit="Pa",
         means="stress to reach",
         help="stress [sxx, syy, sxy] to reach, tension positive; absent: that of the loads",
+    )
+    k0: float | None = quantity(
+        None,
+        unit="1",
+        help="stress along x over that along y due to weight, a load with an acceleration; absent: what settling makes",
+        ge=0.0,
+        le=5.0,
     )
     ratio: float = quantity(
         1e-5,
@@ -45,3 +54,10 @@ class Static(Table):
     boundary: Mapping[str, StaticSide] = quantity(
         {}, unit="1", help="a table for each side during the stage; an absent side is free"
     )
+
+
+def begins_stressed(static: Static, boundaries: Mapping[str, Boundary | None]) -> bool:
+    """Whether contacts begin with the forces of a stress at rest: with K0, or beside sides that could not apply it."""
+    tables = [table for table in boundaries.values() if table]
+    beside = any(table.is_periodic or table.needs_column or table.is_outside for table in tables)
+    return static.k0 is not None or (static.stress is not None and beside)

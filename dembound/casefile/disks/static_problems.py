@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from dembound.boundaries import SIDES, Boundary, normal_axis
-from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.load import Load, gravity
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.motion import Motion
-from dembound.casefile.disks.static import Static
+from dembound.casefile.disks.static import Static, begins_stressed
 from dembound.casefile.messages import numbered
 
 Sides = Mapping[str, Boundary | None]
@@ -33,8 +33,12 @@ def static_problems(
     for side, own in static.boundary.items():
         if own and "artificial" in own.model_fields_set:
             yield f"static.boundary.{side}.artificial: is of no use in the static stage; give it to boundary.{side}"
-    if static.stress is not None:
-        yield from _stress_beside(boundaries)
+    begins = begins_stressed(static, boundaries)
+    if static.k0 is not None:
+        yield from _without_weight(loads)
+    if begins and material and material.locked_in:
+        yield "material.locked_in: is not allowed beside a stress at rest; leave it out and give all in static.stress"
+    if static.stress is not None and not begins:
         yield from _unreachable_stress(static, static.stress)
     if material and None not in loads:
         yield from _nothing_to_settle(static, loads, material)
@@ -42,21 +46,10 @@ def static_problems(
         yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column)
 
 
-def _stress_beside(boundaries: Sides) -> Iterator[str]:
-    """Sides to which no stress can be applied; the message names those to which it can."""
-    sides = [(side, table) for side, table in boundaries.items() if table]
-    beside = [
-        f'boundary.{side} ("{getattr(table, "type", "")}")'
-        for side, table in sides
-        if table.is_periodic or table.needs_column or table.is_outside
-    ]
-    if beside:
-        driven = any(table.waves for _, table in sides)
-        absorbing = f'"viscous" or "viscoelastic"{" (with _input where a wave enters)" if driven else ""}'
-        yield (
-            f"static.stress: cannot be applied at {', '.join(beside)}; {absorbing} sides absorb and take it, or leave "
-            "it out and let gravity make it (a [[load]] with an acceleration)"
-        )
+def _without_weight(loads: Sequence[Load | None]) -> Iterator[str]:
+    """Weight that static.k0 would be about, and is missing."""
+    if None not in loads and not any(gravity(loads)):
+        yield "static.k0: is of the stress due to weight; give a [[load]] with acceleration = [0.0, -9.81] and no wave"
 
 
 def _unreachable_stress(static: Static, stress: tuple[float, float, float]) -> Iterator[str]:

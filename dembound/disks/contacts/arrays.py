@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.disks.contacts.pair_rows import PairPlan
+from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import INTACT, NONE
@@ -14,7 +15,7 @@ from dembound.kernels.tables import Contacts
 from dembound.motion.layout import aligned_zeros
 from dembound.packings.tiling import Assembly
 
-NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
+NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0]])
 """Constants of a place without a pair: far apart, without stiffness."""
 
 
@@ -58,7 +59,7 @@ def in_places(
 ) -> Placed:
     """Assign places to pairs, and list the contact ends of each particle.
 
-    slot : (m,) of each particle. constants : (p, 12) of the types of contacts. plan : rows of copies, whose places come
+    slot : (m,) of each particle. constants : (p, 15) of the types of contacts. plan : rows of copies, whose places come
     first; None: there are none.
     """
     first, second = (slot[particles].astype(np.int32) for particles in (pairs.first, pairs.second))
@@ -113,21 +114,23 @@ def _ends_apart(owner: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndar
     return slot, np.append(start, len(order)), end[others][order]
 
 
-def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray) -> Contacts:
+def plain_contacts(
+    ground: PackedMaterial, assembly: Assembly, slot: np.ndarray, at_rest: StressAtRest | None = None
+) -> Contacts:
     """The contacts of the elastic law, without history, forces and rows, for its strain energy.
 
-    slot : (n,) in which kernels hold the assembly's particles.
+    slot : (n,) in which kernels hold the assembly's particles. at_rest : stress that they begin with; None: none.
     """
+    constants, kind = stressed(ground, brick_constants(ground, gaps_close=False, locked_in=0.0), assembly, at_rest)
     first, second = slot[assembly.pairs.T].astype(np.uint32, order="C")
-    constants = brick_constants(ground, gaps_close=False, locked_in=0.0)
     nothing = np.zeros(0)
     return Contacts(
         begin=int(slot.min()),
         first=first,
         second=second,
-        contact_type=assembly.contact_type.astype(np.uint32),
+        contact_type=kind.astype(np.uint32),
         constants=constants,
-        state=bonds_of(constants, assembly.contact_type),
+        state=bonds_of(constants, kind),
         shear=nothing,
         slip=nothing,
         closed=np.zeros(0, dtype=np.uint8),
@@ -140,5 +143,5 @@ def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray)
 
 
 def bonds_of(constants: np.ndarray, contact_type: np.ndarray) -> np.ndarray:
-    """States (b,) of contacts as built: intact where the rows of their types in constants (p, 12) have a bond."""
+    """States (b,) of contacts as built: intact where the rows of their types in constants (p, 15) have a bond."""
     return np.where(constants[contact_type, 7] > 0.0, INTACT, NONE).astype(np.uint8)

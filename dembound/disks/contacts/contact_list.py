@@ -11,6 +11,7 @@ from dembound.disks.contacts.neighbours import near_pairs, pair_keys
 from dembound.disks.contacts.pair_list import NO_LIMITS, PairList
 from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.contacts.row_plan import RowPlan
+from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import brick_constants, limits_of, shared_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
@@ -54,12 +55,14 @@ class ContactList(PairList):
     plan : the rows of copies in which the part's particles are held, and their first block; None: one by one.
     layers : in layered ground the limits of each type of contact in columns, see `limits_between`, and the friction
         (m,) of each particle, for those that meet later.
+    at_rest : the stress with which contacts begin; None: without forces.
 
     Attributes
     ----------
     In addition to those of `PairList`:
 
     limits : strengths and friction; in layered ground columns of the rows of constants.
+    kind : (b,) types of the contacts as built, rows of `bonds`.
     own_types : number of the types of the brick's contacts, which come before those of near pairs.
     skin : m, gap up to which the list is complete.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
@@ -77,6 +80,7 @@ class ContactList(PairList):
         layout: Layout | None = None,
         plan: tuple[RowPlan, int] | None = None,
         layers: tuple[Limits, np.ndarray] | None = None,
+        at_rest: StressAtRest | None = None,
     ) -> None:
         super().__init__(assembly, periods, begin, layout)
         self.ground = ground
@@ -87,13 +91,13 @@ class ContactList(PairList):
         self.skin = SKIN * ground.brick.mean_diameter
         self._set_origin(np.zeros((2, len(assembly.radii))))
         self.keeps_slip = False
-        self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
+        constants = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
         if layers is not None:
-            self.bonds = np.column_stack([self.bonds, *self.limits[:4]])
+            constants = np.column_stack([constants, *self.limits[:4]])
+        self.bonds, self.kind = stressed(ground, constants, assembly, at_rest)
         first, second = assembly.pairs.T.astype(np.int64)
-        images = self.images(first, second, self.bonds[assembly.contact_type, :2])
-        pairs = Pairs(first, second, images, assembly.contact_type)
-        bonded = bonds_of(self.bonds, assembly.contact_type)
+        pairs = Pairs(first, second, self.images(first, second, self.bonds[self.kind, :2]), self.kind)
+        bonded = bonds_of(self.bonds, self.kind)
         zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
         self.own_types = len(self.bonds)
         self._constants = self.bonds
@@ -190,7 +194,7 @@ class ContactList(PairList):
     def _met(self, moved: np.ndarray, kept: np.ndarray) -> tuple[Pairs, np.ndarray]:
         """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m.
 
-        Their types are rows of constants (p, 12), in layered ground with limits (p, 16), which are returned too.
+        Their types are rows of constants (p, 15), in layered ground with limits (p, 19), which are returned too.
         """
         positions, radii = self.assembly.positions, self.assembly.radii
         near, image = near_pairs(positions + moved, radii, self.skin, self.periods)

@@ -21,15 +21,20 @@ Rows = NeighbourTable | LaneRows
 
 
 def lay_out(
-    assembly: Assembly, ground: PackedMaterial, parts: Mapping[str, slice], fraction: np.ndarray
+    assembly: Assembly,
+    ground: PackedMaterial,
+    parts: Mapping[str, slice],
+    fraction: np.ndarray,
+    *,
+    by_level: bool = False,
 ) -> tuple[Layout, tuple[Rows, ...]]:
     """The slots of the disks of a scene, and the contacts of each part between them.
 
     A part of many copies of the brick is held in rows of copies (lane_rows.py); one of few keeps its order.
-    parts : their disks, in order; fraction : (n,) of its mass that each disk has.
+    parts : their disks, in order; fraction : (n,) of its mass that each disk has. by_level : see `plan_rows`.
     """
     each = [assembly.part(disks) for disks in parts.values()]
-    plans = [_plan(part, ground) for part in each]
+    plans = [_plan(part, by_level=by_level) for part in each]
     if all(plan is None for plan in plans) and ground.mechanisms is None:  # memories are held in blocks
         layout = Layout.plain(len(assembly.radii))
         return layout, tuple(
@@ -50,11 +55,11 @@ def lay_out(
     return layout, tuple(rows)
 
 
-def _plan(part: Assembly, ground: PackedMaterial) -> RowPlan | None:
+def _plan(part: Assembly, *, by_level: bool) -> RowPlan | None:
     """The rows of a part, if enough of their lanes would hold disks."""
     if np.prod(part.copies) == 1:
         return None
-    plan = plan_rows(part, by_level=ground.is_layered)
+    plan = plan_rows(part, by_level=by_level)
     return plan if len(part.radii) >= LEAST_FILL * LANES * plan.group_block[-1] else None
 
 

@@ -30,7 +30,7 @@ class PairList:
         (3, slots) work space of the kernels.
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     cells : of the particles there.
-    bonds : (p, 12) constants of the contacts of the brick; (p, 16) with the limits of each, see `ContactList.limits`.
+    bonds : (p, 15) constants of the contacts of the brick; (p, 19) with the limits of each, see `ContactList.limits`.
     """
 
     limits: Limits
@@ -101,7 +101,7 @@ class PairList:
 
     def _list(self, pairs: Pairs, history: ContactHistory) -> None:
         """Give the pairs their places, and list the contact ends of each particle."""
-        constants, columns = np.ascontiguousarray(self._constants[:, :12]), self._constants[:, 12:]
+        constants, columns = np.ascontiguousarray(self._constants[:, :15]), self._constants[:, 15:]
         if columns.size > 0:
             columns = np.vstack([columns, NO_LIMITS])  # of places without a pair
             self.limits = in_columns(columns, self.limits.geometry)

@@ -107,10 +107,10 @@ class PairPlan:
         return place
 
     def rows(self, place: np.ndarray, constants: np.ndarray) -> PairRows:
-        """The rows for kernels; place (b,) of the pairs that are in them, constants (types, 12) of contacts."""
+        """The rows for kernels; place (b,) of the pairs that are in them, constants (types, 15) of contacts."""
         exists = np.zeros(int(self.group_block[-1]), dtype=np.uint8)
         np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
-        lines = constants[self.key % self.types, :12]
+        lines = constants[self.key % self.types, :15]
         return self._empty._replace(exists=exists, constants=np.column_stack([lines, lines[:, :2] / lines[:, 2:3]]))
 
     @cached_property
@@ -135,7 +135,7 @@ class PairPlan:
             disk_block=self.first_block + plan.group_block[:-1],
             disk_rows=np.diff(plan.group_row),
             step=np.column_stack([owner - plan.group_row[group], self.shift]),
-            constants=np.zeros((0, 14)),
+            constants=np.zeros((0, 17)),
             exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(counts)]),
             offset=offset[order],

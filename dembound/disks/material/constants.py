@@ -66,7 +66,7 @@ def _weaker(one: Limits, other: Limits) -> Limits:
 
 
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
-    """Constants (2b, 12) of the brick's contacts, followed by the same with half their stiffness, for half cells.
+    """Constants (2b, 15) of the brick's contacts, followed by the same with half their stiffness, for half cells.
 
     For each pairing of zones in a layered ground. Arguments as for `pair_constants`.
     """
@@ -79,13 +79,13 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
         )
         half = constants.copy()
         half[:, 5:10] *= 0.5  # stiffnesses
-        half[:, 10:] *= 2.0  # and areas and section moduli too, so that stresses do not change
+        half[:, 10:12] *= 2.0  # and areas and section moduli too, so that stresses do not change
         found += [constants, half]
     return np.vstack(found)
 
 
 def shared_constants(constants: np.ndarray, zones: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Distinct rows (p, 12 or 16) of the constants of pairs, to rounding, and the row of each pair (b,).
+    """Distinct rows (p, 15 or 19) of the constants of pairs, to rounding, and the row of each pair (b,).
 
     Pairs at the same place of different bricks then share a row, if they are in the same zones (b, 2) and have the same
     limits; length (m) is the scale for rounding errors.

@@ -132,8 +132,8 @@ class LayeredGround(PackedMaterial):
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 12) of pairs, see `PackedMaterial.pair_constants`."""
-        found = np.empty((len(vectors), 12))
+        """Constants (b, 15) of pairs, see `PackedMaterial.pair_constants`."""
+        found = np.empty((len(vectors), 15))
         ends = np.stack([np.broadcast_to(zone, len(vectors)) for zone in zones], axis=1)
         for pair in np.unique(ends, axis=0):
             chosen = (ends == pair).all(axis=1)

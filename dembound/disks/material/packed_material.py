@@ -141,7 +141,7 @@ class PackedMaterial:
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 12) of pairs, see `Law.pair_constants`.
+        """Constants (b, 15) of pairs, see `Law.pair_constants`.
 
         radii : (b,) m of first and second disks. zones : (b,) of both disks, see `zone_of`. bonded : whether the pairs
         have bonds; None: if the material has them.

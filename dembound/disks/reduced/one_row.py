@@ -107,7 +107,7 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
     row, _ = with_half_contacts(case, brick, row, None, edges)
     row = replace(row, positions=scene.positions[place])
     fraction = mass_factor(len(place), edges, case.boundary)
-    slots, contacts = lay_out(row, scene.ground, parts_of(len(place), None), fraction)
+    slots, contacts = lay_out(row, scene.ground, parts_of(len(place), None), fraction, by_level=scene.ground.is_layered)
     share = fraction / scene.cell_fraction[place]
     return OneRow(
         case=case,

@@ -1,6 +1,7 @@
 """Facts about a case of disks, in words."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.messages import counted
 from dembound.disks.contacts.layout import fill
 from dembound.disks.loads import forces_of
+from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.reports.continuum_facts import continuum_facts
 from dembound.disks.reports.incident_facts import incident_facts
 from dembound.disks.reports.summary import describe_packing, describe_side
@@ -33,7 +35,7 @@ def disk_facts(scene: DiskScene) -> Entries:
     yield from _law_facts(scene)
     yield from _damping_facts(scene)
     yield from _hole_facts(case)
-    yield from _static_facts(case)
+    yield from _static_facts(scene)
     if scene.outside is not None:
         yield from continuum_facts(scene)
     if scene.ground_waves is not None:
@@ -163,13 +165,17 @@ def _damping_facts(scene: DiskScene) -> Entries:
     )
 
 
-def _static_facts(case: DiskCase) -> Entries:
+def _static_facts(scene: DiskScene) -> Entries:
     """Loads and supports of the static stage."""
-    static = case.static
+    case, static = scene.case, scene.case.static
     if static is None:
         return
     acting = [load.name for load in case.load if load.wave is None]
-    if static.stress is not None:
+    at_rest = scene.at_rest
+    if at_rest is not None:
+        acting.append("the stress at rest")
+        yield "stress at rest", "; ".join(_at_heights(at_rest, (scene.low[1] + scene.size[1], scene.low[1])))
+    elif static.stress is not None:
         texts, unit = in_one_unit(static.stress, "Pa")
         acting.append(f"σ_xx, σ_yy, σ_xy = {', '.join(texts)} {unit}")
     if case.material.locked_in:
@@ -177,6 +183,16 @@ def _static_facts(case: DiskCase) -> Entries:
     sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
     yield "static stage", f"under {' and '.join(acting)}, to an unbalanced force ratio of {static.ratio:g}"
     yield "static sides", sides
+
+
+def _at_heights(at_rest: StressAtRest, heights: tuple[float, float]) -> Iterator[str]:
+    """The stress at rest at heights (m), in words; once where it is the same everywhere."""
+    for height, stress in zip(heights, at_rest.at(np.array(heights)).T.tolist(), strict=True):
+        texts, unit = in_one_unit(stress, "Pa")
+        where = "everywhere" if at_rest.is_uniform else f"at y = {height:.4g} m"
+        yield f"σ_xx, σ_yy, σ_xy = {', '.join(texts)} {unit} {where}"
+        if at_rest.is_uniform:
+            return
 
 
 def _load_facts(scene: DiskScene) -> Entries:

@@ -94,14 +94,10 @@ def _take_from_waves(scene: DiskScene) -> Iterator[str]:
 
 
 def _moves_with_waves(case: DiskCase, driven: str) -> str:
-    """Sides along the waves of a driven side that move with them, in words; a given stress excludes some."""
+    """Sides along the waves of a driven side that move with them, in words."""
     if normal_axis(driven) == 0:
         return '"periodic"'
-    if case.static is None or case.static.stress is None:
-        return f'"free_field", or "outside" there and at {driven}'
-    if set(case.driving[driven]) == {"p"}:
-        return '"roller", which leaves a P wave along it alone; static.stress excludes "free_field" and "outside"'
-    return '"free_field", with weight or material.locked_in in place of static.stress'
+    return f'"free_field", or "outside" there and at {driven}'
 
 
 def _hold_monitors(scene: DiskScene) -> Iterator[str]:

@@ -33,8 +33,10 @@ def _describe_load_factor(run: Run) -> dict[str, Any] | None:
 
 
 def asked_stress(scene: DiskScene) -> list[float] | None:
-    """The target stress (Pa) of the static stage, if any."""
+    """The target stress (Pa) of the static stage, if any, and if it is the same everywhere."""
     static = scene.case.static
+    if scene.at_rest is not None and not scene.at_rest.is_uniform:
+        return None
     return None if static is None or static.stress is None else list(static.stress)
 
 

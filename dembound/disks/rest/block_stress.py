@@ -104,7 +104,7 @@ class Blocks:
 def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:
     """Stress (nx, ny, 3) in the blocks of a body at displacements (3, n), see `Blocks.stress`; without its column."""
     part = system.disks.parts[-1]
-    found = pieces(scene.layout, part.pairs, displacement, part.geometry)
+    found = pieces(scene.layout, part.stressed_pairs, displacement, part.geometry)
     if part.geometry != UPDATED:
         return Blocks.of(scene).stress(found, scene.positions)
     return Blocks.of(scene, displacement).stress(found, scene.positions + displacement[:2].T)

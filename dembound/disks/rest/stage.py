@@ -128,7 +128,8 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     stage.stages.begin(stage.key, simulation)
     simulation.run(static.max_steps)
     displacement, forces = simulation.state.displacement, rest.forces
-    asked = None if static.stress is None else np.array(static.stress)
+    uniform = scene.at_rest is None or scene.at_rest.is_uniform
+    asked = None if static.stress is None or not uniform else np.array(static.stress)
     unbalanced = np.hypot(*(forces + body.scene.steady_load)[:2, : scene.disk_count])
     held = body.held
     settled = Settled(

@@ -10,6 +10,7 @@ from dembound.casefile.disks.static import Static
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.rest.tractions import Tractions
 from dembound.disks.scene import DiskScene, media_of
+from dembound.disks.side_forces import forces_at_rest
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.state import State
 
@@ -26,8 +27,10 @@ class StaticScene:
                 for part, medium in media_of(scene, side):
                     table.support(part, medium, case.wave, builder)
         self.static = static
-        self._tractions = None if static.stress is None else Tractions(scene, static.stress)
+        stressed = scene.at_rest is not None
+        self._tractions = None if static.stress is None or stressed else Tractions(scene, static.stress)
         self.scene = without_own_continua(scene)
+        self._beyond = forces_at_rest(self.scene) if stressed else None
         for each in self.scene.continua:
             each.support(builder)
         self.scene = replace(self.scene, supports=builder.table())
@@ -43,6 +46,8 @@ class StaticScene:
 
     def load(self, displacement: np.ndarray) -> np.ndarray:
         """All steady forces (3, n) N and N·m at displacements (3, n)."""
+        if self._beyond is not None:
+            return self.scene.steady_load + self._beyond
         return self.scene.steady_load + (0.0 if self._tractions is None else self._tractions.forces(displacement))
 
     def keep_from_turning(self, state: State) -> None:
@@ -54,7 +59,7 @@ class StaticScene:
         arm = (arm - np.average(arm, axis=0, weights=mass)).T
         velocity[:2] -= np.average(velocity[:2], axis=1, weights=mass)[:, None] * self.scene.free[:2, None]
         state.velocity = velocity
-        if not self.scene.free.all():
+        if any(self.scene.case.periodic) or not self.scene.free.all():
             return
         spin = np.sum(mass * (arm[0] * velocity[1] - arm[1] * velocity[0])) + np.sum(self.scene.inertia * velocity[2])
         rate = spin / (np.sum(mass * (arm**2).sum(axis=0)) + self.scene.inertia.sum())

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.disks.body import DiskBody
+from dembound.disks.body import DiskBody, differs_by_level
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
 from dembound.disks.material.constants import ground_limits
@@ -35,6 +35,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         scene.disk_layout,
         _row_plan(scene, name, part),
         _layers(scene, part),
+        scene.at_rest,
     )
 
 
@@ -52,4 +53,4 @@ def _row_plan(scene: DiskBody, name: str, part: Assembly) -> tuple[RowPlan, int]
     rows = scene.rows[list(scene.parts).index(name)]
     if not isinstance(rows, LaneRows):
         return None
-    return plan_rows(part, by_level=scene.ground.is_layered), int(rows.group_block[0])
+    return plan_rows(part, by_level=differs_by_level(scene.case, scene.ground)), int(rows.group_block[0])

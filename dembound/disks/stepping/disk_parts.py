@@ -39,7 +39,8 @@ class DiskParts:
         self.parts = tuple(
             DiskPart(
                 name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
-                lists.get(name), None if time_step is None else disk_memories(scene, nodes, rows, supported, time_step),
+                lists.get(name), scene.at_rest,
+                None if time_step is None else disk_memories(scene, nodes, rows, supported, time_step),
             )
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
         )  # fmt: skip

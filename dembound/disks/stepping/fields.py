@@ -79,7 +79,7 @@ class RecordedDisks(System):
         scene, whole = self.scene, self.scene.whole
         if not scene.case.output.contacts:
             return {}
-        lists = [(part.pairs, part.geometry) for part in self.disks.parts]
+        lists = [(part.stressed_pairs, part.geometry) for part in self.disks.parts]
         if whole is not scene:
             assert isinstance(whole, DiskBody)
             displacement = scene.widened("displacement", displacement.T).T

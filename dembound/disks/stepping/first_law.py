@@ -46,8 +46,9 @@ def first_law(scene: DiskBody, disks: DiskParts, start: Start | None, datum: np.
     if goes_on and not settling and case.reduce.settled and not never_elastic_again(case):
         reason = elastic_again(disks.contacts.values(), datum)
         is_elastic_again, goes_on, refused = reason == "", reason != "", settled_refused(reason)
-    # a locked-in stress also acts through the seam of a free field, but not under the elastic law
-    through = bool(disks.seams) and case.material.locked_in is not None and not settling
+    # a stress of the body as built also acts through the seam of a free field, but not under the elastic law
+    built_in = case.material.locked_in is not None or case.begins_stressed
+    through = bool(disks.seams) and built_in and not settling
     at_once = through or not (settling or case.material.elastic_start)
     return FirstLaw(goes_on or (scene.has_history and at_once), goes_on, is_elastic_again, refused)
 
@@ -68,8 +69,10 @@ def balanced(
 def not_balanced(law: FirstLaw, scene: DiskBody, forces: RestForces, load: np.ndarray) -> np.ndarray:
     """All steady forces (3, n) of a body as built or in a static stage; load : (3, n) forces of loads.
 
-    The elastic law does not include the forces of the body as built, such as a locked-in stress, which are added.
+    The elastic law does not include the forces of the body as built, of a stress locked in or at rest, which are added.
     """
-    if law.goes_on or not scene.has_history:
+    if law.goes_on:
         return load
-    return load + forces.with_history(np.zeros_like(load), fresh=True)
+    if scene.case.begins_stressed:
+        return load + forces.as_built()
+    return load + forces.with_history(np.zeros_like(load), fresh=True) if scene.has_history else load

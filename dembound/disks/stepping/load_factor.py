@@ -12,9 +12,11 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
+from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import brick_constants, ground_limits, strength_of
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import CHUNKS
+from dembound.kernels.limits import in_columns
 from dembound.kernels.load_factor import least_factors
 from dembound.kernels.tables import Limits
 from dembound.motion.kind import Finding
@@ -38,12 +40,12 @@ def limit_lines(constants: np.ndarray, limits: Limits) -> tuple[np.ndarray, np.n
 
     Parameters
     ----------
-    constants : (p, 12), see kernels/contacts.py. limits : friction and strength, numbers or columns (p,).
+    constants : (p, 15 or more), see kernels/contacts.py. limits : friction and strength, numbers or columns (p,).
 
     Returns (a, b, c) (p, 7, 3) in the order of `LIMITS`, and d (p, 7), infinite where a pair has no such limit.
     """
     rest, touch, normal, shear = constants[:, 2], constants[:, 3], constants[:, 5], constants[:, 6]
-    bond, bond_shear, bending, per_area, per_section = constants[:, 7:].T
+    bond, bond_shear, bending, per_area, per_section = constants[:, 7:12].T
     closed, zero = touch >= rest, np.zeros(len(constants))
     overlap = touch - rest
     acts, sticks = normal > 0.0, closed & (shear > 0.0)
@@ -79,10 +81,19 @@ class LoadFactor(Every):
 
     def __init__(self, case: DiskCase, system: DiskSystem) -> None:
         super().__init__(1)
-        ground = system.scene.ground
-        constants = brick_constants(ground, gaps_close=True, locked_in=0.0)
-        self._lines = limit_lines(constants, ground_limits(ground, case.materials, strength_of))
-        self._pairs = [part.pairs._replace(constants=constants) for part in system.disks.parts]
+        scene = system.scene
+        plain = brick_constants(scene.ground, gaps_close=True, locked_in=0.0)
+        limits = ground_limits(scene.ground, scene.case.materials, strength_of)
+        if scene.ground.is_layered:
+            plain = np.column_stack([plain, *limits[:4]])
+        self._pairs = []
+        for part in system.disks.parts:
+            constants, kind = stressed(scene.ground, plain, part.assembly, scene.at_rest)
+            pairs = part.pairs._replace(
+                constants=np.ascontiguousarray(constants[:, :15]), contact_type=kind.astype(np.uint32)
+            )
+            own = in_columns(constants[:, 15:], limits.geometry) if scene.ground.is_layered else limits
+            self._pairs.append((pairs, limit_lines(pairs.constants, own)))
         self._least, self._where = np.empty(CHUNKS), np.empty((CHUNKS, 2), dtype=np.int64)
         self._rest = np.zeros((3, 0))
         self.factor = np.inf
@@ -93,8 +104,8 @@ class LoadFactor(Every):
         state = run.state
         if self._rest.size == 0:
             self._rest = state.layout.spread(state.datum)
-        for number, pairs in enumerate(self._pairs):
-            least_factors(state.u, self._rest, pairs, *self._lines, self._least, self._where)
+        for number, (pairs, lines) in enumerate(self._pairs):
+            least_factors(state.u, self._rest, pairs, *lines, self._least, self._where)
             chunk = int(np.argmin(self._least))
             least = max(0.0, float(self._least[chunk]))  # below 0 beyond a limit at rest
             if least < self.factor:
@@ -106,7 +117,7 @@ class LoadFactor(Every):
         if np.isinf(self.factor):
             return None
         step, part, pair, limit = self._found.tolist()
-        pairs, layout = self._pairs[part], run.state.layout
+        (pairs, _), layout = self._pairs[part], run.state.layout
         particles = [int(layout.node[side[pair]]) for side in (pairs.first, pairs.second)]
         way = pairs.constants[pairs.contact_type[pair], :2]
         return {
@@ -143,7 +154,7 @@ def least_load_factor(run: Run, inside: Box | None = None) -> dict[str, Finding]
 
 
 def limit_in_words(limit: int, constants: np.ndarray) -> str:
-    """Description of a limit of `limit_lines` for a pair with these constants (12,)."""
+    """Description of a limit of `limit_lines` for a pair with these constants (15,)."""
     has_gap = constants[3] < constants[2]
     return "closes" if limit == 0 and has_gap else LIMITS[limit]
 

@@ -84,7 +84,7 @@ class NearTies:
     """
 
     def __init__(self, scene: DiskBody, contacts: ContactList) -> None:
-        assembly, constants = contacts.assembly, contacts.bonds[contacts.assembly.contact_type]
+        assembly, constants = contacts.assembly, contacts.bonds[contacts.kind]
         near = sides_near(scene)[contacts.nodes][assembly.pairs].max(axis=1)
         closed = (constants[:, 3] >= constants[:, 2]) & (constants[:, 5] > 0.0)
         watched = np.flatnonzero(closed & (near >= 0))
@@ -117,12 +117,13 @@ class NearTies:
         """Force (w,) N per metre by which each watched contact differs from one that neither opens nor slides."""
         arrays = contacts.arrays
         at, listed = self._places(contacts)
-        x, y, rest, touch, _, normal, shear = arrays.constants[arrays.contact_type[at], :7].T
+        constants = arrays.constants[arrays.contact_type[at]]
+        x, y, rest, touch, _, normal, shear = constants[:, :7].T
         dx, dy = u[:2, arrays.second[at]] - u[:2, arrays.first[at]]
         stretch = ((2.0 * x + dx) * dx + (2.0 * y + dy) * dy) / (np.hypot(x + dx, y + dy) + rest)
         if contacts.limits.geometry == BONDED:
             stretch = np.where(arrays.state[at] == INTACT, (x * dx + y * dy) / rest, stretch)
-        gap = np.maximum(stretch + rest - touch, 0.0)
+        gap = np.maximum(stretch + constants[:, 12] + rest - touch, 0.0)
         lost = np.maximum(normal * gap, shear * np.abs(arrays.slip[at] - self._slip))
         return np.where(listed, lost, np.inf)  # others are so far apart that they are no longer listed
 

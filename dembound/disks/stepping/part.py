@@ -9,6 +9,7 @@ from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.layout import Rows, with_special
 from dembound.disks.contacts.rows import elastic_constants
+from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.stepping.memories import DiskMemories
 from dembound.kernels import bonded, bonded_lanes, damped, elastic, elastic_lanes  # noqa: F401  # they register their laws
@@ -46,6 +47,7 @@ class DiskPart(Part):
     rows : the same contacts in the form for a linear law.
     layout : the slots in which kernels hold the scene's particles.
     contacts : its pairs with their history; None where the material's law has none.
+    at_rest : stress with which its contacts begin; None: without forces.
     memories : of its forces; None without damping.
 
     Attributes
@@ -64,14 +66,14 @@ class DiskPart(Part):
         rows: Rows,
         layout: Layout,
         contacts: ContactList | None,
+        at_rest: StressAtRest | None = None,
         memories: DiskMemories | None = None,
     ) -> None:
         self.name = name
         self.ground = ground
         self.assembly = assembly
         self.nodes, self.layout = nodes, layout
-        self.contacts = contacts
-        self.memories = memories
+        self.contacts, self.at_rest, self.memories = contacts, at_rest, memories
         self.uses_history = False
         self.watches = True
         self.stops_at_breaks = False
@@ -158,6 +160,13 @@ class DiskPart(Part):
     def pairs(self) -> Contacts:
         """The pairs of its disks for the kernels, by slots, without history if the material's law has none."""
         return self._plain_contacts if self.contacts is None else self.contacts.arrays
+
+    @property
+    def stressed_pairs(self) -> Contacts:
+        """The pairs with the stress at rest, which `pairs` without history do not include."""
+        if self.contacts is not None or self.at_rest is None:
+            return self.pairs
+        return plain_contacts(self.ground, self.assembly, self.layout.slot[self.nodes], self.at_rest)
 
     @cached_property
     def _plain_contacts(self) -> Contacts:

@@ -6,6 +6,7 @@ import numpy as np
 
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.continuum_ties import disks_on_foot
 from dembound.disks.stepping.disk_parts import DiskParts
 
@@ -40,6 +41,13 @@ class RestForces:
         for pairs in self._disks.contacts.values():
             pairs.push(displacement)
         return self.last(self._disks.contacts)
+
+    def as_built(self) -> np.ndarray:
+        """Forces (3, n) of contacts and of the seam under the stress at rest, whatever friction and strength are."""
+        contacts = self._disks.contacts or contact_lists(self._scene)
+        for pairs in contacts.values():
+            pairs.push(np.zeros((3, self._scene.count)), reference=True)
+        return self.last(contacts)
 
     def last(self, contacts: Mapping[str, ContactList]) -> np.ndarray:
         """The last forces of the pairs of each part by name, and the forces across the seam that belong to them."""

@@ -14,7 +14,7 @@ def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np
     displacement (3, n) m and rad. Under the history-dependent law its forces are those at the beginning of the last
     step.
     """
-    return particle_stress(scene, part.pairs, displacement, part.geometry)[part.nodes]
+    return particle_stress(scene, part.stressed_pairs, displacement, part.geometry)[part.nodes]
 
 
 def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarray, geometry: int) -> np.ndarray:

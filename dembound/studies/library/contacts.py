@@ -16,7 +16,7 @@ from dembound.studies.library.library import Library
 class WatchedContact(NamedTuple):
     """A contact or bond between the disks of two monitors.
 
-    name : both, with a comma. monitors : (2,) their numbers in the library. constants : (12,), see kernels/contacts.py.
+    name : both, with a comma. monitors : (2,) their numbers in the library. constants : (15,), see kernels/contacts.py.
     settled : (3,) stretch (m), shear (m) and turn at the end of the static stage, zero without one.
     """
 
@@ -46,6 +46,8 @@ def watched_contacts(library: Library, pairs: Sequence[str]) -> list[WatchedCont
     """
     if not library.case.output.load_factor:
         raise CaseError(["--load-factor: needs a library of a case with output.load_factor = true and its strengths"])
+    if library.case.begins_stressed:
+        raise CaseError(["--load-factor: does not include static.k0 and a stress at rest; take dembound run"])
     scene = build(library.case)
     found, problems = [], []
     for pair in pairs:

@@ -31,7 +31,6 @@ GRAVITY = '[[load]]\nname = "g"\nacceleration = [0.0, -9.81]\n'
         ('[boundary.right]\ntype = "free_field"\n', 'right.type: is "free_field", which cannot be in a case'),
         ('[motion]\nheld = ["y"]\n', 'boundary.left.type: "outside" moves freely, but motion.held holds y'),
         ('[boundary.bottom]\ntype = "outside"\n[static]\n', 'right.type: is "free", but [static] and loads on all'),
-        ("[static]\nstress = [-1e6, -1e6, 0.0]\n", 'static.stress: cannot be applied at boundary.left ("outside"); '),
         (GRAVITY + '[static.boundary.left]\ntype = "fixed"\n', "static.boundary.left: is not allowed, as the ground"),
     ],
 )

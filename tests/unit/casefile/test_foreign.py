@@ -65,7 +65,8 @@ run | courant | write safety
 static | cycles | write ratio
 static | solve_ratio | write ratio
 static | in_situ | write stress = [sxx, syy, sxy]
-static | k0 | there is none: [static] has stress
+static | k_0 | write k0
+material | k0 | [static] has k0
 material | gravity | give [[load]] an acceleration, such as [0.0, -9.81] m/s²
  | gravity | give [[load]] an acceleration
  | units | there is none: all numbers are in SI units

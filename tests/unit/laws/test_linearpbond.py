@@ -20,7 +20,7 @@ def test_the_columns_are_those_of_the_law() -> None:
     # R̄ = 0.5 · 0.2, A = 2 R̄, J = 2 R̄³/3; k̄_n = 3e9/0.6 per area
     area, moment, per_area = 0.2, 2e-3 / 3.0, 5e9
     expected = [0.3, 0.4, 0.5, 0.5, -0.1, 6e9, 3e9]
-    expected += [per_area * area, per_area * area / 3.0, per_area * moment, 1.0 / area, 0.1 / moment]
+    expected += [per_area * area, per_area * area / 3.0, per_area * moment, 1.0 / area, 0.1 / moment, 0.0, 0.0, 0.0]
 
     np.testing.assert_allclose(constants()[0], expected, rtol=1e-14)
 

@@ -45,7 +45,7 @@ MISTAKES = r"""
 ratio = 1 | .ratio: is 1, must be less than 1
 damp = 0.0 | .damp: is 0.0, must be greater than 0
 max_steps = 0 | .max_steps: is 0, must be at least 1
-dump = 0.5 | .dump: unknown key; allowed: stress, ratio, damp, max_steps, from, boundary (did you mean damp?)
+dump = 0.5 | .dump: unknown key; allowed: stress, k0, ratio, damp, max_steps, from, boundary (did you mean damp?)
 boundary = 1 | .boundary: is 1, must be tables by name, [static.boundary.NAME] in TOML
 boundary.lefd.type = "free" | .boundary.lefd: unknown side; allowed: left, right, bottom, top (did you mean left?)
 boundary.top = {type = "free", x = 1} | .boundary.top.x: unknown key; allowed: type, artificial
@@ -114,19 +114,17 @@ def test_a_stress_that_cannot_be_reached_is_refused() -> None:
         assert problems(STRESS.replace("-1e6, -1e6", "0, -1e6"), side("left", across), side("right", across)) == []
 
 
-def test_periodic_sides_take_no_support_and_no_stress() -> None:
+def test_periodic_sides_take_no_support_but_a_stress() -> None:
     assert problems(PERIODIC, STRESS, side("left", "roller")) == [
         "static.boundary.left: is not allowed, as boundary.left is periodic",
-        'static.stress: cannot be applied at boundary.left ("periodic"), boundary.right ("periodic"); "viscous" or '
-        '"viscoelastic" sides absorb and take it, or leave it out and let gravity make it (a [[load]] with an '
-        "acceleration)",
     ]
     assert problems(PERIODIC, "[static]\n", side("bottom", "fixed"), GRAVITY) == []
 
 
-def test_free_field_sides_take_supports_but_no_stress() -> None:
-    (line,) = problems(FREE_FIELD, STRESS)
-    assert line.startswith('static.stress: cannot be applied at boundary.left ("free_field"), boundary.right ("free_fi')
+def test_free_field_sides_take_supports_and_a_stress() -> None:
+    assert problems(FREE_FIELD, STRESS) == []
+    # contacts begin with it, so that what is held along an axis has it, too
+    assert problems(FREE_FIELD, STRESS, side("bottom", "fixed"), side("top", "fixed")) == []
     assert problems(FREE_FIELD, "[static]\n", side("left", "roller"), side("bottom", "fixed"), GRAVITY) == []
 
 
@@ -141,3 +139,15 @@ def test_the_column_beside_a_free_field_side_is_held_from_below_or_above() -> No
     assert problems(FREE_FIELD, "[static]\n", side("left", "fixed"), GRAVITY) == [line]
     # what acts on the body alone may be carried by its sides
     assert problems(FREE_FIELD, "[static]\n", side("left", "fixed"), tap) == []
+
+
+def test_k0_needs_weight_and_no_stress_of_the_packing() -> None:
+    k0, bottom = "[static]\nk0 = 0.5\n", side("bottom", "fixed")
+    weightless = (
+        "static.k0: is of the stress due to weight; give a [[load]] with acceleration = [0.0, -9.81] and no wave"
+    )
+    assert problems(k0, bottom, GRAVITY) == problems(FREE_FIELD, k0, bottom, GRAVITY) == []
+    (weightless,) = problems(k0 + "stress = [-1e6, 0.0, 0.0]\n", bottom)
+    assert weightless.startswith("static.k0: is of the stress due to weight; give a [[load]] with acceleration = ")
+    locked = "material.locked_in: is not allowed beside a stress at rest; leave it out and give all in static.stress"
+    assert problems(k0, bottom, GRAVITY, material=BREAKABLE + "locked_in = 1e6\n") == [locked]
