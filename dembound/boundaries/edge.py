@@ -29,14 +29,18 @@ class BoundaryMedium:
         """G = ρc_s² in Pa."""
         return self.density * self.s_wave_speed**2
 
+    @property
+    def running_speeds(self) -> tuple[float, float]:
+        """c_p and c_s of plane waves along the side's normal, m/s, nan where the motion is held."""
+        return (self.p_wave_speed, self.s_wave_speed) if self.own_speeds is None else self.own_speeds()
+
     def matched(self, edge: "Edge") -> dict[Motion, float]:
         """β0 = (c_eff/c)·H/ΣD of an edge: own over nominal wave speed, times its length over the sum of diameters.
 
         With it the dashpots have the impedance ρc_eff of plane waves along the normal. nan where the motion is held.
         """
         nominal = (self.p_wave_speed, self.s_wave_speed)
-        own = nominal if self.own_speeds is None else self.own_speeds()
-        pairs = zip(own, nominal, strict=True)
+        pairs = zip(self.running_speeds, nominal, strict=True)
         # without stiffness there is no wave, and any factor will do: the own speed is then 0, or nan
         p, s = (mine / given if given > 0.0 else mine + 1.0 for mine, given in pairs)
         return {"p": p / edge.diameter_sum_ratio, "s": s / edge.diameter_sum_ratio}

@@ -10,7 +10,7 @@ FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
 """Keys of the factors of dashpots -> their symbols."""
 
 IN_WORDS = {
-    *("type", "particles", "length", "diameter_min", "diameter_mean", "diameter_max", "diameter_sum_ratio"),
+    *("type", "layer", "particles", "length", "diameter_min", "diameter_mean", "diameter_max", "diameter_sum_ratio"),
     *(
         "beta_p",
         "beta_s",

@@ -73,6 +73,7 @@ class SceneField(StrEnum):
     forces = "forces"
     peak = "peak"
     unbalanced = "unbalanced"
+    layer = "layer"
 
 
 @dataclass(frozen=True)

@@ -69,19 +69,21 @@ class DiskBody(Scene):
     @property
     def attributes(self) -> dict[str, Any]:
         """The attributes of a record's header in addition to those of every run."""
-        return {"seed": getattr(self.case.packing, "seed", 0), "column": self.column_count}
+        layers = {"layer_names": [*self.case.layer_names], "joints": [*self.case.joints]} if self.case.joints else {}
+        return {"seed": getattr(self.case.packing, "seed", 0), "column": self.column_count, **layers}
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
         """Data of every particle for the record, by name: values (n, …) and unit."""
         assembly, bonded = self.assembly, self.ground.moduli.pb_emod > 0.0
+        layer = self.ground.layer_of(assembly.positions[:, 1]) + 1
         return {
             "position": (assembly.positions, "m"),
             "radius": (assembly.radii, "m"),
             "brick_particle": (assembly.brick_particle, "1"),
             "column": (np.arange(self.disk_count) < self.column_count, "1"),
             "bonds": (np.bincount(assembly.pairs.ravel(), minlength=self.disk_count) * int(bonded), "1"),
-        }
+        } | ({"layer": (layer.astype(np.int32), "1")} if self.ground.is_layered else {})
 
     @property
     def places(self) -> dict[str, tuple[float, float]]:

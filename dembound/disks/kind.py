@@ -59,7 +59,7 @@ class Disks(Kind[DiskCase, DiskScene]):
     def build(self, case: DiskCase) -> DiskScene:
         """The scene of a case; raises the errors for loads without particles and for a singular material."""
         scene = with_incident_waves(build(case))
-        _ = scene.steady_load, scene.ground.material_tensor
+        _ = scene.steady_load, [layer.material_tensor for layer in scene.ground.materials]
         return scene
 
     def expected_memory(self, case: DiskCase) -> float:

@@ -9,27 +9,26 @@ from dembound.boundaries import Motion, axis_of_motion
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.boundaries.words import reflected
-from dembound.disks.scene import DiskScene, ground_at, medium_of_side
+from dembound.disks.scene import DiskScene, media_of
 from dembound.errors import CaseError
 
 
-def homogenised_beta(scene: DiskScene, side: str, motion: Motion) -> float:
-    """β0 of a side, see `BoundaryMedium.matched`; nan where the motion is held."""
-    edge = scene.edges[side]
-    return medium_of_side(scene, side).matched(edge)[motion]
+def homogenised_beta(scene: DiskScene, side: str, motion: Motion, part: int = 0) -> float:
+    """β0 of a side, see `BoundaryMedium.matched`; nan where the motion is held. part : number in `media_of`."""
+    edge, medium = media_of(scene, side)[part]
+    return medium.matched(edge)[motion]
 
 
-def factors_in(scene: DiskScene, side: str) -> dict[Motion, float]:
-    """The factors β of a side's dashpots as numbers."""
-    edge = scene.edges[side]
-    return scene.case.side(side).factors_at(edge, medium_of_side(scene, side))
+def factors_in(scene: DiskScene, side: str, part: int = 0) -> dict[Motion, float]:
+    """The factors β of a side's dashpots as numbers; part : number in `media_of`."""
+    return scene.case.side(side).factors_at(*media_of(scene, side)[part])
 
 
-def supports_of(scene: DiskScene, side: str) -> Supports:
-    """The support table of one side only."""
-    edge, builder = scene.edges[side], SupportBuilder(held=scene.ground.held)
-    medium = medium_of_side(scene, side)
-    scene.case.side(side).support(edge, medium, scene.case.wave, builder)
+def supports_of(scene: DiskScene, side: str, part: int | None = None) -> Supports:
+    """The support table of one side only; part : number in `media_of`, None for all."""
+    builder, parts = SupportBuilder(held=scene.ground.held), media_of(scene, side)
+    for edge, medium in parts if part is None else [parts[part]]:
+        scene.case.side(side).support(edge, medium, scene.case.wave, builder)
     return builder.table()
 
 
@@ -39,12 +38,11 @@ def per_metre(scene: DiskScene, side: str, table: Boundary) -> dict[tuple[str, i
     By kind, component (0 x, 1 y, 2 rotation) and number of the signal (−1 for none): "dampers" N·s/m², "springs" N/m²,
     and "forces" of waves, N/m per unit of their signal. Prescribed motion is left out.
     """
-    edge = scene.edges[side]
-    medium = medium_of_side(scene, side)
     builder = SupportBuilder(held=scene.ground.held)
-    matched = table.with_factors(dict.fromkeys(table.factors, "matched")).with_numbers(edge, medium)
-    matched.support(edge, medium, scene.case.wave, builder)
-    supports, length = builder.table(), _length(edge)
+    for edge, medium in media_of(scene, side):
+        matched = table.with_factors(dict.fromkeys(table.factors, "matched")).with_numbers(edge, medium)
+        matched.support(edge, medium, scene.case.wave, builder)
+    supports, length = builder.table(), _length(scene.edges[side])
     free = ~supports.prescribed
     found: dict[tuple[str, int, int], float] = {}
     for component in range(3):
@@ -87,9 +85,13 @@ class Held(NamedTuple):
     stiffness: np.ndarray
 
     @classmethod
-    def of(cls, scene: DiskScene, side: str) -> "Held":
-        """The sums over the particles of a side; disks halved at its corners count as whole ones."""
-        edge, table = scene.edges[side], supports_of(scene, side)
+    def of(cls, scene: DiskScene, side: str, part: int | None = None) -> "Held":
+        """The sums over the particles of a side; disks halved at its corners count as whole ones.
+
+        part : number in `media_of`, None for the whole side.
+        """
+        edge = scene.edges[side] if part is None else media_of(scene, side)[part][0]
+        table = supports_of(scene, side, part)
         return cls(
             *(
                 np.array([np.sum(values[table.component == axis]) for axis in (0, 1)]) / _length(edge)
@@ -98,21 +100,21 @@ class Held(NamedTuple):
         )
 
 
-def sent_back(scene: DiskScene, side: str, motion: Motion, frequency: float) -> float:
+def sent_back(scene: DiskScene, side: str, motion: Motion, frequency: float, part: int = 0) -> float:
     """|R|, reflected over incident amplitude of plane waves along the normal of a side, at a frequency (Hz).
 
     From the impedances of dashpots, springs, and of the half of whole cells that lies beyond the last half of the
     packing, over the packing's impedance. At frequency nan of dashpots only. nan where the motion is held.
+    part : number in `media_of`.
     """
-    edge, held = scene.edges[side], Held.of(scene, side)
+    (edge, medium), held = media_of(scene, side)[part], Held.of(scene, side, part)
     axis = axis_of_motion(side, motion)
-    ground = ground_at(scene, side)
-    own = ground.density * ground.wave_speeds(edge.axis)[0 if motion == "p" else 1]
+    own = medium.density * medium.running_speeds[0 if motion == "p" else 1]
     if not own > 0.0:
         return math.nan
     impedance = complex(held.damping[axis])
     if math.isfinite(frequency):
         omega = 2.0 * math.pi * frequency
-        half = 0.0 if scene.case.side(side).half_cells else 0.5 * ground.density * float(edge.diameters.mean())
+        half = 0.0 if scene.case.side(side).half_cells else 0.5 * medium.density * float(edge.diameters.mean())
         impedance += 1j * omega * half - 1j * float(held.stiffness[axis]) / omega
     return abs(reflected(impedance / own, 1.0))

@@ -178,10 +178,10 @@ def _in_continuum(
     """The motion of a disk of the brick, `kind`, at a place (2,) m of a continuum; twin : its twin's number."""
     mesh = outside.body.mesh
     at, slope = interpolation(mesh, place[None]), slopes(mesh, place[None])[:, 0]
-    share = np.zeros((slope.shape[1], 3, 3))
+    share, own = np.zeros((slope.shape[1], 3, 3)), ground.at(place[1])
     share[:, [0, 1], [0, 1]] = at.weight[0, :, None]
     for component in (0, 1):
-        share[:, :, component] += (ground.continuum.corrector[:, kind, INDEX[component]] @ slope).T
+        share[:, :, component] += (own.continuum.corrector[:, kind, INDEX[component]] @ slope).T
     node = outside.first + at.node[0]
     if twin is not None:
         node, share = np.append(node, twin), np.concatenate([share, np.eye(3)[None]])

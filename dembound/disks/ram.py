@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import is_in
+from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
 from dembound.disks.beyond.settings import expected_tops, mesh_of, settings_of, signals_of
 from dembound.disks.contacts.forces import PIECE
@@ -56,7 +57,7 @@ class SceneSizes:
         packing = case.packing
         across, up = packing.copies
         disks = packing.expected_disks
-        lanes, in_rows = _lanes(across, up), stands_in_rows(case)
+        lanes, in_rows = _lanes(case), stands_in_rows(case)
         if case.column_sides:
             disks *= 1.0 + case.column_rows[1] / (across * up)
         everywhere = any(load.wave is not None and (load.is_everywhere or load.region) for load in case.load)
@@ -76,23 +77,25 @@ class SceneSizes:
 
 def stands_in_rows(case: DiskCase) -> bool:
     """Whether copies of a disk of the brick will be held side by side in RAM, see contacts/layout.py."""
+    return math.prod(case.packing.copies) > 1 and _lanes(case) * LEAST_FILL <= 1.0
+
+
+def _lanes(case: DiskCase) -> float:
+    """Slots per disk where copies are held side by side; in layers only those at the same height are."""
     across, up = case.packing.copies
-    return across * up > 1 and _lanes(across, up) * LEAST_FILL <= 1.0
-
-
-def _lanes(across: int, up: int) -> float:
-    """Slots per disk where copies are held side by side."""
-    return LANES * columns_of(min(across, up), max(across, up)) / (across * up)
+    columns = up * -(-across // LANES) if case.layer else columns_of(min(across, up), max(across, up))
+    return LANES * columns / (across * up)
 
 
 def _expected_grid(case: DiskCase) -> GridSizes | None:
-    """The numbers of a continuum in a medium of the nominal speed of P waves; S waves have half of it, or more."""
+    """The numbers of a continuum in a medium of the nominal speed of P waves; S waves have half of it, or more.
+
+    In layers it is that of the slowest.
+    """
     sides = [side for side, table in case.boundary.items() if table.is_outside]
     if not sides or (case.outside.element is None and not signals_of(case)):  # which cannot be built
         return None
-    material = case.material
-    moduli = nominal_moduli(material)
-    speed = material.p_wave_speed or math.sqrt((moduli.emod + moduli.pb_emod) / material.density)
+    speed, material = min(((_nominal_speed(each), each) for each in case.materials), key=lambda each: each[0])
     medium = Medium.isotropic(material.density, speed, 0.5 * speed)
     box, surface = case.packing.box, None
     if "top" in sides and not case.reaches_surface:
@@ -100,6 +103,12 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
     settings = settings_of(case, medium, 2.0 * case.packing.radius, box, sides)
     tops = None if any(case.periodic) else expected_tops(case, box)
     return GridSizes.of(mesh_of(settings, box, sides, surface=surface, tops=tops, periodic=case.periodic))
+
+
+def _nominal_speed(material: Material) -> float:
+    """Speed (m/s) of P waves that a material gives, or that follows from its moduli by Z eq. 11."""
+    moduli = nominal_moduli(material)
+    return material.p_wave_speed or math.sqrt((moduli.emod + moduli.pb_emod) / material.density)
 
 
 def _expected_probes(case: DiskCase) -> int:

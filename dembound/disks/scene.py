@@ -346,6 +346,11 @@ def media_of(scene: DiskScene, side: str) -> list[tuple[Edge, BoundaryMedium]]:
     return found
 
 
+def layers_beside(scene: DiskScene, side: str) -> list[int]:
+    """Number of the layer, from the top, of each of the parts of a side, see `media_of`."""
+    return [int(scene.ground.layer_of(edge.positions[:1, 1])[0]) for edge, _ in media_of(scene, side)]
+
+
 def ground_at(scene: DiskScene, side: str) -> PackedMaterial:
     """The material at a side; in a layered ground that of the lowest of its layers."""
     return scene.ground.at(scene.case.box[3 if side == "top" else 1])

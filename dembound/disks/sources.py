@@ -33,7 +33,8 @@ def _sides(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
         box[axis] = box[2 + axis] = plane_of(side, case.box)
         for motion, name in waves.items():
             if axis_of_motion(side, motion) not in ground.held:
-                wave, speed = case.wave[name], ground.wave_speeds(axis)[0 if motion == "p" else 1]
+                wave, kind = case.wave[name], 0 if motion == "p" else 1
+                speed = min(layer.wave_speeds(axis)[kind] for layer in ground.materials)
                 yield Source((box[0], box[1], box[2], box[3]), wave.start, wave.duration(), speed)
 
 

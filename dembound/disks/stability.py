@@ -6,6 +6,8 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.material.layered import LayeredGround
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import CLOSING
@@ -40,8 +42,8 @@ def step_limit(scene: DiskScene, damp: float | None = None) -> float:
     """
     largest = _largest_eigenvalue(scene)
     if scene.has_history:
-        opens = scene.ground.moduli.emod > 0.0
-        largest = max(largest, _loose_eigenvalue(scene)) / (OPENING if opens else 1.0)
+        opens = any(layer.moduli.emod > 0.0 for layer in scene.ground.materials)
+        largest = max(largest, *map(_loose_eigenvalue, _zones_of(scene.ground))) / (OPENING if opens else 1.0)
     damp = scene.case.material.damp if damp is None else damp
     return float(2.0 / np.sqrt(largest * (1.0 + damp))) if largest > 0.0 else np.inf
 
@@ -100,15 +102,20 @@ def filling_forces(scene: DiskScene) -> Callable[[np.ndarray, np.ndarray], None]
     return fill
 
 
-def _loose_eigenvalue(scene: DiskScene) -> float:
+def _zones_of(ground: PackedMaterial) -> list[PackedMaterial]:
+    """All materials of which disks of the ground are."""
+    return [zone.material for zone in ground.zones] if isinstance(ground, LayeredGround) else [ground]
+
+
+def _loose_eigenvalue(ground: PackedMaterial) -> float:
     """Bound of ω² (1/s²) for the smallest disks, each rolling on six neighbours, as in broken or loose ground.
 
     With contacts and no bonds. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones
     24k_s/m, when all disks rotate in the same way; the sum is a bound for both together.
     """
-    moduli = scene.ground.moduli
+    moduli = ground.moduli
     shear = moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
-    return (6.0 * moduli.emod + 24.0 * shear) / float(scene.ground.mass.min())
+    return (6.0 * moduli.emod + 24.0 * shear) / float(ground.mass.min())
 
 
 def _rounded_down(step: float) -> float:

@@ -80,15 +80,15 @@ def _under(scene: DiskScene, name: str) -> Trial:
 def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
     """The case with fewer copies of its brick, if it has more than `PARTICLES`, and the change in words.
 
-    Sides stay the same. Holes are left out: removing particles and contacts takes rows and stiffness from K, which
-    cannot increase its largest eigenvalue.
+    Layers remain whole. Sides stay the same. Holes are left out: removing particles and contacts takes rows and
+    stiffness from K, which cannot increase its largest eigenvalue.
     """
     across, up = case.packing.copies
     disks = len(ground_of(case).brick.radii)
     most = max(1, PARTICLES // disks)
-    if across * up <= most:
+    if across * up <= most or (case.layer and across == 1):
         return case, ["the whole scene"]
-    fewer_up = int(np.clip(round(up * np.sqrt(most / (across * up))), 1, up))
+    fewer_up = up if case.layer else int(np.clip(round(up * np.sqrt(most / (across * up))), 1, up))
     fewer = int(np.clip(most // fewer_up, 1, across)), fewer_up
     words = [f"{fewer[0]} × {fewer[1]} of its {across} × {up} bricks, the same sides"]
     stiffest = {side: table.stiffest(side, case.packing.box) for side, table in case.boundary.items()}

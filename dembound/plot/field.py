@@ -25,7 +25,10 @@ from dembound.results.reader import (
     text_of,
 )
 
-FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]
+FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced", "layer"]
+
+OF_THE_RUN = ("peak", "layer")
+"""The fields that do not change with time."""
 
 FORCES = "forces"
 """Name of the picture of contacts, see plot/chains.py."""
@@ -47,7 +50,8 @@ class Disks:
     positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of theirs in the
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
-    those that still have their disks.
+    those that still have their disks; layers: their names and joints, the heights (m) between them, from the surface
+    down, none of uniform ground.
     """
 
     positions: np.ndarray
@@ -59,6 +63,8 @@ class Disks:
     column: int = 0
     continuum: ContinuumCells | None = None
     holes: tuple[Hole, ...] = ()
+    layers: tuple[str, ...] = ()
+    joints: tuple[float, ...] = ()
 
     @cached_property
     def own_window(self) -> Window:
@@ -141,6 +147,8 @@ def read_disks(file: h5py.File) -> Disks:
         column=int(file.attrs.get("column", 0)),
         continuum=read_continuum(file),
         holes=tuple(hole for hole in read_holes(file) if not hole.contains(positions).any()),
+        layers=tuple(map(text_of, file.attrs.get("layer_names", ()))),
+        joints=tuple(map(float, file.attrs.get("joints", ()))),
     )
 
 
@@ -186,7 +194,7 @@ class FieldInRecord:
 
 
 def find_field(file: h5py.File, name: FieldName, component: str | None) -> FieldInRecord:
-    """A field of the snapshots of an open record, so not "peak"; name and component as in `plot_scene`.
+    """A field of the snapshots of an open record, none of `OF_THE_RUN`; name and component as in `plot_scene`.
 
     Raises CaseError when the record has no snapshots or does not have the field, or snapshots have no such field.
     """
@@ -226,8 +234,10 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
 
     Raises CaseError when the record has no such snapshot or does not have the field, or disks have no such field.
     """
-    if name == "peak":
-        return _peak(file, snapshot)
+    if name in OF_THE_RUN:
+        if snapshot is not None:
+            raise CaseError([f"{name}: is of the whole run, not of a snapshot"])
+        return _peak(file) if name == "peak" else _layer(file)
     found = find_field(file, name, component)
     if snapshot is not None:
         return found.at([snapshot_of(file, snapshot)])
@@ -257,10 +267,17 @@ def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int,
     return column, f"{name} {way}", UNITS[name][column]
 
 
-def _peak(file: h5py.File, snapshot: int | None) -> Field:
+def _layer(file: h5py.File) -> Field:
+    """The number of the layer of every disk."""
+    if "layer" not in file["particles"]:
+        raise CaseError([f"{file.filename}: holds no layers; runs of cases with [[layer]] do"])
+    values = file["particles/layer"][:].astype(float)
+    count = float(values.max())
+    return Field([""], values[None], [cracks_until(file, 0.0)], (1.0, count), "layer", "1 at the surface")
+
+
+def _peak(file: h5py.File) -> Field:
     """The largest speed of every disk, and of the nodes of a continuum, in the whole run."""
-    if snapshot is not None:
-        raise CaseError(["peak: is of the whole run, not of a snapshot"])
     if "peak_velocity" not in file["particles"]:
         raise CaseError([f"{file.filename}: holds no peaks; complete runs with output.peaks = true do"])
     values = file["particles/peak_velocity"][:]

@@ -11,12 +11,12 @@ from dembound.casefile.messages import counted
 from dembound.errors import CaseError
 from dembound.plot.continuum import GROUP
 from dembound.plot.disks import Window
-from dembound.plot.field import Field, FieldInRecord, FieldName, find_field, read_disks
+from dembound.plot.field import OF_THE_RUN, Field, FieldInRecord, FieldName, find_field, read_disks
 from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part
 from dembound.plot.style import Powers, lay_out, new_figure, outside_legend, pixels_of, set_pixels, styled
 from dembound.results.reader import cracks_until, open_record, reading
 
-CHANGING = tuple(name for name in get_args(FieldName) if name != "peak")
+CHANGING = tuple(name for name in get_args(FieldName) if name not in OF_THE_RUN)
 """The fields that snapshots have."""
 
 

@@ -67,7 +67,7 @@ def plot_scene(
 
     Bonds broken up to this time are marked at their positions, above the disks and with the same size in every scene;
     the legend has their number. A very long scene has another panel with an enlarged part of it. A continuum round the
-    disks has the same colours, its absorbing layers are hatched.
+    disks has the same colours, its absorbing layers are hatched. Thin lines separate the layers of the ground.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def plot_scene(
         a long horizontal scene, as many as fit on the page, evenly chosen, one below the other.
     field
         velocity in m/s or displacement in m; a stress in MPa, tension positive; peak, the largest speed of each disk in
-        the whole run in m/s. The record must contain it.
+        the whole run in m/s; layer, its number from the surface. The record must contain it.
     component
         of a velocity or displacement, by default whichever of x and y is largest in any snapshot of the run.
 
@@ -92,7 +92,8 @@ def plot_scene(
         figure, panels, colours = _draw_long(disks, shown)
     else:
         figure, panels, colours = _draw_whole(disks, shown)
-    figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers())
+    ticks = MaxNLocator(integer=True) if field == "layer" else None
+    figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers(), ticks=ticks)
     title = f"{disks.case}: {shown.name} of {disks.in_words}"
     figure.suptitle("\n".join(filter(None, [title, disks.laws])), fontsize=11)
     outside_legend(figure, panels, columns=3)
@@ -195,6 +196,7 @@ def draw_panel(
         draw_continuum(panel, continuum, disks.part_windows, beyond, shown.limits, scale)
     if disks.seam is not None and disks.seam > window.corner[0]:
         panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
+    _mark_layers(panel, disks, window, scale / panel.figure.dpi)
     _mark_cracks(panel, shown, index, counted)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         inches = pixels / panel.figure.dpi
@@ -206,6 +208,21 @@ def draw_panel(
         else:
             axis.set_major_locator(NullLocator())  # three numbers would collide
     return colours
+
+
+def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:
+    """Thin lines at the joints of layers, and the names of layers where a window has room; inches per metre."""
+    left, right, bottom, top = window.extent
+    looks: dict[str, Any] = {"color": "black", "linewidth": 0.6, "zorder": ABOVE_DISKS}
+    for joint in disks.joints:
+        panel.axhline(joint, linestyle=(0, (6, 3)), **looks)
+    plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.7}
+    ends = np.clip([top, *disks.joints, bottom], bottom, top)
+    for name, high, low in zip(disks.layers, ends[:-1], ends[1:], strict=True):
+        room = 72.0 * scale * np.array([right - left, high - low])
+        if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
+            place: dict[str, Any] = {"xytext": (3.0, -3.0), "textcoords": "offset points", "va": "top"}
+            panel.annotate(name, (left, high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
 
 
 def _mark_cracks(panel: Axes, shown: Field, index: int, counted: bool) -> None:

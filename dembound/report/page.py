@@ -44,6 +44,7 @@ VISIBLE = 0.01
 TABLES = (
     tables.overview,
     tables.changed_keys,
+    tables.layers,
     tables.monitors,
     tables.sides,
     tables.energies,

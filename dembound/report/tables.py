@@ -132,6 +132,30 @@ def _seconds(time: float | None) -> str:
     return NONE if time is None else f"{time:.5g} s"
 
 
+def layers(runs: Sequence[ReportedRun]) -> Table | None:
+    """The layers of the grounds from the surface down, with their joints as packed; None without any."""
+    rows = [
+        [
+            layer["name"],
+            run.name,
+            f"{layer['top']:.6g} to {layer['bottom']:.6g} m",
+            f"{layer['density']:.5g} kg/m³",
+            *(NONE if layer[key] is None else f"{layer[key]:.5g} m/s" for key in ("p_wave_speed", "s_wave_speed")),
+            _joint(layer["joint"] or {}),
+        ]
+        for run in runs
+        for layer in run.summary.get("layers", [])
+    ]
+    heads = ["layer", "run", "y", "density", "c_p along y", "c_s along y", "joint below, as packed above its plane"]
+    return Table("Layers", heads, rows) if rows else None
+
+
+def _joint(heights: Mapping[str, float | None]) -> str:
+    """The effective heights of a joint above its plane."""
+    names = {"mass": "mass", "p": "P", "s": "S"}
+    return ", ".join(f"{names[key]} {at:.3g} m" for key, at in heights.items() if at is not None) or NONE
+
+
 def sides(runs: Sequence[ReportedRun]) -> Table | None:
     """Table of the sides: type, factors, energies that came in and absorbed energies; None without summaries."""
     rows = []
@@ -139,12 +163,17 @@ def sides(runs: Sequence[ReportedRun]) -> Table | None:
         tables = run.summary.get("boundaries", {})
         for side, energy in run.summary.get("sides", {}).items():
             table = tables.get(side, {})
-            factors = [f"{letter} = {table[key]:.5g}" for key, letter in FACTORS.items() if key in table]
+            factors = [f"{letter} = {_each(table, key)}" for key, letter in FACTORS.items() if key in table]
             amounts = [_joules(energy[column], run) for column in ("came_in", "absorbed", "stored")]
             taken = NONE if (share := energy["absorbed_share"]) is None else percent(share, 3)
             rows.append([side, run.name, table.get("type", NONE), ", ".join(factors) or NONE, *amounts, taken])
     heads = ["side", "run", "type", "factors", "came in", "absorbed", "stored in springs", "absorbed of all"]
     return Table("Sides", heads, rows) if rows else None
+
+
+def _each(side: Mapping[str, Any], key: str) -> str:
+    """A number of a side, or those beside all of its layers, the lowest first."""
+    return ", ".join(dict.fromkeys(f"{each[key]:.5g}" for each in side.get("layers", [side])))
 
 
 FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}

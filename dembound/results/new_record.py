@@ -5,15 +5,17 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
     /                       attributes: name, origin (the case's own name, whatever --name is), source, the case file's
                             place from the folder of results, source_digest, its SHA-256; title, case (its text),
                             keys (all, as JSON), kind ("disks", "bar"), version, size, time_step, step_limit, steps,
-                            complete, late (s, all motion, by where waves enter); of disks seed, of a bar loaded, which
-                            of its ends is, and ends, their types,
+                            complete, late (s, all motion, by where waves enter); of disks seed, with layers
+                            layer_names and joints (m, heights between them), from the surface down; of a bar loaded,
+                            which of its ends is, and ends, their types,
                             without ranges also density, section, youngs_modulus, wave_speed, attenuation; of a run that
                             was continued to another time regular_steps, those of the run as it was begun; of a
                             response of a library silent, the inputs without a record, whose waves begin after the run
     inputs/<number>         bytes of a file that the case refers to; attribute path
     particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
-                            column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
-                            case asks for it peak_velocity (n,), the largest speed of each in the whole run
+                            column (n,), whether it belongs to a free-field column, with layers layer (n,), from 1 at
+                            the surface; of a bar's nodes volume (n,); if the case asks for it peak_velocity (n,), the
+                            largest speed of each in the whole run
     continuum/              of a continuum round the particles: position (m, 2), absorbs (m,), whether a node is in the
                             layer that absorbs, cell (c, 4), nodes at the corners of the cells between them; element
                             (e, 4), left, bottom, right, top of each, node (e, N, N), its nodes by row and column;

@@ -61,7 +61,15 @@ NUMBERS, TEXTS = "iufb", "SO"
 Shapes = Mapping[str, tuple[int, ...]]
 
 COLUMNS: Mapping[str, Shapes] = {
-    "particles": {"position": (2,), "radius": (), "brick_particle": (), "bonds": (), "column": (), "volume": ()},
+    "particles": {
+        "position": (2,),
+        "radius": (),
+        "brick_particle": (),
+        "bonds": (),
+        "column": (),
+        "layer": (),
+        "volume": (),
+    },
     "continuum": {"position": (2,), "absorbs": (), "cell": (4,), "element": (4,), "surface": (4,), "tie": (2,)},
     "histories/[^/]+": {"time": (), "displacement": (3,), "velocity": (3,), "stress": ()},
     "boundaries/[^/]+": {

@@ -83,6 +83,11 @@ class LayeredGround(PackedMaterial):
         """The material of the layer at a height (m), without corrections; above it on a joint."""
         return self.layers[int(_number(self.layers, self._rounding, np.array(height)))].material
 
+    @property
+    def materials(self) -> tuple[PackedMaterial, ...]:
+        """The materials of its layers, from the surface down, without corrections."""
+        return tuple(zone.material for zone in reversed(self.layers))
+
     def zone_of(self, heights: np.ndarray) -> np.ndarray:
         """Number of the zone, from the bottom, of disks at heights (n,) m."""
         return _number(self.zones, self._rounding, heights)

@@ -105,6 +105,11 @@ class PackedMaterial:
         """Number of the zone, from the bottom, of disks at heights (n,) m: one, except in a layered ground."""
         return np.zeros(len(heights), dtype=np.int64)
 
+    @property
+    def materials(self) -> tuple[PackedMaterial, ...]:
+        """The materials of its layers, from the surface down, without corrections; of uniform ground itself."""
+        return (self,)
+
     def layer_of(self, heights: np.ndarray) -> np.ndarray:
         """Number of the layer, from the top, of disks at heights (n,) m."""
         return np.zeros(len(heights), dtype=np.int64)

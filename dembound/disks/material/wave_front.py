@@ -23,12 +23,17 @@ INDEX = np.array([[0, 2], [3, 1]])
 
 
 def front_of(ground: PackedMaterial, safety: float) -> Front:
-    """The fastest waves of a packing that is stepped with a share of the stability limit.
+    """The fastest waves of a packing, in the fastest of its layers, stepped with a share of the stability limit.
 
     Long waves of any direction have the speeds of the homogenised packing. Short waves may be faster, such as waves of
     rotation between wide bonds: their largest group speed is computed on the square lattice of the same material, and
     the packing's speed is multiplied by its ratio to that of the lattice's long waves.
     """
+    return max((_front_in(layer, safety) for layer in ground.materials), key=lambda front: front.speed)
+
+
+def _front_in(ground: PackedMaterial, safety: float) -> Front:
+    """The fastest waves of uniform ground."""
     grain, speed = float(np.hypot(*ground.brick.vectors.T).max()), largest_phase_speed(ground)
     if speed == 0.0:
         return Front(0.0, grain)

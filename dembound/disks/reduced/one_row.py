@@ -11,7 +11,7 @@ from dembound.disks.beyond.edges import find_edges
 from dembound.disks.body import parts_of
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.ram import run_bytes
-from dembound.disks.scene import DiskScene, with_half_contacts
+from dembound.disks.scene import DiskScene, with_half_contacts, with_layers
 from dembound.packings.tiling import Assembly, tile
 
 
@@ -105,7 +105,7 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
     place[like[middle]] = middle
     edges = find_edges(row, (periodic[0], periodic[1]), case.packing.regular_sides)
     row, _ = with_half_contacts(case, brick, row, None, edges)
-    row = replace(row, positions=scene.positions[place])
+    row, _ = with_layers(scene.ground, replace(row, positions=scene.positions[place]), None)
     fraction = mass_factor(len(place), edges, case.boundary)
     slots, contacts = lay_out(row, scene.ground, parts_of(len(place), None), fraction, by_level=scene.ground.is_layered)
     share = fraction / scene.cell_fraction[place]

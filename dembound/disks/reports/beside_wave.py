@@ -22,7 +22,7 @@ import numpy as np
 from dembound.boundaries import SIDES, Motion, is_far, normal_axis
 from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.matching import Held
-from dembound.disks.scene import DiskScene
+from dembound.disks.scene import DiskScene, ground_at, layers_beside
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -57,16 +57,16 @@ class Grid:
 
     Attributes
     ----------
-    axis : of the wave in the scene. origin, size : (2,) m. cells : (2,) numbers of elements. density : kg/m³.
-    tensor : (4, 4) Pa, see `homogenise.GRADIENTS`. free : (2,) components that are not held. ends : supports of each
-    side.
+    axis : of the wave in the scene. origin, size : (2,) m. cells : (2,) numbers of elements. density : (r,) kg/m³ and
+    tensor : (r, 4, 4) Pa, see `homogenise.GRADIENTS`, of rows of elements along the wave. free : (2,) components that
+    are not held. ends : supports of each side.
     """
 
     axis: int
     origin: np.ndarray
     size: np.ndarray
     cells: np.ndarray
-    density: float
+    density: np.ndarray
     tensor: np.ndarray
     free: np.ndarray
     ends: Mapping[str, End]
@@ -82,9 +82,12 @@ class Grid:
         requested = size * PER_WAVELENGTH * frequency / speeds[speeds > 0.0].min() if known else np.full(2, MOST / 2)
         cells = np.clip(np.ceil(requested), FEWEST, MOST).astype(int)
         free = np.array([component not in ground.held for component in order])
-        ends = {side: _end(scene, side, order, free) for side in SIDES}
-        tensor = ground.material_tensor[np.ix_(gradients, gradients)]
-        return cls(axis, box[:2][order], size, cells, ground.density, tensor, free, ends)
+        nodes = box[1] + (box[3] - box[1]) * np.arange(cells[1] + 1) / cells[1]
+        ends = {side: _end(scene, side, order, free, nodes) for side in SIDES}
+        height = box[axis] + size[1] / cells[1] * (np.arange(cells[1]) + 0.5)
+        rows = [ground.at(y) if axis == 1 else ground for y in height.tolist()]
+        tensor = np.stack([row.material_tensor[np.ix_(gradients, gradients)] for row in rows])
+        return cls(axis, box[:2][order], size, cells, np.array([row.density for row in rows]), tensor, free, ends)
 
     @property
     def spacing(self) -> np.ndarray:
@@ -122,24 +125,40 @@ class Grid:
     @property
     def time_step(self) -> float:
         """A stable step (s): the eigenvalue of one element bounds those of all; springs at sides are added."""
-        largest = np.linalg.eigvalsh(_element(self.tensor, self.spacing))[-1]
+        largest = np.array([np.linalg.eigvalsh(element)[-1] for element in _elements(self)])
         mass = 0.25 * self.density * float(np.prod(self.spacing))
         springs = max(float(end.stiffness.max()) for end in self.ends.values())
-        return SAFETY * 2.0 / math.sqrt(largest / mass + 4.0 * springs / (self.density * float(self.spacing.min())))
+        squares = largest / mass + 4.0 * springs / (self.density * float(self.spacing.min()))
+        return SAFETY * 2.0 / math.sqrt(squares.max())
 
 
-def _end(scene: DiskScene, side: str, order: list[int], free: np.ndarray) -> End:
-    """The supports of a side, or the dashpots of the ground beyond; order : of the scene's axes."""
+def _end(scene: DiskScene, side: str, order: list[int], free: np.ndarray, heights: np.ndarray) -> End:
+    """The supports of a side, or the dashpots of the ground beyond; order : of the scene's axes.
+
+    heights : (k,) m, of the nodes along upright sides in layers, in which dashpots and springs are (k, 2).
+    """
     table, axis, none = scene.case.side(side), normal_axis(side), np.zeros(2)
     if table.is_outside:
-        p, s = np.nan_to_num(scene.ground.wave_speeds(axis)) * scene.ground.density
+        p, s = np.nan_to_num(ground_at(scene, side).wave_speeds(axis)) * ground_at(scene, side).density
         return End(np.array([p, s] if axis == order[0] else [s, p]), none, free)
     if table.is_mirror:
         return End(none, none, free & (np.array(order) != axis))
     if side not in scene.edges:
         return End(none, none, free)
-    held = Held.of(scene, side)
-    return End(held.damping[order], held.stiffness[order], free & ~np.isin(order, table.prescribed(axis)))
+    moves = free & ~np.isin(order, table.prescribed(axis))
+    layers = layers_beside(scene, side)
+    if len(layers) == 1:
+        held = Held.of(scene, side)
+        return End(held.damping[order], held.stiffness[order], moves)
+    by_layer = [Held.of(scene, side, part) for part in range(len(layers))]
+    beside = np.searchsorted(-np.array(layers), -scene.ground.layer_of(heights)).clip(max=len(layers) - 1)
+    damping, stiffness = (np.stack(values)[beside][:, order] for values in zip(*by_layer, strict=True))
+    return End(damping, stiffness, moves)
+
+
+def _elements(grid: Grid) -> np.ndarray:
+    """Stiffness matrices (r, 8, 8) N/m of the elements of each row."""
+    return np.stack([_element(tensor, grid.spacing) for tensor in grid.tensor])
 
 
 def _element(tensor: np.ndarray, spacing: np.ndarray) -> np.ndarray:
@@ -158,12 +177,12 @@ def _stiffness(grid: Grid) -> csr_matrix:
     """Stiffness matrix of all elements, of both components of every node beside each other."""
     from scipy.sparse import coo_matrix
 
-    element, (across, along) = _element(grid.tensor, grid.spacing), grid.cells
+    elements, (across, along) = _elements(grid), grid.cells
     first = (np.arange(along)[:, None] * (across + 1) + np.arange(across)).reshape(-1, 1)
     nodes = first + np.array([0, 1, across + 1, across + 2])
     dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(-1, 8)
     rows, columns = np.repeat(dofs, 8, axis=1).ravel(), np.tile(dofs, 8).ravel()
-    values = np.tile(element.ravel(), len(first))
+    values = np.repeat(elements, across, axis=0).ravel()
     return coo_matrix((values, (rows, columns)), shape=(2 * grid.nodes, 2 * grid.nodes)).tocsr()
 
 
@@ -181,18 +200,19 @@ def undisturbed(grid: Grid, driven: str, incoming: np.ndarray, shifts: np.ndarra
     """
     low, high = ("left", "right") if grid.axis == 0 else ("bottom", "top")
     count, height = grid.cells[1] + 1, grid.spacing[1]
-    mass, damping, springs = np.full((count, 1), grid.density * height), np.zeros((count, 2)), np.zeros((count, 2))
-    mass[[0, -1]] *= 0.5
+    mass, damping, springs = np.zeros((count, 1)), np.zeros((count, 2)), np.zeros((count, 2))
+    mass[:-1, 0] += 0.5 * height * grid.density
+    mass[1:, 0] += 0.5 * height * grid.density
     moves = np.tile(grid.free, (count, 1))
     for side, row in ((low, 0), (high, -1)):
         damping[row], springs[row], moves[row] = grid.ends[side]
-    at, moduli = (0 if driven == low else -1), grid.tensor[np.ix_(ALONG, ALONG)] / height
+    at, moduli = (0 if driven == low else -1), grid.tensor[:, ALONG][:, :, ALONG] / height
     enters = 2.0 * damping[at] * incoming + springs[at] * shifts
     taken, kept = mass / step + 0.5 * damping, mass / step - 0.5 * damping
     u, v = np.zeros((len(incoming), count, 2)), np.zeros((len(incoming), count, 2))
     now, speed = np.zeros((count, 2)), np.zeros((count, 2))
     for n in range(len(incoming)):
-        stress = np.diff(now, axis=0) @ moduli.T
+        stress = (moduli @ np.diff(now, axis=0)[:, :, None])[:, :, 0]
         force = -springs * now
         force[:-1] += stress
         force[1:] -= stress
@@ -220,7 +240,7 @@ def error_beside(
     )
     numbers = np.arange(grid.nodes).reshape(grid.cells[1] + 1, -1)
     for corner in (numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, :-1], numbers[1:, 1:]):
-        mass[corner.ravel()] += 0.25 * grid.density * float(np.prod(grid.spacing))
+        mass[corner] += 0.25 * grid.density[:, None, None] * float(np.prod(grid.spacing))
     for side, end in grid.ends.items():
         row = grid.row(side)
         damping[row] += end.damping * grid.weights(side)
@@ -245,7 +265,7 @@ def error_beside(
 
 def _loads(grid: Grid, sides: Sequence[str], ground: Ground) -> dict[str, np.ndarray]:
     """The forces −(C u̇ + K u + t(u)) on the nodes of sides along the wave at steps, (n, k, 2) N."""
-    half = 0.5 * np.diff(ground.u, axis=1) @ grid.tensor[np.ix_(BESIDE, ALONG)].T
+    half = 0.5 * np.einsum("rij,nrj->nri", grid.tensor[:, BESIDE][:, :, ALONG], np.diff(ground.u, axis=1))
     traction, speed = np.zeros_like(ground.u), ground.v.copy()
     traction[:, :-1] += half
     traction[:, 1:] += half
@@ -275,6 +295,8 @@ def taken_from_waves(scene: DiskScene) -> Iterator[Taken]:
     """Errors by sides along the waves of driven sides; not by free-field sides, which move with the ground."""
     case = scene.case
     for driven, waves in case.driving.items():
+        if scene.ground.is_layered and normal_axis(driven) == 0:  # along layers no plane wave runs
+            continue
         sides = [side for side in SIDES if normal_axis(side) != normal_axis(driven) and _takes(scene, side)]
         if sides and (shares := _shares(scene, driven, waves, sides)):
             yield Taken(driven, list(waves.values()), sides, shares)

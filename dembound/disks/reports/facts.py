@@ -1,27 +1,34 @@
 """Facts about a case of disks, in words."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from dembound.boundaries.words import side_in_words
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import FREE_FIELD
+from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
 from dembound.disks.contacts.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.material.at_rest import StressAtRest
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reports.continuum_facts import continuum_facts
 from dembound.disks.reports.incident_facts import incident_facts
-from dembound.disks.reports.summary import describe_packing, describe_side
+from dembound.disks.reports.summary import describe_layers, describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
 BALANCED = 1e-9
 """Part of the forces of a pressure below which their sum is a rounding error."""
+
+MICRONS = 6
+"""Digits of heights in m."""
 
 
 def disk_facts(scene: DiskScene) -> Entries:
@@ -52,13 +59,18 @@ def _wave_facts(scene: DiskScene) -> Entries:
     """For each wave in use its shortest wavelength, up to which frequency disks carry it, and its joined samples."""
     carried = highest_carried(scene)
     for name, count in particles_per_wavelength(scene).items():
-        few = f"{count:.0f} particles per" if count >= 1.0 else "less than one particle per"
+        few = f"{_particles_per(count)} shortest wavelength"
         highest, joined = scene.case.wave[name].highest_frequency(), scene.case.wave[name].joined()
         at = f", at {with_unit(highest, 'Hz')}" if math.isfinite(highest) else ""
-        parts = [f"{few} shortest wavelength{at}"]
+        parts = [f"{few}{at}"]
         if math.isfinite(carried):
             parts.append(f"disks carry waves up to {with_unit(carried, 'Hz')}")
         yield f"wave {name}", "; ".join([*parts, *([joined] if joined else [])])
+
+
+def _particles_per(count: float) -> str:
+    """Text on a number of particles per some length."""
+    return f"{count:.0f} particles per" if count >= 1.0 else "less than one particle per"
 
 
 def _monitor_facts(scene: DiskScene) -> Entries:
@@ -108,10 +120,42 @@ def _packing_facts(scene: DiskScene) -> Entries:
     if (pressure := scene.ground.packed_pressure) > 0.0:  # a lattice needs none
         ratio = f"residual force ratio {packing['residual_ratio']:.1e}"
         yield "brick equilibrium", f"{ratio}, packed under {with_unit(pressure, 'Pa')}"
+    if layers := describe_layers(scene):
+        yield from _layer_facts(scene, layers)
+        return
     moduli = ("C11", "C22", "C12", "C66")
     texts, unit = in_one_unit([packing[name] for name in moduli], "Pa")
     yield "homogenised stiffness", f"{', '.join(map(' '.join, zip(moduli, texts, strict=True)))} {unit}"
     yield "wave speeds", ", ".join(speeds) or "no motion is free"
+
+
+def _layer_facts(scene: DiskScene, layers: Sequence[Mapping[str, Any]]) -> Entries:
+    """For each layer its heights, density, speeds, and disks in its shortest wave; for each joint where it comes out.
+
+    layers : see `describe_layers`.
+    """
+    used = waves_used(scene.case)
+    highest = max((wave.highest_frequency() for name, wave in scene.case.wave.items() if name in used), default=0.0)
+    diameter = scene.ground.brick.mean_diameter
+    for layer, below in zip(layers, [*layers[1:], None], strict=True):
+        speeds = {"c_p": layer["p_wave_speed"], "c_s": layer["s_wave_speed"]}
+        runs = [speed for speed in speeds.values() if speed is not None]
+        parts = [f"y = {layer['top']:.6g} to {layer['bottom']:.6g} m", with_unit(layer["density"], "kg/m³")]
+        parts += [f"{sign} = {with_unit(speed, 'm/s')}" for sign, speed in speeds.items() if speed is not None]
+        if runs and 0.0 < highest < math.inf:
+            parts.append(f"{_particles_per(min(runs) / highest / diameter)} wavelength at {with_unit(highest, 'Hz')}")
+        yield f"layer {layer['name']}", ", ".join(parts)
+        if below is not None:
+            yield f"joint {layer['name']}/{below['name']}", _joint_fact(layer)
+
+
+def _joint_fact(layer: Mapping[str, Any]) -> str:
+    """Where the effective heights of the joint below a layer come out."""
+    names = {"mass": "for the mass", "p": "for P waves", "s": "for S waves"}
+    found = {words: round(above, MICRONS) for key, words in names.items() if (above := layer["joint"][key]) is not None}
+    each = ", ".join(f"{with_unit(above + 0.0, 'm')} {words}" for words, above in found.items())
+    comes_out = f"; as packed above that by {each}; corrected by the disks beside it" if each else ""
+    return f"y = {layer['bottom']:.6g} m{comes_out}"
 
 
 def _law_facts(scene: DiskScene) -> Entries:
@@ -122,20 +166,27 @@ def _law_facts(scene: DiskScene) -> Entries:
         yield "law", f"{material.law}: {linear}contacts neither open nor slip, bonds do not break"
         return
     start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
+    yield "law", f"{material.law}{start}"
+    names = [f" of {name}" for name in scene.case.layer_names] if scene.ground.is_layered else [""]
+    for name, each, ground in zip(names, scene.case.materials, scene.ground.materials, strict=True):
+        yield from _strength_facts(name, each, ground)
+
+
+def _strength_facts(name: str, material: Material, ground: PackedMaterial) -> Entries:
+    """The limits of contacts and bonds of a material; name : of the layer, after the name of each fact."""
     bonds = "no bonds"
-    if scene.ground.moduli.pb_emod > 0.0:
+    if ground.moduli.pb_emod > 0.0:
         tension, shear = (
             "unbreakable" if strength is None else with_unit(strength, "Pa")
             for strength in (material.pb_ten, material.pb_coh)
         )
         pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
         bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
-    yield "law", f"{material.law}{start}"
-    yield "strength", f"{bonds}; contacts slip at {material.fric:g} of their normal force"
-    if scene.ground.moduli.emod > 0.0:
+    yield f"strength{name}", f"{bonds}; contacts slip at {material.fric:g} of their normal force"
+    if ground.moduli.emod > 0.0:
         yield (
-            "tension",
-            f"in tension the stiffness falls to {100.0 * scene.ground.bond_share:.0f} %, as contacts open and only "
+            f"tension{name}",
+            f"in tension the stiffness falls to {100.0 * ground.bond_share:.0f} %, as contacts open and only "
             "bonds carry; confine the contacts (static.stress) or lower material.contact_share",
         )
     if material.locked_in is not None:
@@ -144,7 +195,8 @@ def _law_facts(scene: DiskScene) -> Entries:
             for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh))
             if strength is not None
         ]
-        yield "locked-in stress", ", ".join([f"{with_unit(material.locked_in, 'Pa')} before the static stage", *shares])
+        locked_in = f"{with_unit(material.locked_in, 'Pa')} before the static stage"
+        yield f"locked-in stress{name}", ", ".join([locked_in, *shares])
 
 
 def _damping_facts(scene: DiskScene) -> Entries:
@@ -234,8 +286,11 @@ def _force(whole: np.ndarray) -> str:
 
 
 def _side_fact(scene: DiskScene, side: str) -> str:
-    facts = describe_side(scene, side)
+    facts, alike = describe_side(scene, side), dict[str, list[str]]()
+    for each in facts.pop("layers", []):
+        alike.setdefault(side_in_words({"type": facts["type"], **each}), []).append(each["layer"])
+    words = [f"{text} beside {' and '.join(names)}" for text, names in alike.items()]
     return (
-        f"{side_in_words(facts)}; {facts['particles']} particles, "
+        f"{'; '.join(words) if len(words) > 1 else side_in_words(facts)}; {facts['particles']} particles, "
         f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.3g}"
     )

@@ -14,6 +14,7 @@ Every disk is a vertex at its reference position moved by its displacement (z = 
 | ``rotation`` | rad | (n,) | since the start of the run |
 | ``brick_particle`` | 1 | (n,) | the disk of the brick that this one is a copy of |
 | ``column`` | 1 | (n,) | 1 for a disk of a free-field column, else 0 |
+| ``layer`` | 1 | (n,) | number of its layer, from 1 at the surface; of a layered ground |
 | ``coordNumber`` | 1 | (n,) | its intact bonds and closed contacts, of a history-dependent law (YADE's name) |
 | ``nbCracks`` | 1 | (n,) | its bonds that have broken so far (YADE's name) |
 | ``damage`` | 1 | (n,) | that number over the bonds it had at the start, 0 where it had none |
@@ -103,6 +104,8 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
         "nbCracks": broken,
         "damage": broken / np.maximum(particles["bonds"], 1),  # without bonds none can break
     }
+    if "layer" in particles:
+        data["layer"] = particles["layer"]
     if "coordination" in snapshot:
         data["coordNumber"] = snapshot["coordination"]
     if "stress" in snapshot:

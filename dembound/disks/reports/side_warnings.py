@@ -1,7 +1,7 @@
 """Warnings about sides that represent the ground beyond them poorly."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from dembound.boundaries import Motion, normal_axis
@@ -11,7 +11,7 @@ from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.matching import Held, factors_in, homogenised_beta, sent_back
 from dembound.disks.material.mirrored import continues
 from dembound.disks.reports.beside_wave import taken_from_waves
-from dembound.disks.scene import DiskScene
+from dembound.disks.scene import DiskScene, layers_beside, media_of
 
 
 def side_warnings(scene: DiskScene) -> Iterator[str]:
@@ -42,30 +42,41 @@ def _send_back(scene: DiskScene) -> Iterator[str]:
     tables = {side: scene.case.side(side) for side in scene.edges}
     sides = [side for side, table in tables.items() if table.factors and not table.is_interface]
     frequency = mean_frequency(scene.case) if sides else math.nan
-    alike: dict[tuple[_Poor, tuple[Motion, ...]], dict[str, list[float]]] = {}
-    for side in sides:
+    alike: dict[tuple[_Poor, tuple[Motion, ...]], dict[tuple[str, int], list[float]]] = {}
+    for side, part in ((each, part) for each in sides for part in range(len(media_of(scene, each)))):
         found: dict[_Poor, dict[Motion, float]] = {}
-        for motion, beta in factors_in(scene, side).items():
-            share = sent_back(scene, side, motion, frequency)
+        for motion, beta in factors_in(scene, side, part).items():
+            share = sent_back(scene, side, motion, frequency, part)
             if share > TOO_MUCH:  # nan where the motion is held
-                found.setdefault(_reason(scene, side, motion, beta), {})[motion] = share
+                found.setdefault(_reason(scene, side, motion, beta, part), {})[motion] = share
         for poor, own in found.items():
-            alike.setdefault((poor, tuple(own)), {})[side] = list(own.values())
-    for (poor, motions), by_side in alike.items():
-        names = " and ".join(f"boundary.{side}" for side in by_side)
-        shares = [share for each in by_side.values() for share in each]
+            alike.setdefault((poor, tuple(own)), {})[side, part] = list(own.values())
+    for (poor, motions), by_part in alike.items():
+        names, count = _parts_in_words(scene, by_part), len({side for side, _ in by_part})
+        shares = [share for each in by_part.values() for share in each]
         if poor.beta is None:
-            yield f"{names}: {too_much(motions, shares, len(by_side))} {_cause(poor, len(by_side), frequency)}"
+            yield f"{names}: {too_much(motions, shares, count)} {_cause(poor, count, frequency)}"
             continue
-        matched = [homogenised_beta(scene, side, motion) for side in by_side for motion in motions]
-        yield f"{names}: {poor_factor(motions, shares, poor.beta, matched, poor.wave, len(by_side))}"
+        matched = [homogenised_beta(scene, side, motion, part) for side, part in by_part for motion in motions]
+        yield f"{names}: {poor_factor(motions, shares, poor.beta, matched, poor.wave, count)}"
 
 
-def _reason(scene: DiskScene, side: str, motion: Motion, beta: float) -> _Poor:
-    """The cause of the reflection of a side: its factor, or else its springs or disks."""
-    if abs(reflected(beta, homogenised_beta(scene, side, motion))) > TOO_MUCH:
+def _parts_in_words(scene: DiskScene, parts: Collection[tuple[str, int]]) -> str:
+    """The keys of sides, each with the layers beside those of its parts that are meant if others are not."""
+    found = []
+    for side in dict.fromkeys(side for side, _ in parts):
+        layers = layers_beside(scene, side)
+        meant = [layers[part] for each, part in parts if each == side]
+        names = [scene.case.layer_names[number] for number in meant] if len(meant) < len(layers) else []
+        found.append(f"boundary.{side}" + (f" (beside {' and '.join(names)})" if names else ""))
+    return " and ".join(found)
+
+
+def _reason(scene: DiskScene, side: str, motion: Motion, beta: float, part: int) -> _Poor:
+    """The cause of the reflection of a part of a side: its factor, or else its springs or disks."""
+    if abs(reflected(beta, homogenised_beta(scene, side, motion, part))) > TOO_MUCH:
         return _Poor(beta, scene.case.side(side).waves.get(motion))
-    return _Poor(springs=bool(Held.of(scene, side).stiffness.any()))
+    return _Poor(springs=bool(Held.of(scene, side, part).stiffness.any()))
 
 
 def _cause(poor: _Poor, sides: int, frequency: float) -> str:

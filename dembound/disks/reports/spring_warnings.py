@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.boundaries.viscoelastic import Springs
 from dembound.disks.loads import forces_of
-from dembound.disks.scene import DiskScene, medium_of_side
+from dembound.disks.scene import DiskScene, media_of
 from dembound.words import with_unit
 
 UNLIKE = 2.0
@@ -82,12 +82,16 @@ def _wrong_source(scene: DiskScene, side: str, table: Springs, places: dict[str,
 
 
 def _wrong_modulus(scene: DiskScene, side: str, table: Springs) -> Iterator[str]:
-    """A warning about a given modulus of springs that differs from that of the disks."""
+    """A warning about a given modulus of springs that differs from that of the disks, of layers from the nearest."""
     if table.young_modulus is None:
         return
-    medium = medium_of_side(scene, side)
-    ratio = table.shear_modulus(medium) / medium.shear_modulus if medium.shear_modulus > 0.0 else math.nan
-    if ratio > OTHER_MODULUS or ratio < 1.0 / OTHER_MODULUS:  # nan is neither
+    media = [medium for _, medium in media_of(scene, side) if medium.shear_modulus > 0.0]
+    if not media:
+        return
+    nearest = {abs(math.log(table.shear_modulus(each) / each.shear_modulus)): each for each in media}
+    medium = nearest[min(nearest)]
+    ratio = table.shear_modulus(medium) / medium.shear_modulus
+    if ratio > OTHER_MODULUS or ratio < 1.0 / OTHER_MODULUS:
         yield (
             f"boundary.{side}.young_modulus: gives springs of G = {with_unit(table.shear_modulus(medium), 'Pa')}, "
             f"{ratio:.2g} times that of the disks, {with_unit(medium.shear_modulus, 'Pa')}; is it in Pa? "

@@ -22,13 +22,14 @@ def storage_of(scene: DiskScene) -> Storage:
     sizes, output = scene.sizes, scene.case.output
     own = 4.0 * scene.has_history + 24.0 * output.stress
     record = 48.0 + 8.0 * scene.has_history + 24.0 * output.stress
-    vtu = mesh_bytes(1.0, CHANGING + CONSTANT + own + 4.0 * output.peaks, 1.0, 1, 0.0)
+    layer = 4.0 * scene.ground.is_layered
+    vtu = mesh_bytes(1.0, CHANGING + CONSTANT + own + 4.0 * output.peaks + layer, 1.0, 1, 0.0)
     files = output.paraview
     snapshot = sizes.disks * (record + paraview_bytes(files, vtu, POINT + CHANGING + own))
     if output.contacts:
         snapshot += sizes.contacts * _contact_bytes(files)
-    # positions, radii, twins, bonds; in the VTKHDF file what remains
-    header = sizes.disks * (37.0 + paraview_bytes(files, 0.0, 53.0))
+    # positions, radii, twins, bonds, layers; in the VTKHDF file what remains
+    header = sizes.disks * (37.0 + layer + paraview_bytes(files, 0.0, 53.0 + layer))
     if sizes.grid is not None:
         shown = mesh_bytes(1.0, NODE_CHANGING + 1.0, 1.0, 4, 0.0)
         snapshot += sizes.grid.nodes * (72.0 + paraview_bytes(files, shown, POINT + NODE_CHANGING))

@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from dembound.disks.material.layered import Joint, LayeredGround
 from dembound.disks.rest.block_stress import Uniformity
 from dembound.disks.rest.settled import Settled
-from dembound.disks.scene import DiskScene, medium_of_side
+from dembound.disks.scene import DiskScene, layers_beside, media_of
 from dembound.disks.stepping.load_factor import load_factor_of
 from dembound.disks.stepping.near_ties import OPENED
 from dembound.disks.stepping.system import DiskSystem
@@ -21,6 +22,7 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
         "contacts": len(scene.assembly.pairs),
         "loose_disks_left_out": scene.assembly.loose,
         "packing": describe_packing(scene),
+        "layers": describe_layers(scene),
         "load_factor": _describe_load_factor(run),
         "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
     }
@@ -75,7 +77,10 @@ def _describe_uniformity(found: Uniformity) -> dict[str, Any]:
 
 
 def describe_packing(scene: DiskScene) -> dict[str, Any]:
-    """The brick in numbers: stresses and stiffnesses in Pa, speeds along x in m/s (null where the motion is held)."""
+    """The brick in numbers: stresses and stiffnesses in Pa, speeds along x in m/s (null where the motion is held).
+
+    In layers they are those of the slowest.
+    """
     ground, brick = scene.ground, scene.ground.brick
     tensor = ground.material_tensor
     p_speed, s_speed = ground.wave_speeds(0)
@@ -97,11 +102,48 @@ def describe_packing(scene: DiskScene) -> dict[str, Any]:
     }
 
 
+def describe_layers(scene: DiskScene) -> list[dict[str, Any]]:
+    """The layers from the surface down: heights (m), density, moduli (Pa), and speeds along y (m/s, null where held).
+
+    `joint` : of the joint below, null without one: the effective heights of mass, and of stiffness for P and S waves,
+    before they are corrected, in m above the plane; null where the layers do not differ.
+    """
+    ground, case = scene.ground, scene.case
+    if not isinstance(ground, LayeredGround):
+        return []
+    heights, joints = (case.box[3], *case.joints, case.box[1]), [*reversed(ground.joints), None]
+    found = []
+    for number, (name, material, joint) in enumerate(zip(case.layer_names, ground.materials, joints, strict=True)):
+        p_speed, s_speed = (None if np.isnan(speed) else speed for speed in material.wave_speeds(1))
+        found.append(
+            {
+                "name": name,
+                "top": heights[number],
+                "bottom": heights[number + 1],
+                "density": material.density,
+                "emod": material.moduli.emod,
+                "pb_emod": material.moduli.pb_emod,
+                "p_wave_speed": p_speed,
+                "s_wave_speed": s_speed,
+                "joint": None if joint is None else _describe_joint(joint),
+            }
+        )
+    return found
+
+
+def _describe_joint(joint: Joint) -> dict[str, float | None]:
+    """The effective heights of a joint, see `describe_layers`."""
+    heights = {"mass": joint.mass, "p": joint.p, "s": joint.s}
+    return {name: None if np.isnan(height) else height for name, height in heights.items()}
+
+
 def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
-    """One side in numbers: type, particles, diameters (m), ΣD/H, and the numbers of its table."""
-    table = scene.case.side(side)
+    """One side in numbers: type, particles, diameters (m), ΣD/H, and the numbers of its table.
+
+    In several layers the latter are those of the lowest, and `layers` has those of each, the lowest first.
+    """
+    table, parts = scene.case.side(side), media_of(scene, side)
     edge = (scene.sides if table.is_outside else scene.edges)[side]
-    medium = medium_of_side(scene, side)
     described: dict[str, Any] = {
         "type": table.type,
         "particles": len(edge.nodes),
@@ -111,7 +153,11 @@ def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
         "diameter_max": edge.diameters.max(),
         "diameter_sum_ratio": edge.diameter_sum_ratio,
     }
-    return described | table.describe(edge, medium)
+    if len(parts) == 1 or table.is_outside:
+        return described | table.describe(edge, parts[0][1])
+    names = (scene.case.layer_names[number] for number in layers_beside(scene, side))
+    each = [{"layer": name} | table.describe(*part) for name, part in zip(names, parts, strict=True)]
+    return described | table.describe(*parts[0]) | {"layers": each}
 
 
 def _describe_edge(scene: DiskScene, run: Run, side: str) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Warnings about probable mistakes in a case of disks, before and after the run."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.reports.continuum_facts import continuum_warnings
 from dembound.disks.reports.load_warnings import load_warnings
+from dembound.disks.reports.materials import Own, materials_of
 from dembound.disks.reports.outcome import SHOWN, block_in_words
 from dembound.disks.reports.side_warnings import side_warnings
 from dembound.disks.reports.spring_warnings import spring_warnings
@@ -56,19 +57,24 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
     return [
         *_empty_holes(scene),
         *_holes_at_periodic_sides(scene),
-        *_unlike_strengths(scene),
+        *_of_each_layer(scene, _unlike_strengths),
         *_steady_without_static(scene),
-        *_locked_in(scene),
-        *_settles_in_tension(scene),
+        *_of_each_layer(scene, _locked_in),
+        *_of_each_layer(scene, _settles_in_tension),
         *wave_warnings(scene, time_step),
         *side_warnings(scene),
         *spring_warnings(scene),
         *load_warnings(scene),
-        *_speed_of_the_packing(scene),
-        *_s_speed_of_the_packing(scene),
-        *_unlikely_speed(scene),
+        *_of_each_layer(scene, _speed_of_the_packing),
+        *_of_each_layer(scene, _s_speed_of_the_packing),
+        *_of_each_layer(scene, _unlikely_speed),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
     ]
+
+
+def _of_each_layer(scene: DiskScene, warn: Callable[[DiskScene, Own], Iterator[str]]) -> Iterator[str]:
+    """Warnings about the material of each layer, or of uniform ground; those of keys for several layers once."""
+    yield from dict.fromkeys(line for own in materials_of(scene) for line in warn(scene, own))
 
 
 def _empty_holes(scene: DiskScene) -> Iterator[str]:
@@ -91,12 +97,12 @@ def _empty_holes(scene: DiskScene) -> Iterator[str]:
                 yield f"{place}: lies within hole.{other.name}, so it removes no more particles"
 
 
-def _unlike_strengths(scene: DiskScene) -> Iterator[str]:
+def _unlike_strengths(scene: DiskScene, own: Own) -> Iterator[str]:
     """Strengths of bonds in tension and in shear that differ by more than `UNLIKE_STRENGTHS`."""
-    tension, shear = scene.case.material.pb_ten, scene.case.material.pb_coh
+    tension, shear = own.material.pb_ten, own.material.pb_coh
     if tension is not None and shear is not None and not 1.0 / UNLIKE_STRENGTHS <= shear / tension <= UNLIKE_STRENGTHS:
         yield (
-            f"material.pb_coh: is {shear / tension:.3g} times material.pb_ten, more than a factor of "
+            f"{own.key('pb_coh')}: is {shear / tension:.3g} times {own.key('pb_ten')}, more than a factor of "
             f"{UNLIKE_STRENGTHS:g} apart; are both in Pa?"
         )
 
@@ -133,78 +139,80 @@ def _gives_way(scene: DiskScene, load: Load) -> str:
     return ""
 
 
-def _locked_in(scene: DiskScene) -> Iterator[str]:
+def _locked_in(scene: DiskScene, own: Own) -> Iterator[str]:
     """Locked-in stress that breaks bonds where it relaxes."""
-    material = scene.case.material
+    material = own.material
     cut = not all(scene.case.side(side).is_periodic for side in SIDES)
     if material.locked_in is None or material.pb_ten is None or not cut:
         return
-    pulled = LARGEST_PULL * scene.ground.bond_share * material.locked_in
+    pulled = LARGEST_PULL * own.ground.bond_share * material.locked_in
     if pulled > material.pb_ten:
         yield (
             f"material.locked_in: is {with_unit(material.locked_in, 'Pa')}; where it relaxes, the largest bond stress "
-            f"is about {with_unit(pulled, 'Pa')} of tension, above material.pb_ten = "
+            f"is about {with_unit(pulled, 'Pa')} of tension, above {own.key('pb_ten')} = "
             f"{with_unit(material.pb_ten, 'Pa')}, and bonds break in the static stage"
         )
 
 
-def _settles_in_tension(scene: DiskScene) -> Iterator[str]:
+def _settles_in_tension(scene: DiskScene, own: Own) -> Iterator[str]:
     """A warning about a target stress whose largest principal stress is a tension above the bonds' strength."""
-    static, strength = scene.case.static, scene.case.material.pb_ten
+    static, strength = scene.case.static, own.material.pb_ten
     if static is None or static.stress is None or strength is None:
         return
     xx, yy, xy = static.stress
     largest = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)
     if largest > strength:
         yield (
-            f"static.stress: has a tension of {with_unit(largest, 'Pa')}, above material.pb_ten = "
+            f"static.stress: has a tension of {with_unit(largest, 'Pa')}, above {own.key('pb_ten')} = "
             f"{with_unit(strength, 'Pa')}; bonds break in the static stage"
         )
 
 
-def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
+def _speed_of_the_packing(scene: DiskScene, own: Own) -> Iterator[str]:
     """A given wave speed that holds for the square lattice but not for the packing."""
-    material = scene.case.material
+    material = own.material
     if material.p_wave_speed is None or material.match == "assembly":
         return
     for axis in _axes_in_use(scene):
-        own = scene.ground.wave_speeds(axis)[0]
-        if abs(own / material.p_wave_speed - 1.0) > SPEED_ERROR:  # nan where the motion is held
+        speed = own.ground.wave_speeds(axis)[0]
+        if abs(speed / material.p_wave_speed - 1.0) > SPEED_ERROR:  # nan where the motion is held
             yield (
-                f"material.p_wave_speed: is {material.p_wave_speed:g} m/s of the square lattice; P waves along "
-                f'{"xy"[axis]} run at {own:.4g} m/s in this packing; give match = "assembly"'
+                f"{own.key('p_wave_speed')}: is {material.p_wave_speed:g} m/s of the square lattice; P waves along "
+                f'{"xy"[axis]} run at {speed:.4g} m/s in this packing; give match = "assembly"'
             )
             return
 
 
-def _s_speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
+def _s_speed_of_the_packing(scene: DiskScene, own: Own) -> Iterator[str]:
     """A warning about a given speed of S waves that the packing does not have: only dashpots of sides use it."""
-    given = scene.case.material.s_wave_speed
+    given = own.material.s_wave_speed
     if given is None:
         return
     for axis in _axes_in_use(scene):
-        own = scene.ground.wave_speeds(axis)[1]
-        if abs(own / given - 1.0) > SPEED_ERROR:  # nan where the motion is held
+        speed = own.ground.wave_speeds(axis)[1]
+        if abs(speed / given - 1.0) > SPEED_ERROR:  # nan where the motion is held
             yield (
-                f"material.s_wave_speed: is {given:g} m/s, S waves along {'xy'[axis]} run at {own:.4g} m/s in this "
-                "packing; only factors of sides follow it, so leave it out, or change what gives the packing its shear "
-                "stiffness"
+                f"{own.key('s_wave_speed')}: is {given:g} m/s, S waves along {'xy'[axis]} run at {speed:.4g} m/s in "
+                "this packing; only factors of sides follow it, so leave it out, or change what gives the packing its "
+                "shear stiffness"
             )
             return
 
 
-def _unlikely_speed(scene: DiskScene) -> Iterator[str]:
+def _unlikely_speed(scene: DiskScene, own: Own) -> Iterator[str]:
     """Moduli and density that are likely, but give waves of no solid."""
-    material = scene.case.material
+    material = own.material
     if material.p_wave_speed is not None or any(unlikely_in("", material, scene.case)):
         return
-    speed = scene.ground.wave_speeds(0)[0]
+    speed = own.ground.wave_speeds(0)[0]
     if found := MEANINGS["wave speed"].doubt(speed, "m/s", given=False):  # nan is not
-        yield f"material.emod: makes P waves of a speed that {found}; are emod and pb_emod in Pa, density in kg/m³?"
+        yield f"{own.key('emod')}: makes P waves of a speed that {found}; are emod and pb_emod in Pa, density in kg/m³?"
 
 
 def _axes_in_use(scene: DiskScene) -> list[int]:
-    """Axes along which waves run: x, and y if waves enter through bottom or top, or come from loads."""
+    """Axes along which waves run: x, and y if waves enter through bottom or top, or come from loads; in layers y."""
+    if scene.ground.is_layered:
+        return [1]
     vertical = any(scene.case.side(edge.side).waves for edge in scene.edges.values() if edge.axis == 1)
     return [0, 1] if vertical or scene.case.load or scene.case.incident else [0]
 

@@ -21,7 +21,8 @@ from dembound.casefile.magnitudes import (
 from dembound.disks.beyond.frequencies import share_above
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.reports.incident_facts import arrival
-from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.reports.materials import materials_of
+from dembound.disks.scene import DiskScene, boundary_medium, medium_of_side
 from dembound.errors import CaseError
 from dembound.waves.constant import Constant
 from dembound.waves.spectrum import HANN_FADE
@@ -72,7 +73,7 @@ def strong_waves(scene: DiskScene) -> dict[str, str]:
     if pressure is None:
         return {}
     entering = scene.case.entering
-    medium = boundary_medium(scene.ground, axis=0)
+    medium = boundary_medium(scene.ground.at(scene.case.box[1]), axis=0)
     impedance = medium.density * medium.p_wave_speed
     stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in entering}
     return {
@@ -146,15 +147,22 @@ def _never_arrives(scene: DiskScene) -> Iterator[str]:
 def _travel_time(scene: DiskScene) -> float:
     """Time (s) the fastest wave takes along the scene's longer side; nan if no motion along it is possible."""
     axis = int(np.argmax(scene.size))
-    speeds = [speed for speed in scene.ground.wave_speeds(axis) if not math.isnan(speed)]
-    return float(scene.size[axis]) / max(speeds, default=math.nan)
+    fastest = [
+        max((speed for speed in layer.wave_speeds(axis) if not math.isnan(speed)), default=math.nan)
+        for layer in scene.ground.materials
+    ]
+    if axis == 0 or len(fastest) == 1:
+        return float(scene.size[axis]) / max(fastest)
+    _, bottom, _, top = scene.case.box
+    return float(sum(-np.diff([top, *scene.case.joints, bottom]) / fastest))
 
 
 def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
-    """Warnings about waves and loads whose stress is tiny or huge relative to the bonds' tensile strength."""
-    strength, static = scene.case.material.pb_ten, scene.case.static
-    if strength is None:
+    """Warnings about waves and loads whose stress is tiny or huge relative to the weakest bonds' tensile strength."""
+    given = {own.key("pb_ten"): own.material.pb_ten for own in materials_of(scene) if own.material.pb_ten is not None}
+    if not given:
         return
+    (key, strength), static = min(given.items(), key=lambda item: item[1]), scene.case.static
     stresses: dict[str, tuple[str, float]] = {}
     for name, what, stress in _wave_stresses(scene, strength):
         if stress > stresses.get(name, ("", 0.0))[1]:  # a wave may drive several sides
@@ -163,7 +171,7 @@ def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
         stresses[f"load.{load.name}"] = _load_stress(scene, load)
     if static is not None and static.stress is not None:
         stresses["static.stress"] = ("its largest component", max(map(abs, static.stress)))
-    yield from stress_warnings(stresses, strength, "material.pb_ten")
+    yield from stress_warnings(stresses, strength, key)
 
 
 def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str, float]]:
@@ -171,7 +179,7 @@ def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str
     for edge in scene.edges.values():
         table = scene.case.side(edge.side)
         grips = set(table.prescribed(edge.axis))
-        medium, length = boundary_medium(scene.ground, edge.axis), float(scene.size[edge.axis])
+        medium, length = medium_of_side(scene, edge.side), float(scene.size[edge.axis])
         for motion, name in table.waves.items():
             wave, speed = scene.case.wave[name], medium.p_wave_speed if motion == "p" else medium.s_wave_speed
             if axis_of_motion(edge.side, motion) in grips:
@@ -182,9 +190,10 @@ def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str
             else:
                 yield f"wave.{name}", "its stress ρcv", medium.density * speed * wave.peak()
     if (incident := scene.case.incident) is not None:
-        speed = scene.ground.wave_speeds(1)[0 if incident.type == "p" else 1]
+        ground = scene.ground.at(scene.case.box[1])
+        speed = ground.wave_speeds(1)[0 if incident.type == "p" else 1]
         peak = scene.case.wave[incident.wave].peak()
-        yield f"wave.{incident.wave}", "its stress ρcv", scene.ground.density * speed * peak
+        yield f"wave.{incident.wave}", "its stress ρcv", ground.density * speed * peak
 
 
 def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
@@ -195,13 +204,14 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
     size = scene.size if load.region is None else np.subtract(load.region[2:], load.region[:2])
     extent = np.abs(load.vector) * factor
     if load.acceleration is not None:
-        return "its stress ρaL", float(scene.ground.density * (extent * size).max())
+        density = max(layer.density for layer in scene.ground.materials)
+        return "its stress ρaL", float(density * (extent * size).max())
     widths = size[::-1] if load.region is not None else np.full(2, scene.ground.brick.mean_diameter)
     return "its force over the width it acts on", float((extent / widths).max())
 
 
 def _entering_speeds(scene: DiskScene) -> dict[str, tuple[str, float]]:
-    """For every wave that enters its slowest part in words, such as "P waves along x", and the speed (m/s)."""
+    """For every wave that enters its slowest part in words, such as "P waves along x", and its least speed (m/s)."""
     found: dict[str, tuple[str, float]] = {}
     ways: list[tuple[int, str, str]] = [
         (normal_axis(side), motion, name) for side, each in scene.case.driving.items() for motion, name in each.items()
@@ -209,7 +219,7 @@ def _entering_speeds(scene: DiskScene) -> dict[str, tuple[str, float]]:
     if (incident := scene.case.incident) is not None:
         ways.append((1, incident.type, incident.wave))
     for axis, motion, name in ways:
-        speed = scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
+        speed = min(layer.wave_speeds(axis)[0 if motion == "p" else 1] for layer in scene.ground.materials)
         if not speed >= found.get(name, ("", math.inf))[1] and not math.isnan(speed):
             found[name] = f"{motion.upper()} waves along {'xy'[axis]}", speed
     return found
@@ -217,19 +227,20 @@ def _entering_speeds(scene: DiskScene) -> dict[str, tuple[str, float]]:
 
 def _large_strains(scene: DiskScene) -> Iterator[str]:
     """Waves, loads and strengths whose strains are far beyond those of solids."""
-    modulus, reason = float(np.diag(scene.ground.material_tensor)[:2].min()), _TOO_LARGE[scene.has_history]
-    material = scene.case.material
+    moduli = [float(np.diag(layer.material_tensor)[:2].min()) for layer in scene.ground.materials]
+    reason, owns = _TOO_LARGE[scene.has_history], list(materials_of(scene))
     for name, (words, speed) in sorted(_entering_speeds(scene).items()):
         wave, place = scene.case.wave[name], f"wave.{name}"
         strained = list(large_velocity(place, wave.peak(), speed, reason, words))
         yield from strained or fast_ground(place, wave)
-    compared = scene.has_history and material.pb_ten is not None  # with the strength
+    compared = scene.has_history and any(own.material.pb_ten is not None for own in owns)  # with the strength
     for load in () if compared else scene.case.load:
         what, stress = _load_stress(scene, load)
-        yield from large_stress(f"load.{load.name}: {what}", stress, modulus, reason)
-    for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh)):
-        if strength is not None:
-            yield from large_stress(f"material.{key}:", strength, modulus, _TOO_LARGE[True])
+        yield from large_stress(f"load.{load.name}: {what}", stress, min(moduli), reason)
+    for own, modulus in zip(owns, moduli, strict=True):
+        for key, strength in (("pb_ten", own.material.pb_ten), ("pb_coh", own.material.pb_coh)):
+            if strength is not None:
+                yield from large_stress(f"{own.key(key)}:", strength, modulus, _TOO_LARGE[True])
 
 
 def _rotation_held(scene: DiskScene) -> Iterator[str]:

@@ -6,6 +6,7 @@ from small_cases import small
 from warned_cases import DENSE, SLOW, warned
 
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.reports.materials import materials_of
 from dembound.disks.reports.warnings import _s_speed_of_the_packing
 from dembound.disks.scene import build
 
@@ -111,7 +112,8 @@ def test_a_speed_of_s_waves_that_the_packing_lacks_is_warned_of(share: float, re
     """A square lattice of p_wave_speed 1000 m/s with springs of a quarter in shear has S waves of 500 m/s."""
     material = {"density": 2500.0, "p_wave_speed": 1000.0, "s_wave_speed": share * 500.0}
     ground = {"packing": {"pattern": "A", "size": [20.0, 10.0], "radius": 0.5}, "material": material}
-    lines = list(_s_speed_of_the_packing(build(small({**ground, "run": {"duration": 0.01}}))))
+    scene = build(small({**ground, "run": {"duration": 0.01}}))
+    lines = [line for own in materials_of(scene) for line in _s_speed_of_the_packing(scene, own)]
     assert [line[:80] for line in lines] == reported * [
         "material.s_wave_speed: is 425 m/s, S waves along x run at 500 m/s in this packing"[:80]
     ]
