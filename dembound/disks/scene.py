@@ -337,7 +337,7 @@ def media_of(scene: DiskScene, side: str) -> list[tuple[Edge, BoundaryMedium]]:
         return [(edge, boundary_medium(ground, edge.axis))]
     layer = ground.layer_of(edge.positions[:, 1])
     found = []
-    for each in reversed(ground.layers):
+    for each in ground.layers:
         chosen = layer == each.layer
         if chosen.any():
             low, high = scene.low[1], scene.low[1] + edge.length

@@ -213,16 +213,17 @@ def draw_panel(
 def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:
     """Thin lines at the joints of layers, and the names of layers where a window has room; inches per metre."""
     left, right, bottom, top = window.extent
-    looks: dict[str, Any] = {"color": "black", "linewidth": 0.6, "zorder": ABOVE_DISKS}
-    for joint in disks.joints:
-        panel.axhline(joint, linestyle=(0, (6, 3)), **looks)
-    plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.7}
+    looks: dict[str, Any] = {"linewidth": 0.7, "zorder": ABOVE_DISKS}
+    for joint in disks.joints:  # dashes of two colours, visible on all others
+        panel.axhline(joint, color="white", **looks)
+        panel.axhline(joint, color="black", linestyle=(0, (6, 3)), **looks)
+    plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
     ends = np.clip([top, *disks.joints, bottom], bottom, top)
     for name, high, low in zip(disks.layers, ends[:-1], ends[1:], strict=True):
         room = 72.0 * scale * np.array([right - left, high - low])
         if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
-            place: dict[str, Any] = {"xytext": (3.0, -3.0), "textcoords": "offset points", "va": "top"}
-            panel.annotate(name, (left, high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
+            place: dict[str, Any] = {"xytext": (-3.0, -3.0), "textcoords": "offset points", "ha": "right", "va": "top"}
+            panel.annotate(name, (right, high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
 
 
 def _mark_cracks(panel: Axes, shown: Field, index: int, counted: bool) -> None:

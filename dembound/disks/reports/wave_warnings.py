@@ -237,10 +237,14 @@ def _large_strains(scene: DiskScene) -> Iterator[str]:
     for load in () if compared else scene.case.load:
         what, stress = _load_stress(scene, load)
         yield from large_stress(f"load.{load.name}: {what}", stress, min(moduli), reason)
-    for own, modulus in zip(owns, moduli, strict=True):
-        for key, strength in (("pb_ten", own.material.pb_ten), ("pb_coh", own.material.pb_coh)):
-            if strength is not None:
-                yield from large_stress(f"{own.key(key)}:", strength, modulus, _TOO_LARGE[True])
+    strengths = {
+        own.key(key): (strength, modulus)
+        for modulus, own in sorted(zip(moduli, owns, strict=True), key=lambda each: -each[0])  # the softest layer last
+        for key, strength in (("pb_ten", own.material.pb_ten), ("pb_coh", own.material.pb_coh))
+        if strength is not None
+    }
+    for key, (strength, modulus) in strengths.items():
+        yield from large_stress(f"{key}:", strength, modulus, _TOO_LARGE[True])
 
 
 def _rotation_held(scene: DiskScene) -> Iterator[str]:
