@@ -45,8 +45,10 @@ CASES = {
         8,
     ),
     "damping": ({"boundary": PERIODIC, "held": (), "material": {"damp": 0.3}}, 8),
+    "layers": (UPRIGHT | {"boundary": {"left": "periodic", "right": "periodic", "bottom": INPUT}, "held": ()}, 8),
     "loads on all rows": ({"boundary": {"left": "free", "right": "viscous"}, "load": LOADS}, 8),
 }
+LAYERS = [{"thickness": 2.0, "density": 1800.0, "s_wave_speed": 200.0}, {"s_wave_speed": 400.0}]
 TO_THE_BIT = ("P wave between free sides that could move", "upright")
 """Cases in which histories of monitors, fields and peaks are the same to the last bit."""
 
@@ -67,8 +69,10 @@ def test_the_record_is_the_same(lab, tmp_path, name):
     words = {"pattern": "A", "size": (20.0, 4.0)} | words
     case = lab.case(wave=lab.pulse(0.02), duration=0.05, **words)
     monitors = [{"name": f"m{k}", "position": [0.3 * k * side for side in words["size"]]} for k in range(4)]
+    layers = {"layer": LAYERS} if name == "layers" else {}
     fields = {"snapshots": 2, "peaks": True, "stress": True, "contacts": True}
-    case = with_changes(case, {"monitor": monitors, "output": {"pictures": False, "energy_interval": 4e-3} | fields})
+    output = {"pictures": False, "energy_interval": 4e-3} | fields
+    case = with_changes(case, {"monitor": monitors, "output": output} | layers)
     data, summary = record_of(case, tmp_path / "with")
     expected, of_all = record_of(with_changes(case, {"reduce.rows": False}), tmp_path / "without")
     particles = summary["particles"]

@@ -51,6 +51,13 @@ CASES = {
     "law changes, bonds break": DISKS
     | {"material": BRITTLE, "motion": {"held": ["y"]}, "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}}},
     "settled, updated": DISKS | {"material": BRITTLE, "static": SQUEEZED},
+    "settled layers": DISKS
+    | {
+        "material": BRITTLE,
+        "layer": [{"thickness": 1.7, "density": 2000.0, "p_wave_speed": 600.0}, {"name": "stiff"}],
+        "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2},
+        "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+    },
     "free field that breaks": DISKS
     | {"packing": LATTICE, "material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}},
     "ends in silence": DISKS | {"run": {"duration": 0.5, "until": "silent", "silent_level": 0.2}},
@@ -182,7 +189,13 @@ CHANGING = [name for name, tables in CASES.items() if tables.get("method", {}).g
 CHANGING += ["law changes, bonds break", "free field that breaks"]
 """Cases in which a law or a method takes over from another one, and bonds break."""
 
-BREAKING = (*CHANGING, "settled, updated", "stress at rest beside a free field", "finite differences")
+BREAKING = (
+    *CHANGING,
+    "settled, updated",
+    "settled layers",
+    "stress at rest beside a free field",
+    "finite differences",
+)
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n == LATE else n for n in CASES])

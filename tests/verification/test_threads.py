@@ -13,6 +13,7 @@ import pytest
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
+from dembound.kinds import with_changes
 from dembound.motion import threads
 from dembound.outside.body import GridBody
 from dembound.outside.grid_scene import GridScene, step_limit
@@ -54,6 +55,13 @@ SCENES = {
         "static": SETTLED,
         "load": WEIGHT,
     },
+    "settled, layers": {
+        "size": ROWS,
+        "boundary": FREE_FIELD,
+        "static": SETTLED,
+        "load": WEIGHT,
+        "layer": [{"thickness": 4.0, "density": 2000.0, "p_wave_speed": 500.0}, {"name": "stiff"}],
+    },
     "settled, box in the ground": {"box": (20.0, 20.0, 40.0, 40.0), "static": SETTLED, "load": WEIGHT},
 }
 
@@ -70,7 +78,8 @@ def scene_of(lab, name: str) -> tuple[DiskScene | GridScene, float]:
         scene = build(lab.window("B", words.pop("box"), hole=True, **words))
     else:
         wave = {"type": "cosine", "amplitude": 1.0, "period": 0.02}
-        scene = build(lab.case("B", words.pop("size"), wave=wave, **words))
+        layers = {"layer": words.pop("layer")} if "layer" in words else {}
+        scene = build(with_changes(lab.case("B", words.pop("size"), wave=wave, **words), layers))
     return scene, choose_step(scene)[0]
 
 
