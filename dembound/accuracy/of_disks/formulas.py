@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from dembound.accuracy.cause import CONTINUUM, GRID, MOTIONS, NEAR, STEP, USUAL,
 from dembound.accuracy.delays import Delay, error_of_delay, error_of_steps
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.held_sides import HeldSides
+from dembound.accuracy.of_disks.layered_column import errors_in_layers
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
 from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_errors
 from dembound.accuracy.of_disks.rock_sides import errors_on_rock
@@ -209,7 +210,12 @@ class Formulas:
         for way in self.ways(own):
             if not math.isfinite(way.path * way.speed):
                 continue
-            parts = error_of_delay(own.time, (own.values["velocity"] @ way.moves)[:, None], self.delay(way, step))
+            moving = (own.values["velocity"] @ way.moves)[:, None]
+            if self._in_layers:
+                delay = partial(self._delay_of_a_second, way, step)
+                parts = errors_in_layers(self.scene, way.motion, float(own.place[1]), delay, own.time)(moving)
+            else:
+                parts = error_of_delay(own.time, moving, self.delay(way, step))
             for quantity, part in zip(MOTIONS, parts, strict=True):
                 errors[quantity] += part * way.moves
         for quantity, part in zip(MOTIONS, error_of_steps(own.time, own.values["velocity"], step), strict=True):
@@ -223,6 +229,19 @@ class Formulas:
             for ground, path, speed in way.parts
         ]
         return lambda omega: np.asarray(sum(part(omega) for part in parts))
+
+    @cached_property
+    def _in_layers(self) -> bool:
+        """Whether waves enter layers from below, and all come back from a free surface, or leave there."""
+        case = self.scene.case
+        top = case.side("top")
+        alone = list(case.driving) == ["bottom"] and not any(load.wave for load in case.load)
+        return self.scene.ground.is_layered and alone and bool(top.factors or top.is_free)
+
+    def _delay_of_a_second(self, way: Way, step: float, ground: PackedMaterial) -> Delay:
+        """Delay of waves in one layer over a way of one second."""
+        speed = ground.wave_speeds(1)[0 if way.motion == "p" else 1]
+        return delay_of(ground, way.motion, way.directions, speed, speed, step, self._frequencies_in(ground))
 
     def _frequencies_in(self, ground: PackedMaterial) -> Frequencies:
         """Frequencies of plane waves on the lattice of one layer, by direction, found once."""

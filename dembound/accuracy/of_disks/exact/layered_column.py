@@ -9,13 +9,13 @@ import numpy as np
 
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.exact.problem import must_be_continuous
+from dembound.accuracy.of_disks.layered_column import layers_of
 from dembound.accuracy.reference import Exact
 from dembound.boundaries import Motion, axis_of_motion
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
-from dembound.disks.material.layered import LayeredGround
 from dembound.disks.scene import build
-from dembound.exact.column import Column, Layer
+from dembound.exact.column import Column
 from dembound.exact.column_motion import ColumnMotion
 
 
@@ -47,19 +47,13 @@ class ExactLayeredColumn(Exact[DiskCase]):
     def motions(self, case: DiskCase, recorded: Motions) -> dict[str, History]:
         """The motion at the monitors' particles, at the same times."""
         scene = build(case)
-        assert isinstance(scene.ground, LayeredGround)
         plane, surface = scene.plane("bottom"), scene.plane("top")
         mass = None if case.side("top").factors else 0.0
         values = {name: np.zeros((2, len(own.time), 3)) for name, own in recorded.items()}
         for motion, wave in self.waves.items():
-            layers = [
-                Layer(min(high, surface) - low, ground.density, ground.wave_speeds(1)[0 if motion == "p" else 1])
-                for low, high, _, ground in reversed(scene.ground.layers)
-                if high > plane
-            ]
             signal, column = case.wave[wave], axis_of_motion("bottom", motion)
             span = signal.begin(), case.run.duration
-            moving = ColumnMotion(Column(layers, mass=mass), signal.velocity, surface - plane, *span)
+            moving = ColumnMotion(Column(layers_of(scene, motion), mass=mass), signal.velocity, surface - plane, *span)
             for name, own in recorded.items():
                 depth = (surface - float(own.place[1]),)
                 values[name][0, :, column] = moving.at("displacement", own.time, depth)[:, 0]
