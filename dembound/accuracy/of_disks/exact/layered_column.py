@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.accuracy.history import History, Motions
-from dembound.accuracy.of_disks.exact.problem import must_be_continuous
+from dembound.accuracy.of_disks.exact.problem import BEGINNING, must_be_continuous
 from dembound.accuracy.of_disks.layered_column import layers_of
 from dembound.accuracy.reference import Exact
 from dembound.boundaries import Motion, axis_of_motion
@@ -41,7 +41,8 @@ class ExactLayeredColumn(Exact[DiskCase]):
         if not (enters and ends and LAWS[case.material.law].is_linear and all(_keeps_plane(case))):
             return None
         for name in bottom.waves.values():
-            must_be_continuous(name, case.wave[name].velocity, case.wave[name].begin(), case.run.duration)
+            before = case.wave[name].begin() - BEGINNING * case.run.duration
+            must_be_continuous(name, case.wave[name].velocity, before, case.run.duration)
         return cls(bottom.waves)
 
     def motions(self, case: DiskCase, recorded: Motions) -> dict[str, History]:
