@@ -26,17 +26,17 @@ Relative = Callable[[np.ndarray], np.ndarray]
 
 
 def layers_of(
-    scene: DiskScene, motion: Motion, relative: Callable[[PackedMaterial], Relative | None] = lambda _: None
+    scene: DiskScene, motion: Motion, relative: Callable[[PackedMaterial], Relative | None] | None = None
 ) -> list[Layer]:
     """The layers of a layered scene, from the surface down, the last one the half-space below its bottom.
 
-    relative : of a material, its modulus over that of long waves; by default they have no dispersion.
+    relative : of a material, its modulus over that of long undamped waves; by default that of the damped ground.
     """
     plane, surface = scene.plane("bottom"), scene.plane("top")
     assert isinstance(scene.ground, LayeredGround)
     zones = [(low, high, ground) for low, high, _, ground in scene.ground.layers if high > plane]
     return [
-        Layer(min(high, surface) - low, ground.density, speed, relative=relative(ground))
+        Layer(min(high, surface) - low, ground.density, speed, relative=(relative or _damped)(ground))
         for low, high, ground in reversed(zones)
         for speed in [ground.wave_speeds(1)[0 if motion == "p" else 1]]
     ]
@@ -67,7 +67,7 @@ def errors_in_layers(
         return np.asarray(column.motion(frequencies, [depth])[0, 0] / column.rising(frequencies, bottom))
 
     def relative(ground: PackedMaterial) -> Relative:
-        return partial(_relative, delay(ground))
+        return partial(_relative, delay(ground), _damped(ground))
 
     exact = moved(Column(layers_of(scene, motion), mass=0.0 if mass_above(scene) is not None else None))
     with np.errstate(invalid="ignore"):
@@ -84,6 +84,12 @@ def errors_in_layers(
     return errors
 
 
-def _relative(delay: Delay, frequencies: np.ndarray) -> np.ndarray:
-    """Modulus over that of long waves of a medium whose waves come late by `delay` per second of their way."""
-    return np.asarray((1.0 + delay(2.0 * math.pi * frequencies.real)) ** -2.0 + 0.0j)
+def _damped(ground: PackedMaterial) -> Relative | None:
+    """M/M₀ of damped ground; None for others."""
+    return None if ground.mechanisms is None else ground.mechanisms.relative_modulus
+
+
+def _relative(delay: Delay, damped: Relative | None, frequencies: np.ndarray) -> np.ndarray:
+    """Modulus over that of long undamped waves of a medium whose waves come late by `delay` per second of their way."""
+    slowness = 1.0 + delay(2.0 * math.pi * frequencies.real)
+    return np.asarray((1.0 if damped is None else damped(frequencies)) * (slowness**-2.0 + 0.0j))

@@ -9,6 +9,8 @@ from dembound.disks.material.constants import brick_constants, ground_limits, st
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.load_factor import limit_in_words, limit_lines
 from dembound.errors import CaseError
+from dembound.kernels.limits import in_columns
+from dembound.kernels.tables import Limits
 from dembound.results.reader import open_record
 from dembound.studies.library.library import Library
 
@@ -17,7 +19,8 @@ class WatchedContact(NamedTuple):
     """A contact or bond between the disks of two monitors.
 
     name : both, with a comma. monitors : (2,) their numbers in the library. constants : (15,), see kernels/contacts.py.
-    limits : its friction and strength. settled : (3,) stretch (m), shear (m) and turn at the end of the static stage, zero without one.
+    limits : its friction and strength. settled : (3,) stretch (m), shear (m) and turn at the end of the static stage,
+    zero without one.
     """
 
     name: str

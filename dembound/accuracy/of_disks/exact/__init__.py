@@ -38,8 +38,6 @@ def problem_of(scene: DiskScene, name: str | None = None) -> Problem:
 
     Raises CaseError, with the reasons, if none matches; the reasons are those of the first problem with its loads.
     """
-    if scene.ground.is_layered:
-        raise CaseError(["layer: the solutions are of uniform ground; a chart compares layers with a larger scene"])
     if name is not None:
         kinds: Sequence[type[Problem]] = [kind for kind in PROBLEMS if kind.name == name]
         if not kinds:

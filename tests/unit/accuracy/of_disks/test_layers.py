@@ -10,7 +10,6 @@ from dembound.accuracy.estimate import causes_of
 from dembound.accuracy.history import earlier
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.exact import problem_of
 from dembound.accuracy.of_disks.extended import enlarged
 from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.matched_sides import reflected
@@ -107,9 +106,6 @@ def test_a_side_reflects_as_the_mean_of_its_layers() -> None:
 
 
 def test_what_is_known_of_uniform_ground_alone_is_not_used() -> None:
-    scene = build(small(LATTICE | OPEN))
-    with pytest.raises(CaseError, match="uniform ground"):
-        problem_of(scene)
     held = COLUMN["boundary"] | {"bottom": {"type": "velocity", "wave_s": "in"}}
     scene = build(small(LATTICE | {"boundary": held}))
     motions = {}

@@ -80,10 +80,15 @@ def test_layers_respond_as_in_a_direct_run(tmp_path):
     direct = run_case(recorded_case(path), tmp_path / "direct") / "run.h5"
     # sums of some hundred terms as large as the peak
     assert all(found.peak < 1e-12 for found in compare(direct, [path], "velocity"))
-    strong = small(SOIL, changes={"layer.clay.pb_ten": 1e5, "output.load_factor": True})
-    library = Library(build_library(strong, 0.005, tmp_path, duration=0.02))
-    with pytest.raises(CaseError, match="not those of layers"):
-        watched_contacts(library, ["top,sand"])
+    # strengths are those of the layer of a contact
+    monitors = [
+        {"name": name, "position": [0.375, y]} for name, y in (("a", 12.375), ("b", 12.125), ("c", 5.125), ("d", 4.875))
+    ]
+    strong = SOIL | {"monitor": monitors, "output": {"load_factor": True}}
+    changes = {"layer.clay.pb_ten": 1e5, "layer.sand.pb_ten": 2e5, "layer.rock.pb_ten": 3e5}
+    library = Library(build_library(small(strong, "strong", changes), 0.005, tmp_path, duration=0.02))
+    found = watched_contacts(library, ["a,b", "c,d"])
+    assert [each.limits.tension for each in found] == [1e5, 2e5]
 
 
 def test_a_measured_record_is_the_same_function_as_in_a_direct_run(tmp_path):
