@@ -63,6 +63,35 @@ TORN: Tables = {
 }
 """Changes of `PUSHED` by which its end is torn off, but not at once: more than ten bonds break."""
 
+SOIL: Tables = {
+    "packing": {"pattern": "A", "radius": 0.125, "bricks": [2, 50]},
+    "material": {"density": 2300.0, "s_wave_speed": 700.0, "fric": 0.5, "kratio": 2.0, "pb_kratio": 2.0},
+    "layer": [
+        {"name": "clay", "thickness": 4.0, "density": 1800.0, "s_wave_speed": 200.0},
+        {"name": "sand", "thickness": 4.5, "density": 2000.0, "s_wave_speed": 350.0},
+        {"name": "rock"},
+    ],
+    "boundary": {
+        "bottom": {"type": "viscous_input", "wave_s": "in", "beta_p": "matched", "beta_s": "matched"},
+        "left": {"type": "periodic"},
+        "right": {"type": "periodic"},
+    },
+    "wave": {"in": {"type": "ricker", "amplitude": 0.01, "frequency": 20.0}},
+    "monitor": [{"name": "top", "position": [0.375, 12.375]}, {"name": "sand", "position": [0.375, 5.125]}],
+    "run": {"duration": 0.35},
+    "output": {"pictures": False},
+}
+"""A column of 2 × 50 disks: soil on rock, S waves from straight below."""
+
+OPEN: Tables = {
+    "boundary": {
+        side: {"type": "viscous", "beta_p": "matched", "beta_s": "matched"}
+        for side in ("left", "right", "bottom", "top")
+    },
+    "load": [{"name": "hit", "force": [0.0, 1.0], "position": [0.25, 9.0], "wave": "in"}],
+}
+"""Tables of `SOIL` by which ground goes on beyond all sides, and a force acts in it."""
+
 GRAINS: Tables = {
     "packing": {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
     "material": PUSHED["material"],

@@ -22,7 +22,7 @@ def error_of_delay(time: np.ndarray, velocity: np.ndarray, delay: Delay) -> tupl
     """
     step = float(time[1] - time[0]) if len(time) > 1 else 1.0
     count = len(time)
-    padded = np.concatenate([velocity, _going_on(velocity)])
+    padded = np.concatenate([velocity, going_on(velocity)])
     length = 2 ** int(np.ceil(np.log2(2 * len(padded))))
     omega = 2.0 * np.pi * np.fft.rfftfreq(length, step)
     phase = np.exp(1j * omega * np.nan_to_num(delay(omega)))
@@ -46,7 +46,7 @@ def error_of_steps(time: np.ndarray, velocity: np.ndarray, step: float) -> tuple
     return step**2 / 8.0 * np.gradient(acceleration, time, axis=0), -(step**2) / 24.0 * acceleration
 
 
-def _going_on(values: np.ndarray) -> np.ndarray:
+def going_on(values: np.ndarray) -> np.ndarray:
     """Continuation (k - 1, c) of values (k, c) that end within a wave: same slope at first, then fading to zero.
 
     The values turned about the last one, times a polynomial that falls from 1 to 0 without slope and curvature at its
@@ -62,7 +62,7 @@ def part_above(
     time: np.ndarray, velocity: np.ndarray, least: float, power: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """A velocity (k,) at even times (k,) s with its spectrum times ω^power, and its part above `least` rad/s."""
-    padded = np.concatenate([velocity, _going_on(velocity[:, None])[:, 0]])
+    padded = np.concatenate([velocity, going_on(velocity[:, None])[:, 0]])
     length = 2 ** int(np.ceil(np.log2(2 * len(padded))))
     omega = 2.0 * np.pi * np.fft.rfftfreq(length, float(time[1] - time[0]))
     spectrum = np.fft.rfft(padded, length) * omega**power

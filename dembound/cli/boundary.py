@@ -77,10 +77,18 @@ def boundary(
 ) -> None:
     """Compute the energy that sides reflect, by angle and frequency.
 
-    Nothing is run. With several sides, pictures and tables have their names.
+    Nothing is run. With several sides, pictures and tables have their names; a left or right side beside layers has
+    one for each layer.
     """
     one_thread_for_matrices()  # before numpy is imported
-    from dembound.disks.reflection import ANGLES, FREQUENCIES, compare_types, measure_side, measured_sides
+    from dembound.disks.reflection import (
+        ANGLES,
+        FREQUENCIES,
+        compare_types,
+        layers_beside,
+        measure_side,
+        measured_sides,
+    )
     from dembound.plot.reflection import plot_reflection
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
@@ -90,32 +98,38 @@ def boundary(
         raise CaseError(["--quick: is not possible with --type; leave it out"])
     loaded = load_disks(case, changes)
     chosen = [side.value for side in sides] if sides else measured_sides(loaded)
-    for side in chosen:
+    parts = [(side, layer) for side in chosen for layer in layers_beside(loaded, side) or [None]]
+    for side, layer in parts:
+        where = side if layer is None else f"{side}, in {layer}"
         if types:
             asked = sorted(set(angles)) if angles else COMPARED
             of_types = compare_types(
-                loaded, side, [_table(text) for text in types], asked, frequencies or (), _report(side)
+                loaded, side, [_table(text) for text in types], asked, frequencies or (), _report(where), layer
             )
-            figure = _compared(*of_types, f"Energy that types of the {side} side of {loaded.name} send back")
+            words = f"Energy that types of the {side} side of {loaded.name} send back"
+            figure = _compared(*of_types, words if layer is None else f"{words} in {layer}")
         else:
             found = measure_side(
                 loaded,
                 side,
                 sorted(set(angles)) if angles else ANGLES,
                 sorted(set(frequencies)) if frequencies else FREQUENCIES,
-                report=_report(side),
+                report=_report(where),
                 quick=quick,
+                layer=layer,
             )
-            out.print(_overview(found, f"{loaded.name}: {side}, {found.type}"))
+            out.print(_overview(found, f"{loaded.name}: {where}, {found.type}"))
             for line in _sentences(found):
                 out.print(line)
             words = f"Energy that the {side} side ({found.type}) of {loaded.name} sends back"
+            words += "" if layer is None else f" in {layer}"
             figure = plot_reflection(found.found.angles, found.found.frequencies, _curves(found), words)
-        picture = output if len(chosen) == 1 else output.with_stem(f"{output.stem}_{side}")
+        ending = f"_{side}" if layer is None else f"_{side}_{layer}"
+        picture = output if len(parts) == 1 else output.with_stem(f"{output.stem}{ending}")
         save(figure, picture, title)
         out.print(f"wrote {picture}")
         if table is not None:
-            lines = table if len(chosen) == 1 else table.with_stem(f"{table.stem}_{side}")
+            lines = table if len(parts) == 1 else table.with_stem(f"{table.stem}{ending}")
             write_lines(figure, lines)
             out.print(f"wrote {lines}")
 

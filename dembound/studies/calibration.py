@@ -27,7 +27,7 @@ from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
-from dembound.studies.strip import AFTER, calibration_pulse, full_scene, linear_medium, short_strip
+from dembound.studies.strip import AFTER, calibration_pulse, full_scene, in_one_layer, linear_medium, short_strip
 from dembound.version import __version__
 from dembound.waves import Cosine
 
@@ -146,18 +146,22 @@ def calibrate(
     full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.
 
-    Raises CaseError when the side has no dashpots, keeps springs beside them, or its motion is held, RunError when β
-    does not converge.
+    Beside layers β multiplies ρc of each, and is found in the slowest of those at the side.
+
+    Raises CaseError when the side has no dashpots, keeps springs beside them, its motion is held, or its layers need
+    different factors, RunError when β does not converge.
     """
     if not 0.0 < tolerance < np.inf:
         raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
-    plain, left_out = linear_medium(case)
     motion = calibrated_motion(case, side, motion)
+    alone, left_out = in_one_layer(case, side, motion)
+    plain, more = linear_medium(alone)
+    left_out += more
     table = plain.side(side)
-    pulse = calibration_pulse(case, side, motion)
+    pulse = calibration_pulse(alone, side, motion)
     kind: Literal["absorbing", "input"] = "input" if table.waves else "absorbing"
     if method == "homogenised":
-        scene = build(case)
+        scene = build(alone)
         beta = float(f"{homogenised_beta(scene, side, motion):.{HOMOGENISED_DIGITS}g}")
         return Calibration(case, side, motion, method, kind, pulse.peak(), [], result=beta, particles=scene.count)
     strip, shortened = full_scene(plain, side, motion, pulse) if full else short_strip(plain, side, motion, pulse)

@@ -11,7 +11,8 @@ import numpy as np
 from dembound.boundaries import OPPOSITE, Motion, Periodic, Velocity, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import linear_law
-from dembound.disks.scene import ground_of
+from dembound.disks.material.layered import LayeredGround
+from dembound.disks.scene import boundary_medium, ground_of
 from dembound.errors import CaseError
 from dembound.waves import Cosine
 
@@ -19,6 +20,9 @@ PULSE = "calibration"
 STRIP = 0.35
 """Strip length in pulse lengths cT. The front is T/2 before the peak and needs 2L/c for an echo; a pass ends AFTER
 the peak, 0.6 T after the front, so with L > 0.3 cT no echo affects M_out; a sixth is added as a reserve."""
+
+ALIKE = 1e-3
+"""Relative difference of factors of layers up to which one serves all, as many as the tolerance of a calibration."""
 
 AFTER = 0.1
 """Time from the expected peak at the side to the end of a pass, in pulse lengths T, as the peak may be late."""
@@ -44,6 +48,33 @@ def calibration_pulse(case: DiskCase, side: str, motion: Motion) -> Cosine:
             return Cosine(type="cosine", amplitude=wave.peak(), period=1.0 / frequency)
     speed = _speed_of(case, normal_axis(side), motion)
     return Cosine(type="cosine", amplitude=1.0, period=400.0 * case.packing.radius / speed)
+
+
+def in_one_layer(case: DiskCase, side: str, motion: Motion) -> tuple[DiskCase, list[str]]:
+    """The case with the slowest layer at a side everywhere, and a sentence on this; in uniform ground the case itself.
+
+    Raises CaseError where factors β that suit the layers along the side differ by more than `ALIKE`.
+    """
+    ground, axis, number = ground_of(case), normal_axis(side), 0 if motion == "p" else 1
+    if not isinstance(ground, LayeredGround):
+        return case, []
+    box = case.packing.box
+    ends = {"bottom": (box[1], box[1]), "top": (box[3], box[3])}.get(side, (box[1], box[3]))
+    heights = [0.5 * (max(low, ends[0]) + min(high, ends[1])) for low, high, *_ in ground.layers if low <= ends[1]]
+    heights = [height for height in heights if ends[0] <= height <= ends[1]]
+    speeds = {height: ground.at(height).wave_speeds(axis)[number] for height in heights}
+    ratios = {}
+    for height, speed in speeds.items():
+        medium = boundary_medium(ground.at(height), axis)
+        name = case.layer_names[case.layer_at(height)]
+        ratios[name] = speed / (medium.p_wave_speed if motion == "p" else medium.s_wave_speed)
+    if max(ratios.values()) > (1.0 + ALIKE) * min(ratios.values()):
+        each = ", ".join(f"{name} {ratio:.4g}" for name, ratio in reversed(ratios.items()))
+        what = f"its layers have different wave speeds over those given ({each})"
+        raise CaseError([f'boundary.{side}.beta_{motion}: {what}, and no number suits all; write "matched"'])
+    slowest = min(speeds, key=lambda height: speeds[height])
+    name = case.layer_names[case.layer_at(slowest)]
+    return case.uniform_at(slowest), [f"the layer {name} everywhere; β multiplies ρc of each layer"]
 
 
 def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:

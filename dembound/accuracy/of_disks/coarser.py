@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,11 +21,13 @@ from dembound.accuracy.of_disks.equal_sides import equal_sides, with_whole_cells
 from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
+from dembound.casefile.disks.layer import Layer
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static
 from dembound.disks.loads import forces_of
-from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.layered import materials_in
+from dembound.disks.material.packed_material import PackedMaterial, nominal_moduli
 from dembound.disks.scene import DiskScene
 from dembound.laws import Moduli
 from dembound.packings.square import Square
@@ -33,15 +36,19 @@ from dembound.table import Box
 CELLS = 4
 """Smallest number of particles across a hole."""
 
+LAYER = 2.5
+"""Smallest number of particles across a layer: at least `THINNEST`, after sides have moved."""
+
 TRIED = 60
 """Numbers of columns that are tried for the one whose rows fit the height best."""
 
 
 def largest_diameter(case: DiskCase, shortest: float) -> float:
-    """Largest diameter (m) of disks: at most `shortest` (m), and `CELLS` across every hole and between sides."""
+    """Largest diameter (m) of disks: at most `shortest`, `CELLS` across holes and between sides, `LAYER` a layer."""
     holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.hole]
     across = [length / CELLS for length, periodic in zip(case.size, case.periodic, strict=True) if not periodic]
-    return min([shortest, *holes, *across])
+    layers = [(high - low) / LAYER for high, low in pairwise([case.box[3], *case.joints])]
+    return min([shortest, *holes, *across, *layers])
 
 
 @dataclass(frozen=True)
@@ -76,7 +83,8 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
         case,
         packing=packing,
         ground=Ground(),
-        material=_material(case, scene.ground),
+        material=case.material if case.layer else _material(case.material, scene.ground),
+        layer=_layers(case, scene.ground, sides),
         hole=tuple(hole.shifted(sides.moved(_middle(hole.box))) for hole in case.hole),
         load=tuple(_load(load, scene, cell, sides) for load in case.load),
         monitor=tuple(
@@ -136,22 +144,40 @@ def _run(case: DiskCase) -> Any:
     return case.run.model_copy(update={"time_step": "auto", "checkpoint": 0.0, **ended})
 
 
-def _material(case: DiskCase, ground: PackedMaterial) -> Material:
-    """The material with which the lattice has the ground's wave speeds along x."""
+def _layers(case: DiskCase, ground: PackedMaterial, sides: _Sides) -> tuple[Layer, ...]:
+    """The layers, where sides have moved them, whose lattices have their wave speeds along y."""
+    layers = case.layers_meeting([joint + sides.moved(np.array([0.0, joint]))[1] for joint in case.joints])
     if is_square_lattice(ground):
-        return case.material
+        return layers
+    return tuple(
+        layer.model_copy(update=_of_lattice(_material(material, own, along=1)))
+        for layer, material, own in zip(layers, case.materials, reversed(materials_in(ground)), strict=False)
+    )
+
+
+def _of_lattice(material: Material) -> dict[str, float | None]:
+    """The keys of a layer for a material of a square lattice."""
+    moduli = nominal_moduli(material)
+    keys = "emod", "pb_emod", "kratio", "pb_kratio"
+    return {key: getattr(moduli, key) for key in keys} | {"p_wave_speed": None, "s_wave_speed": None}
+
+
+def _material(material: Material, ground: PackedMaterial, along: int = 0) -> Material:
+    """The material with which the lattice has the ground's wave speeds along x, or y."""
+    if is_square_lattice(ground):
+        return material
     tensor, density = ground.material_tensor, ground.density
-    p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
+    p, s = (math.sqrt(tensor[k, k] / density) for k in ((0, 3), (1, 2))[along])
     moduli = ground.moduli
     ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
     contacts = moduli.emod / (moduli.emod + moduli.pb_emod)
     replaced = {"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
-    given = case.material.model_dump(exclude_unset=True, exclude=replaced)
+    given = material.model_dump(exclude_unset=True, exclude=replaced)
     given |= {
         "p_wave_speed": p,
         "contact_share": contacts,
         "kratio": ratio,
-        "pb_kratio": ratio if case.material.fric > 0.0 else ratio * (1.0 - contacts),  # else bonds carry all shear
+        "pb_kratio": ratio if material.fric > 0.0 else ratio * (1.0 - contacts),  # else bonds carry all shear
         "s_wave_speed": None,
     }
     return Material.model_validate({key: value for key, value in given.items() if value is not None})

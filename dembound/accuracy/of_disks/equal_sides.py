@@ -14,7 +14,7 @@ from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import homogenised_beta, per_metre
-from dembound.disks.scene import DiskScene, boundary_medium, build
+from dembound.disks.scene import DiskScene, build, ground_at, medium_of_side
 from dembound.errors import CaseError
 
 EQUAL = 1e-3
@@ -97,11 +97,10 @@ def _equal_supports(table: Boundary, side: str, own: DiskScene, finer: DiskScene
     """
     if side not in own.edges:
         return table
-    axis = normal_axis(side)
-    here, there = ((each.edges[side], boundary_medium(each.ground, axis)) for each in (own, finer))
+    here, there = ((each.edges[side], medium_of_side(each, side)) for each in (own, finer))
     answered = table.equal_supports(here, there)
     found = table if answered is None else answered
-    ratios = np.array([_impedances(own, axis), _impedances(finer, axis)])
+    ratios = np.array([_impedances(own, side), _impedances(finer, side)])
     given, required = per_metre(own, side, found), per_metre(finer, side, table)
     for kind, component, number in sorted({*given, *required}):
         if kind != "dampers" and answered is not None:
@@ -117,7 +116,8 @@ def _equal_supports(table: Boundary, side: str, own: DiskScene, finer: DiskScene
     return found
 
 
-def _impedances(scene: DiskScene, axis: int) -> np.ndarray:
-    """ρc (2,) Pa·s/m of waves along an axis that move disks along x and y; nan where none run."""
-    p, s = scene.ground.wave_speeds(axis)
-    return scene.ground.density * np.array([p, s] if axis == 0 else [s, p])
+def _impedances(scene: DiskScene, side: str) -> np.ndarray:
+    """ρc (2,) Pa·s/m of waves along the normal of a side that move disks along x and y; nan where none run."""
+    axis, ground = normal_axis(side), ground_at(scene, side)
+    p, s = ground.wave_speeds(axis)
+    return ground.density * np.array([p, s] if axis == 0 else [s, p])

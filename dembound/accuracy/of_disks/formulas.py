@@ -5,20 +5,31 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from dembound.accuracy.cause import CONTINUUM, GRID, MOTIONS, NEAR, STEP, USUAL, WALLS, Cause
-from dembound.accuracy.delays import error_of_delay, error_of_steps
+from dembound.accuracy.delays import Delay, error_of_delay, error_of_steps
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.held_sides import HeldSides
+from dembound.accuracy.of_disks.layered_column import errors_in_layers
 from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
 from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_errors
 from dembound.accuracy.of_disks.rock_sides import errors_on_rock
-from dembound.accuracy.of_disks.waves import AXES, DIAGONAL, Direction, Frequencies, delay_of, frequencies_of
-from dembound.boundaries import Motion, axis_of_motion, normal_axis
+from dembound.accuracy.of_disks.waves import (
+    AXES,
+    DIAGONAL,
+    Direction,
+    Frequencies,
+    crossing_time,
+    delay_of,
+    frequencies_of,
+    layers_between,
+)
+from dembound.boundaries import Motion, axis_of_motion, normal_axis, plane_of
 from dembound.boundaries.sides import OPPOSITE
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reports.continuum_errors import CONTINUUM_FACTOR, expected_errors
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import sources_of
@@ -160,10 +171,10 @@ class Formulas:
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
         for motion in waves:
             column = axis_of_motion(side, motion)
-            speed = self.scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
-            if motion not in shares or not math.isfinite(speed):
+            trip = 2.0 * crossing_time(self.scene, axis, motion)
+            if motion not in shares or not math.isfinite(trip):
                 continue
-            later = own.time - 2.0 * self.scene.case.size[axis] / speed
+            later = own.time - trip
             share, sign = shares[motion], self.held_sides.reflects(OPPOSITE[side], motion)
             sent = reflected_motion(own, column, share)
             kept = reflected_motion(own, column, Reflected(abs(share.dashpots), share.dashpots))
@@ -199,19 +210,46 @@ class Formulas:
         for way in self.ways(own):
             if not math.isfinite(way.path * way.speed):
                 continue
-            about = way.motion, way.directions, way.path, way.speed, step
-            delay = delay_of(self.scene.ground, *about, self.frequencies)
-            parts = error_of_delay(own.time, (own.values["velocity"] @ way.moves)[:, None], delay)
+            moving = (own.values["velocity"] @ way.moves)[:, None]
+            if self._in_layers:
+                delay = partial(self._delay_of_a_second, way, step)
+                parts = errors_in_layers(self.scene, way.motion, float(own.place[1]), delay, own.time)(moving)
+            else:
+                parts = error_of_delay(own.time, moving, self.delay(way, step))
             for quantity, part in zip(MOTIONS, parts, strict=True):
                 errors[quantity] += part * way.moves
         for quantity, part in zip(MOTIONS, error_of_steps(own.time, own.values["velocity"], step), strict=True):
             errors[quantity] += part
         return errors
 
+    def delay(self, way: Way, step: float) -> Delay:
+        """Delay of waves over a path, the sum of those in its layers; step : of the run, s, or 0."""
+        parts = [
+            delay_of(ground, way.motion, way.directions, path, speed, step, self._frequencies_in(ground))
+            for ground, path, speed in way.parts
+        ]
+        return lambda omega: np.asarray(sum(part(omega) for part in parts))
+
     @cached_property
-    def frequencies(self) -> Frequencies:
-        """Frequencies of plane waves on the lattice of the ground, by direction."""
-        return frequencies_of(self.scene.ground)
+    def _in_layers(self) -> bool:
+        """Whether waves enter layers from below, and all come back from a free surface, or leave there."""
+        case = self.scene.case
+        top = case.side("top")
+        alone = list(case.driving) == ["bottom"] and not any(load.wave for load in case.load)
+        return self.scene.ground.is_layered and alone and bool(top.factors or top.is_free)
+
+    def _delay_of_a_second(self, way: Way, step: float, ground: PackedMaterial) -> Delay:
+        """Delay of waves in one layer over a way of one second."""
+        speed = ground.wave_speeds(1)[0 if way.motion == "p" else 1]
+        return delay_of(ground, way.motion, way.directions, speed, speed, step, self._frequencies_in(ground))
+
+    def _frequencies_in(self, ground: PackedMaterial) -> Frequencies:
+        """Frequencies of plane waves on the lattice of one layer, by direction, found once."""
+        return self._found.setdefault(id(ground), frequencies_of(ground))
+
+    @cached_property
+    def _found(self) -> dict[int, Frequencies]:
+        return {}
 
     @cached_property
     def _sources(self) -> list[Source]:
@@ -224,17 +262,19 @@ class Formulas:
         An oblique wave comes through a continuum, which delays it less: its path is the longer side of the disks.
         Empty where waves start everywhere.
         """
-        sources, ground = self._sources, self.scene.ground
-        driving = list(self.scene.case.driving)
-        if driving and not any(load.wave for load in self.scene.case.load):
+        sources, ground, case = self._sources, self.scene.ground, self.scene.case
+        driving = list(case.driving)
+        if driving and not any(load.wave for load in case.load):
             axis = normal_axis(driving[0])
             path = max(float(each.distance(own.place[None])[0]) for each in sources if not each.is_local)
-            if not self.scene.case.side(OPPOSITE[driving[0]]).is_artificial:
-                path = self.scene.case.size[axis]  # the mean of the ways there, and back from the other side
-            return _both_ways(np.eye(2)[axis], path, ground.wave_speeds(axis), [AXES[axis]])
-        if self.scene.case.incident is not None:
-            extent = self.scene.case.packing.extent
-            return _both_ways(np.eye(2)[1], max(extent), ground.wave_speeds(1), [AXES[0], DIAGONAL])
+            ends = (float(own.place[1]), plane_of(driving[0], case.box) if axis == 1 else float(own.place[1]))
+            if not case.side(OPPOSITE[driving[0]]).is_artificial:
+                path = case.size[axis]  # the mean of the ways there, and back from the other side
+                ends = (case.box[1], case.box[3]) if axis == 1 else ends
+            return _both_ways(np.eye(2)[axis], path, axis, layers_between(ground, ends), [AXES[axis]])
+        if case.incident is not None:
+            layers = layers_between(ground, case.packing.box[1::2])
+            return _both_ways(np.eye(2)[1], max(case.packing.extent), 1, layers, [AXES[0], DIAGONAL])
         local = [each for each in sources if np.isfinite(each.box).all()]
         places = [np.clip(own.place, each.box[:2], each.box[2:]) for each in local]
         rays = [own.place - place for place in places]
@@ -243,31 +283,45 @@ class Formulas:
         ray = min(rays, key=lambda each: float(np.hypot(*each)))
         path, axis = float(np.hypot(*ray)), int(np.argmax(np.abs(ray)))
         along = ray / path if path > 0.0 and not {0, 1} & set(ground.held) else np.eye(2)[axis]
-        return _both_ways(along, path, ground.wave_speeds(axis), [AXES[0], DIAGONAL])
+        layers = layers_between(ground, (float(own.place[1]), float(own.place[1] - ray[1])))
+        return _both_ways(along, path, axis, layers, [AXES[0], DIAGONAL])
 
 
 @dataclass(frozen=True)
 class Way:
     """The path of P or S waves.
 
-    motion : kind of the waves. moves : (2,) unit vector of their particle motion. path : m. speed : m/s, of long waves.
-    directions : in which they may run.
+    motion : kind of the waves. moves : (2,) unit vector of their particle motion. directions : in which they may run.
+    parts : by layer the ground, the path in it, m, and the speed of long waves, m/s.
     """
 
     motion: Motion
     moves: np.ndarray
-    path: float
-    speed: float
     directions: Sequence[Direction]
+    parts: Sequence[tuple[PackedMaterial, float, float]]
+
+    @property
+    def path(self) -> float:
+        """Its length, m."""
+        return sum(path for _, path, _ in self.parts)
+
+    @property
+    def speed(self) -> float:
+        """Speed of long waves in the slowest layer, m/s; nan where none run."""
+        return float(np.min([speed for *_, speed in self.parts]))
 
 
 def _both_ways(
-    along: np.ndarray, path: float, speeds: tuple[float, float], directions: Sequence[Direction]
+    along: np.ndarray,
+    path: float,
+    axis: int,
+    layers: Sequence[tuple[PackedMaterial, float]],
+    directions: Sequence[Direction],
 ) -> list[Way]:
-    """The paths of P and S waves, of these speeds (m/s), along a unit vector."""
+    """The paths of P and S waves along a unit vector, with speeds along an axis, and shares of the path by layer."""
     across = np.array([-along[1], along[0]])
-    p, s = speeds
-    return [Way("p", along, path, p, directions), Way("s", across, path, s, directions)]
+    p, s = ([(ground, share * path, ground.wave_speeds(axis)[kind]) for ground, share in layers] for kind in (0, 1))
+    return [Way("p", along, directions, p), Way("s", across, directions, s)]
 
 
 def reflected_motion(own: History, column: int, share: Reflected) -> dict[str, np.ndarray]:

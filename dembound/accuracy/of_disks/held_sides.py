@@ -60,7 +60,10 @@ class HeldSides:
     def causes(self, motions: Motions) -> Iterator[Cause]:
         """The errors of held sides that reflect plane waves, by formula."""
         for side in self.names:
-            if self._returns_plane_waves(side):
+            if self.scene.ground.is_layered and side in self.scene.case.driving:
+                reason = "how much earlier the waves that layers send back return from its disks"
+                yield Cause.unknown(f"{side} side", reason, True)
+            elif self._returns_plane_waves(side):
                 parts = {name: self._of_plane_waves(own, side) for name, own in motions.items()}
                 words = "by plane waves that come back from disks that are held at their centres"
                 yield Cause(f"{side} side", words, parts, of_disks=True, factor=USUAL)
@@ -79,8 +82,10 @@ class HeldSides:
         return any(not self.scene.case.side(OPPOSITE[driven]).is_artificial for driven in self._driven(side))
 
     def _meets_only_plane_waves(self, side: str) -> bool:
-        """Whether all waves enter at a side or its opposite, or are such as it does not hold."""
+        """Whether all waves enter at a side or its opposite of uniform ground, or are such as it does not hold."""
         case = self.scene.case
+        if self.scene.ground.is_layered:
+            return False
         if not case.driving or case.incident is not None or case.hole or any(load.wave for load in case.load):
             return False
         axis, held = normal_axis(side), {*self._prescribed(side)}

@@ -15,6 +15,7 @@ from dembound.accuracy.of_disks.advice import advice_for_disks
 from dembound.accuracy.of_disks.causes import causes_of_run, quick_causes
 from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.exact.continuum import ExactContinuum
+from dembound.accuracy.of_disks.exact.layered_column import ExactLayeredColumn
 from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.extended import extended_disks
 from dembound.accuracy.of_disks.formulas import Formulas
@@ -81,8 +82,8 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return extended_disks(case, most)
 
     def exact(self, case: DiskCase) -> Exact[DiskCase] | None:
-        """A plane wave, or one of the problems of `exact`; raises CaseError if the loads match none of them."""
-        if (plane := ExactPlaneWave.of(case)) is not None:
+        """Plane waves, or one of the problems of `exact`; raises CaseError if the loads match none of them."""
+        if (plane := ExactPlaneWave.of(case) or ExactLayeredColumn.of(case)) is not None:
             return plane
         return ExactContinuum.of(case) if case.load or case.incident else None
 

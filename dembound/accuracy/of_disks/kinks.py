@@ -19,7 +19,6 @@ from dembound.accuracy.cause import GRID, MOTIONS, STEP, Cause
 from dembound.accuracy.delays import error_of_delay, error_of_steps, part_above
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.formulas import Formulas, Way
-from dembound.accuracy.of_disks.waves import delay_of
 from dembound.casefile.disks import DiskCase
 from dembound.table import Box
 
@@ -88,13 +87,12 @@ class _Kinks:
     def _of_way(self, way: Way) -> dict[str, tuple[float, float]]:
         """Errors of grid and time step, by quantity, of the wave on this path with the largest errors."""
         formulas, most = self.formulas, dict.fromkeys(MOTIONS, (0.0, 0.0))
-        about = way.motion, way.directions, way.path, way.speed
         for name, power in sorted(_waves(formulas.scene.case, way)):
             if (signal := self._signal(name, power, way.speed)) is None:
                 continue
             time, whole, above = signal
             step = formulas.time_step
-            delays = (delay_of(formulas.scene.ground, *about, each, formulas.frequencies) for each in (0.0, step))
+            delays = (formulas.delay(way, each) for each in (0.0, step))
             grid, stepped = (error_of_delay(time, above[:, None], delay) for delay in delays)
             sampled = error_of_steps(time, above[:, None], step)
             for k, (quantity, motion) in enumerate(zip(MOTIONS, (whole, step * np.cumsum(whole)), strict=True)):

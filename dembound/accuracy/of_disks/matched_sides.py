@@ -8,17 +8,19 @@ whole cells, and factors that are not calibrated.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dembound.accuracy.watch import begins
 from dembound.boundaries import Motion
+from dembound.boundaries.support import BoundaryMedium, Edge
 from dembound.disks.beyond.frequencies import frequencies_of
-from dembound.disks.matching import factors_in, homogenised_beta, require_dashpots_alone
+from dembound.disks.matching import homogenised_beta, require_dashpots_alone
 from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.reflection.meter import Meter
-from dembound.disks.scene import DiskScene, with_boundaries
+from dembound.disks.scene import DiskScene, media_of, with_boundaries
 from dembound.errors import CaseError
 
 FREQUENCIES = 3
@@ -54,14 +56,32 @@ def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Ref
     """Reflection of P and S waves along the normal by a side with dashpots, without its springs.
 
     Waves that cannot run are left out; where the packing has no such wave at the frequencies of the case, the
-    reflection of its homogenised stiffness is given.
+    reflection of its homogenised stiffness is given. Along several layers it is the mean of energies.
     """
-    case = scene.case
+    found = [(part.length, _in_layer(scene, side, part, medium, time_step)) for part, medium in media_of(scene, side)]
+    if len(found) == 1:
+        return found[0][1]
+    return {motion: _mean([(length, each[motion]) for length, each in found]) for motion in found[0][1]}
+
+
+def _mean(parts: Sequence[tuple[float, Reflected]]) -> Reflected:
+    """The reflection of a side whose parts, of these lengths, reflect differently: RMS, with the mean part in phase."""
+    lengths, each = zip(*parts, strict=True)
+    size = math.sqrt(np.average([one.size**2 for one in each], weights=lengths))
+    return Reflected(size, float(np.average([one.dashpots for one in each], weights=lengths)))
+
+
+def _in_layer(
+    scene: DiskScene, side: str, part: Edge, medium: BoundaryMedium, time_step: float
+) -> dict[Motion, Reflected]:
+    """Reflection by a part of a side beside one medium; see `reflected`."""
+    case = scene.case.uniform_at(float(part.positions[:, 1].mean()))
     table = case.side(side).dashpots_alone()
     end = end_scene(replace(case, boundary={**case.boundary, side: table}), side)
     require_dashpots_alone(end, side)
-    matched, wide = ({m: homogenised_beta(each, side, m) for m in table.factors} for each in (scene, end))
-    known = {motion: factor for motion, factor in factors_in(scene, side).items() if math.isfinite(matched[motion])}
+    matched, wide = medium.matched(part), {m: homogenised_beta(end, side, m) for m in table.factors}
+    own = scene.case.side(side).factors_at(part, medium)
+    known = {motion: factor for motion, factor in own.items() if math.isfinite(matched[motion])}
     # sides of narrow bodies have more disks for their length than those of a periodic one
     equal = {motion: factor * wide[motion] / matched[motion] for motion, factor in known.items()}
     end = with_boundaries(
@@ -85,7 +105,7 @@ def _energies(scene: DiskScene, end: DiskScene, side: str, time_step: float) -> 
     step = time_step if case.packing.is_lattice else 0.0
     frequencies = frequencies_of(scene.case, scene.ground, FREQUENCIES)
     packing = case.packing.model_copy(update={"origin": (0.0, 0.0)})
-    key = side, step, *frequencies, *map(repr, (packing, case.material, case.motion, case.side(side)))
+    key = side, step, *frequencies, *map(repr, (packing, case.materials, case.motion, case.side(side)))
     if key not in _MEASURED:
         _MEASURED[key] = _measured(end, side, step, frequencies)
     return _MEASURED[key]

@@ -67,11 +67,12 @@ def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
         return dict.fromkeys(own.values, 0.0)
     diameter, (ray, wide) = scene.ground.brick.mean_diameter, min(rays, key=lambda each: float(np.hypot(*each[0])))
     distance = max(float(np.hypot(*ray)), diameter)
+    speed = slowest_speed(scene.ground, own.place[1], own.place[1] - ray[1])
     spread = (distance / (distance + wide)) ** 2
     rates = {"velocity": np.gradient(own.values["velocity"], own.time, axis=0), "displacement": own.values["velocity"]}
     found = {}
     for quantity, values in own.values.items():
-        number = _norm(rates[quantity]) / max(_norm(values), np.finfo(float).tiny) / slowest_speed(scene.ground)
+        number = _norm(rates[quantity]) / max(_norm(values), np.finfo(float).tiny) / speed
         size = NEAR * spread * (diameter * (number + CURVED / distance)) ** 2
         found[quantity] = size * _along(values, own.component(quantity), ray / distance)
     return found
@@ -111,14 +112,15 @@ def wall_errors(case: DiskCase, ground: PackedMaterial, diameter: float) -> dict
     """
     if not case.hole:
         return dict.fromkeys(MOTIONS, 0.0)
-    signals, speed = signals_of(case), slowest_speed(ground)
-    found = {}
+    signals, found = signals_of(case), {}
     for quantity, lowest in zip(MOTIONS, (np.inf, 1.0 / case.run.duration), strict=True):
-        number = 2.0 * np.pi * max((mean_frequency(signal, lowest) for signal in signals), default=0.0) / speed
-        found[quantity] = max(
-            _wall_error(case, hole, diameter) * (1.0 if hole.name in case.pressed else _scattered(case, hole, number))
-            for hole in case.hole
-        )
+        omega = 2.0 * np.pi * max((mean_frequency(signal, lowest) for signal in signals), default=0.0)
+        errors = []
+        for hole in case.hole:
+            number = omega / slowest_speed(ground, hole.box[1], hole.box[3])
+            share = 1.0 if hole.name in case.pressed else _scattered(case, hole, number)
+            errors.append(_wall_error(case, hole, diameter) * share)
+        found[quantity] = max(errors)
     return found
 
 

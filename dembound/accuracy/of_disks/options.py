@@ -19,6 +19,7 @@ from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.loads import forces_of
+from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, ground_of
 from dembound.errors import CaseError, DemboundError
@@ -243,8 +244,8 @@ def _is_narrow(case: DiskCase, ground: PackedMaterial) -> bool:
 
 def _same_ground(given: PackedMaterial, ground: PackedMaterial) -> bool:
     """Whether disks of another size make a ground of the same stiffness, which not every law ensures."""
-    own, other = given.material_tensor, ground.material_tensor
-    return np.allclose(own, other, rtol=0.0, atol=EQUAL * float(np.abs(own).max()))
+    own, other = (np.array([each.material_tensor for each in materials_in(one)]) for one in (given, ground))
+    return np.allclose(own, other, rtol=0.0, atol=EQUAL * np.abs(own).max(axis=(1, 2), keepdims=True))
 
 
 def _same_forces(given: DiskScene, scene: DiskScene) -> bool:

@@ -15,7 +15,7 @@ from dembound.boundaries import Viscoelastic, Viscous
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import BoundaryMedium, Edge, Supports
 from dembound.disks.matching import Held, supports_of
-from dembound.disks.scene import DiskScene, boundary_medium, with_boundaries
+from dembound.disks.scene import DiskScene, media_of, medium_of_side, with_boundaries
 
 EVEN = 1e-6
 """Largest relative difference between numbers that count as equal: rounding."""
@@ -25,7 +25,7 @@ def with_plain_sides(scene: DiskScene) -> DiskScene:
     """The scene with artificial sides of unknown types replaced by equivalent "viscous" or "viscoelastic" ones.
 
     Other sides do not change: types whose methods give their dashpots and springs, sides that let waves in or
-    follow a column, and sides whose dampers or springs vary along the side.
+    follow a column, that meet several layers, or whose dampers or springs vary along the side.
     """
     plain = {side: _plain(table, side, scene) for side, table in scene.case.boundary.items()}
     if plain == scene.case.boundary:
@@ -35,10 +35,10 @@ def with_plain_sides(scene: DiskScene) -> DiskScene:
 
 def _plain(table: Boundary, side: str, scene: DiskScene) -> Boundary:
     """The equivalent table of one side."""
-    if side not in scene.edges or not table.may_move or table.needs_column:
+    if side not in scene.edges or not table.may_move or table.needs_column or len(media_of(scene, side)) > 1:
         return table
     edge, supports = scene.edges[side], supports_of(scene, side)
-    medium = boundary_medium(scene.ground, edge.axis)
+    medium = medium_of_side(scene, side)
     if _is_known(table, supports, (edge, medium), scene) or not _is_even(supports, edge):
         return table
     held = Held.of(scene, side)

@@ -15,10 +15,11 @@ import numpy as np
 
 from dembound.accuracy.cause import MOTIONS
 from dembound.accuracy.history import History
+from dembound.accuracy.of_disks.waves import crossing_time
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.disks.entry import side_ends
 from dembound.disks.matching import factors_in, homogenised_beta
-from dembound.disks.scene import DiskScene
+from dembound.disks.scene import DiskScene, ground_at
 
 
 def errors_on_rock(
@@ -30,13 +31,13 @@ def errors_on_rock(
     nothing does, but for waves that only leave: there the recorded motion itself arrives.
     """
     axis, errors = normal_axis(side), {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
-    driven = scene.case.side(side).waves
+    driven, ground = scene.case.side(side).waves, ground_at(scene, side)
     for motion, (mass, stiffness) in side_ends(scene, side).items():
-        speed, column = scene.ground.wave_speeds(axis)[0 if motion == "p" else 1], axis_of_motion(side, motion)
+        speed, column = ground.wave_speeds(axis)[0 if motion == "p" else 1], axis_of_motion(side, motion)
         alpha = factors_in(scene, side)[motion] / homogenised_beta(scene, side, motion)
         if not math.isfinite(speed):
             continue
-        trip = 2.0 * scene.case.size[axis] / speed if driven else 0.0
+        trip = 2.0 * crossing_time(scene, axis, motion) if driven else 0.0
         returned = back[motion] if driven else 1.0
         lag = -2.0 * (stiffness * alpha**2 - mass) / (speed * (1.0 + alpha) ** 2)
         velocity = own.values["velocity"][:, column]

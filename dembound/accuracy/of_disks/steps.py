@@ -140,7 +140,10 @@ class Steps:
         sides: Mapping[str, Boundary],
         outside: OutsideTable | None = None,
     ) -> float:
-        """Stability limit (s) of `copies` bricks of the given ground, found once; infinite if they make no scene."""
+        """Stability limit (s) of `copies` bricks of the given ground, found once; infinite if they make no scene.
+
+        Of layers that of the stiffest.
+        """
         if key not in self.limits:
             piece = replace(
                 self.case,
@@ -155,8 +158,10 @@ class Steps:
                 static=None,
                 incident=None,
             )
+            heights = [top - self.case.packing.radius for top in (self.case.box[3], *self.case.joints)]
+            layers = [self.case.uniform_at(height).layer for height in heights]
             try:
-                self.limits[key] = step_limit(build(piece))
+                self.limits[key] = min(step_limit(build(replace(piece, layer=layer))) for layer in layers)
             except DemboundError:
                 self.limits[key] = math.inf
         return self.limits[key]

@@ -16,8 +16,10 @@ import numpy as np
 
 from dembound.accuracy.delays import Delay
 from dembound.boundaries import Motion
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.wave_front import plane_wave_frequencies
+from dembound.disks.scene import DiskScene
 from dembound.packings.square import Square
 
 LONG, SHORT, PHASES = 1e-3, 0.3, 1000
@@ -49,6 +51,23 @@ def is_square_lattice(ground: PackedMaterial) -> bool:
     """Whether a packing is a square lattice itself: then larger disks of its material make the same ground."""
     own, square = (np.sort(np.abs(each.brick.vectors), axis=0) for each in (ground, square_lattice(ground)))
     return len(ground.brick.radii) == 1 and own.shape == square.shape and np.allclose(own, square, EQUAL, 0.0)
+
+
+def layers_between(ground: PackedMaterial, heights: Sequence[float]) -> list[tuple[PackedMaterial, float]]:
+    """The materials on a way between two heights (m), from the bottom up, each with its share of the way."""
+    low, high = min(heights), max(heights)
+    if not isinstance(ground, LayeredGround) or ground.at(low) is ground.at(high):
+        return [(ground.at(low), 1.0)]
+    lengths = [(zone.material, min(high, zone.high) - max(low, zone.low)) for zone in ground.layers]
+    return [(material, length / (high - low)) for material, length in lengths if length > 0.0]
+
+
+def crossing_time(scene: DiskScene, axis: int, motion: Motion) -> float:
+    """Time (s) of P or S waves across the ground of a scene along an axis; along x in the slowest layer."""
+    low, high = scene.case.box[axis::2]
+    parts = layers_between(scene.ground, (low, high)) if axis == 1 else [(scene.ground, 1.0)]
+    number = 0 if motion == "p" else 1
+    return sum(share * scene.case.size[axis] / material.wave_speeds(axis)[number] for material, share in parts)
 
 
 def frequencies_of(ground: PackedMaterial) -> Frequencies:

@@ -80,6 +80,14 @@ class DiskCase(Case):
         only = self.layer[self.layer_at(height)].model_copy(update={"thickness": None, "bottom": None})
         return replace(self, layer=(only,))
 
+    def layers_meeting(self, joints: Sequence[float]) -> tuple[Layer, ...]:
+        """The layers if they meet at these heights (m), from the uppermost down, wherever the surface is."""
+        ends = [*joints, None] if self.layer else []
+        return tuple(
+            layer.model_copy(update={"thickness": None, "bottom": end})
+            for layer, end in zip(self.layer, ends, strict=True)
+        )
+
     @property
     def layer_names(self) -> tuple[str, ...]:
         """The name of each layer, from the surface down: as given, or its number from 1."""

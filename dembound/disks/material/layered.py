@@ -162,6 +162,11 @@ class LayeredGround(PackedMaterial):
         return ON_JOINT * self.brick.mean_diameter
 
 
+def materials_in(ground: PackedMaterial) -> list[PackedMaterial]:
+    """The materials of the layers of a ground as asked for, from the bottom up; of a uniform one itself."""
+    return [zone.material for zone in ground.layers] if isinstance(ground, LayeredGround) else [ground]
+
+
 def layered(layers: Sequence[PackedMaterial], joints: Sequence[float], origin: float) -> LayeredGround:
     """The ground of layers of one brick.
 

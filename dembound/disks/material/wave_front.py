@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.laws import Law, Moduli
 from dembound.motion.paths import Front
@@ -27,7 +28,7 @@ def front_of(ground: PackedMaterial, safety: float) -> Front:
 
     Long waves of any direction have the speeds of the homogenised packing. Short waves may be faster, such as waves of
     rotation between wide bonds: their largest group speed is computed on the square lattice of the same material, and
-    the packing's speed is multiplied by its ratio to that of the lattice's long waves.
+    the packing's speed is multiplied by its ratio to that of the lattice's long waves. Of layers the fastest counts.
     """
     return max((_front_in(layer, safety) for layer in ground.materials), key=lambda front: front.speed)
 
@@ -52,9 +53,13 @@ def _largest_ratio(
     return largest_group_speed(lattice, safety) / largest_phase_speed(lattice)
 
 
-def slowest_speed(ground: PackedMaterial) -> float:
-    """Speed (m/s) of the slowest long plane waves that run along x or y; nan if none does."""
-    speeds = [speed for axis in (0, 1) for speed in ground.wave_speeds(axis) if np.isfinite(speed)]
+def slowest_speed(ground: PackedMaterial, *heights: float) -> float:
+    """Speed (m/s) of the slowest long plane waves that run along x or y; nan if none does.
+
+    heights : m, of which the layers count; by default all.
+    """
+    each = [ground.at(height) for height in heights] or [ground]
+    speeds = [speed for one in each for axis in (0, 1) for speed in one.wave_speeds(axis) if np.isfinite(speed)]
     return min(speeds, default=float("nan"))
 
 

@@ -30,6 +30,7 @@ __all__ = [
     "Measured",
     "Reflections",
     "compare_types",
+    "layers_beside",
     "measure_side",
     "measured_sides",
 ]
@@ -84,12 +85,13 @@ def measure_side(
     report: Report | None = None,
     *,
     quick: bool = False,
+    layer: str | None = None,
 ) -> Measured:
     """Measure the reflection of a side of a case.
 
     angles : degrees from the normal, below 90. frequencies : Hz, or the number of frequencies of the case. report :
     receives every frequency (Hz) before it is computed. quick : by the equivalent continuum instead of disks, without a
-    comparison with type "outside", see smeared.py.
+    comparison with type "outside", see smeared.py. layer : name of one of `layers_beside`, if there are several.
 
     Raises CaseError for a law of no linear medium, for a periodic side, for a quick answer about an outside, and for
     invalid angles and frequencies.
@@ -100,10 +102,11 @@ def measure_side(
     if problems:
         raise CaseError(problems)
     linear_law(case.material.law)
+    given, case = case, _in_layer(case, side, layer)
     whole = build(case)
     ground, table = whole.ground, case.side(side)
     chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.sort(frequencies)
-    arrivals = arrivals_of(case, side, ground)
+    arrivals = arrivals_of(given, side, ground)
     if table.is_outside and quick:
         raise CaseError([f"--quick: is not possible for side {side}, of type outside; leave it out"])
     axis, speeds = normal_axis(side), ground.wave_speeds(normal_axis(side))
@@ -148,12 +151,14 @@ def compare_types(
     angles: Sequence[float],
     frequencies: Sequence[float] = (),
     report: Report | None = None,
+    layer: str | None = None,
 ) -> tuple[dict[str, Reflections], list[Arrival]]:
     """Reflections of a side with other tables in its place, by table in words, and the arrivals of the case itself.
 
-    angles, frequencies, report : as of `measure_side`; by default frequencies of the whole spectrum. Raises CaseError
-    for tables that the side cannot have, and for a law of no linear medium.
+    angles, frequencies, report, layer : as of `measure_side`; by default frequencies of the whole spectrum. Raises
+    CaseError for tables that the side cannot have, and for a law of no linear medium.
     """
+    given, case = case, _in_layer(case, side, layer)
     ground, found = ground_of(case), {}
     chosen = np.sort(frequencies) if len(frequencies) else wide_frequencies(case, ground)
     for table in tables:
@@ -166,7 +171,31 @@ def compare_types(
         else:
             (one,) = Meter.of(side, step, end_scene(changed, side)).measure(chosen, angles, report=report)
         found[words_of(table)] = one
-    return found, arrivals_of(case, side, ground)
+    return found, arrivals_of(given, side, ground)
+
+
+def layers_beside(case: DiskCase, side: str) -> list[str]:
+    """Names of the layers along a left or right side, from the surface down; none if there are fewer than two."""
+    if len(case.layer) < 2 or normal_axis(side) == 1:
+        return []
+    _, low, _, high = case.packing.box
+    return list(case.layer_names[case.layer_at(high) : case.layer_at(low) + 1])
+
+
+def _in_layer(case: DiskCase, side: str, layer: str | None) -> DiskCase:
+    """The case with one layer everywhere, in steps of the case itself: by default the one at the side.
+
+    Raises CaseError unless a side along several layers has the name of one.
+    """
+    if len(case.layer) < 2:
+        return case
+    if (names := layers_beside(case, side)) and layer not in names:
+        raise CaseError(
+            [f"boundary.{side}: meets several layers, and reflects by layer; name one of {', '.join(names)}"]
+        )
+    number = case.layer_names.index(layer) if layer in names else case.layer_at(case.box[3 if side == "top" else 1])
+    alone = case.uniform_at([case.box[3], *case.joints][number] - case.packing.radius)
+    return replace(alone, run=case.run.model_copy(update={"time_step": choose_step(build(case))[0]}))
 
 
 def _of_continuum(

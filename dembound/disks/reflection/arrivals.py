@@ -82,9 +82,10 @@ def _weights(signal: Signal, frequencies: tuple[float, ...]) -> np.ndarray:
 def arrivals_of(case: DiskCase, side: str, ground: PackedMaterial) -> list[Arrival]:
     """Waves that reach a side: of driven sides, towards it or along its normal, of loads and of holes.
 
-    Without any of these all directions, as in a diffuse motion.
+    Without any of these all directions, as in a diffuse motion; also where waves of loads and holes cross layers, which
+    turn them.
     """
-    found = [*_plane(case, side), *_spreading(case, side)]
+    found = [*_plane(case, side), *(_spreading(case, side) if len(case.layer) < 2 else ())]
     if not found:
         angles = np.linspace(0.0, FLATTEST, PLACES)
         shares = np.cos(np.radians(angles))

@@ -5,10 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.disks.material.constants import brick_constants, strength_of
+from dembound.disks.material.constants import brick_constants, ground_limits, strength_of
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.load_factor import limit_in_words, limit_lines
 from dembound.errors import CaseError
+from dembound.kernels.limits import in_columns
+from dembound.kernels.tables import Limits
 from dembound.results.reader import open_record
 from dembound.studies.library.library import Library
 
@@ -17,12 +19,14 @@ class WatchedContact(NamedTuple):
     """A contact or bond between the disks of two monitors.
 
     name : both, with a comma. monitors : (2,) their numbers in the library. constants : (15,), see kernels/contacts.py.
-    settled : (3,) stretch (m), shear (m) and turn at the end of the static stage, zero without one.
+    limits : its friction and strength. settled : (3,) stretch (m), shear (m) and turn at the end of the static stage,
+    zero without one.
     """
 
     name: str
     monitors: tuple[int, int]
     constants: np.ndarray
+    limits: Limits
     settled: np.ndarray
 
 
@@ -62,10 +66,9 @@ def watched_contacts(library: Library, pairs: Sequence[str]) -> list[WatchedCont
 
 def load_factor(library: Library, contacts: Sequence[WatchedContact], motion: np.ndarray) -> LoadFactor:
     """The load factor of a motion (k, monitors, 6) of the library at its samples, for the given contacts."""
-    strength = strength_of(library.case.material)
     least = LoadFactor(np.inf, "", "", np.nan)
     for contact in contacts:
-        slopes, allowed = (each[0] for each in limit_lines(contact.constants[None], strength))
+        slopes, allowed = (each[0] for each in limit_lines(contact.constants[None], contact.limits))
         rest = contact.settled + _strain(contact, library.rest)
         grows = _strain(contact, motion - library.rest) @ slopes.T
         room = allowed - rest @ slopes.T
@@ -91,10 +94,13 @@ def _contacts(library: Library, scene: DiskScene, pair: str) -> Iterator[Watched
     if not (forward | backward).any():
         raise CaseError([f"--load-factor: the disks of {names[0]} and {names[1]} have neither contact nor bond"])
     constants = brick_constants(scene.ground, gaps_close=True, locked_in=0.0)
+    limits = ground_limits(scene.ground, library.case.materials, strength_of)
     numbers = library.monitors.index(names[0]), library.monitors.index(names[1])
     for place in np.flatnonzero(forward | backward):
         order = numbers if forward[place] else numbers[::-1]
-        contact = WatchedContact(pair, order, constants[scene.assembly.contact_type[place]], np.zeros(3))
+        kind = scene.assembly.contact_type[place]
+        own = in_columns(np.array(limits[:4]).T[[kind]], limits.geometry) if scene.ground.is_layered else limits
+        contact = WatchedContact(pair, order, constants[kind], own, np.zeros(3))
         yield contact._replace(settled=_settled(library, contact, pairs[place]))
 
 

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from small_cases import OPEN, SOIL, small
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
+from dembound.errors import CaseError
 from dembound.studies.calibration import calibrate
-from dembound.studies.strip import calibration_pulse
+from dembound.studies.strip import calibration_pulse, in_one_layer
 
 
 @pytest.fixture
@@ -50,3 +52,20 @@ def test_a_pass_goes_on_for_a_tenth_of_the_pulse_after_its_peak_is_due(bar, side
     # the peak leaves the opposite end at T/2 and takes L/c through 17.5 m at 1000 m/s; an input side lets it in itself.
     # A whole number of steps may round to either side
     assert found.steps == pytest.approx((travel + (0.5 + 0.1) * 0.05) / step, abs=1.0)
+
+
+def test_beside_layers_the_slowest_is_everywhere_and_its_factor_suits_all() -> None:
+    open_soil = small(SOIL | OPEN)
+    found, (said,) = in_one_layer(open_soil, "left", "s")
+    assert found.layer_names == ("clay",)
+    assert said.startswith("the layer clay everywhere")
+    assert in_one_layer(open_soil, "bottom", "s")[0].layer_names == ("rock",)
+    assert in_one_layer(found, "left", "s") == (found, [])
+
+    # a P-wave speed is that of the square lattice, an S-wave speed that of the packing
+    grains = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0], "size": [4.0, 12.0]}
+    tables = {key: table for key, table in OPEN.items() if key != "load"} | {"packing": grains, "monitor": []}
+    unlike = small(SOIL | tables, changes={"layer.rock": {"name": "rock", "p_wave_speed": 1400.0}})
+    assert in_one_layer(unlike, "bottom", "p")[0].layer_names == ("rock",)
+    with pytest.raises(CaseError, match=r"clay 1, sand 1, rock 0\..*matched"):
+        in_one_layer(unlike, "left", "p")

@@ -29,8 +29,8 @@ class ExactPlaneWave(Exact[DiskCase]):
     @classmethod
     def of(cls, case: DiskCase) -> ExactPlaneWave | None:
         """The solution of a case; None if it is another problem."""
-        damped = case.material.quality_factor is not None
-        if damped or case.hole or case.load or case.static or len(case.driving) != 1:
+        other = case.material.quality_factor is not None or len(case.layer) > 1
+        if other or case.hole or case.load or case.static or len(case.driving) != 1:
             return None
         ((side, waves),) = case.driving.items()
         far = case.side(OPPOSITE[side])

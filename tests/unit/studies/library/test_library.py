@@ -3,13 +3,13 @@
 import h5py
 import numpy as np
 import pytest
-from small_cases import GRAINS, PUSHED, small
+from small_cases import GRAINS, PUSHED, SOIL, small
 
 from dembound.errors import CaseError, RecordError
 from dembound.results.compare import compare
 from dembound.running import run_case
 from dembound.running.recorded import recorded_case
-from dembound.studies.library import Library, build_library, read_records, write_response
+from dembound.studies.library import Library, build_library, read_records, watched_contacts, write_response
 
 SPACING = 1e-3
 
@@ -69,6 +69,26 @@ def test_histories_are_those_of_a_direct_run(heavy, tmp_path):
     assert apart == pytest.approx(2 * step)
     for whole in (SPACING / step, SPACING / apart):
         assert whole == pytest.approx(round(whole))
+
+
+def test_layers_respond_as_in_a_direct_run(tmp_path):
+    library = Library(build_library(small(SOIL, "soil"), 0.005, tmp_path))
+    np.savetxt(tmp_path / "r.txt", [(0.0, 0.0), (0.005, 0.2), (0.01, -0.1), (0.015, 0.0)])
+    (record,) = read_records([str(tmp_path / "r.txt")], library.inputs, library.clock)
+    path = tmp_path / "r" / "run.h5"
+    write_response(library, record, path)
+    direct = run_case(recorded_case(path), tmp_path / "direct") / "run.h5"
+    # sums of some hundred terms as large as the peak
+    assert all(found.peak < 1e-12 for found in compare(direct, [path], "velocity"))
+    # strengths are those of the layer of a contact
+    monitors = [
+        {"name": name, "position": [0.375, y]} for name, y in (("a", 12.375), ("b", 12.125), ("c", 5.125), ("d", 4.875))
+    ]
+    strong = SOIL | {"monitor": monitors, "output": {"load_factor": True}}
+    changes = {"layer.clay.pb_ten": 1e5, "layer.sand.pb_ten": 2e5, "layer.rock.pb_ten": 3e5}
+    library = Library(build_library(small(strong, "strong", changes), 0.005, tmp_path, duration=0.02))
+    found = watched_contacts(library, ["a,b", "c,d"])
+    assert [each.limits.tension for each in found] == [1e5, 2e5]
 
 
 def test_a_measured_record_is_the_same_function_as_in_a_direct_run(tmp_path):
