@@ -98,7 +98,8 @@ def boundary(
         raise CaseError(["--quick: is not possible with --type; leave it out"])
     loaded = load_disks(case, changes)
     chosen = [side.value for side in sides] if sides else measured_sides(loaded)
-    parts = [(side, layer) for side in chosen for layer in layers_beside(loaded, side) or [None]]
+    nowhere: tuple[str | None, ...] = (None,)
+    parts = [(side, layer) for side in chosen for layer in (*layers_beside(loaded, side),) or nowhere]
     for side, layer in parts:
         where = side if layer is None else f"{side}, in {layer}"
         if types:

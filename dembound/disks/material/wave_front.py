@@ -4,7 +4,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.laws import Law, Moduli
 from dembound.motion.paths import Front
