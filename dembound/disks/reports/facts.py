@@ -96,7 +96,7 @@ def _tension_facts(scene: DiskScene) -> Entries:
 def _particles(scene: DiskScene) -> str:
     """Number of particles, also before an excavation."""
     loose = scene.assembly.loose
-    before = f", {scene.before.count:,} before the excavation" if scene.before is not None else ""
+    before = f", {scene.before.disk_count:,} before the excavation" if scene.before is not None else ""
     severed = f"; {counted(loose, 'severed disk')} left out" if loose else ""
     return f"{scene.disk_count:,}{before}{severed}"
 
