@@ -2,7 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
@@ -145,6 +145,12 @@ class Packing(Table, ABC):
     def with_copies(self, across: int, up: int) -> Self:
         """The packing with other numbers of bricks along x and y."""
         return self.model_copy(update={"size": None, "bricks": (across, up)})
+
+    def larger(self, factor: float) -> dict[str, Any]:
+        """The keys of the packing with disks larger by a factor, in the same extent."""
+        packing: dict[str, Any] = {key: value for key, value in self.given().items() if key != "bricks"}
+        sizes = {key: float(f"{length:.15g}") for key, length in self.scaled(factor).items()}
+        return packing | {"size": [round(length, 10) for length in self.extent], **sizes}
 
     @model_validator(mode="after")
     def _whole_bricks(self) -> Self:

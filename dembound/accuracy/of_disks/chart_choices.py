@@ -17,6 +17,9 @@ from dembound.disks.scene import DiskScene, build
 FRACTION = 0.5
 """Factor of the second step fraction."""
 
+EXTENT = ("packing.size", "packing.bricks")
+"""Keys of the extent of a scene, which choices keep."""
+
 UNMATCHED = 0.01
 """Relative difference of β from the matched one from which on that is another choice: it reflects half of it."""
 
@@ -28,14 +31,21 @@ def disk_choices(case: DiskCase) -> Named:
     in the ground.
     """
     yield OWN, {}
-    sizes = (case.packing.scaled(factor) for factor in COARSER)
-    for changes in valid(case, ({f"packing.{key}": size for key, size in each.items()} for each in sizes)):
-        yield label(case, changes), changes
+    for changes in valid(case, (_coarser(case, factor) for factor in COARSER)):
+        yield label(case, {key: size for key, size in changes.items() if key not in EXTENT}), changes
     step = "run.safety" if case.run.time_step == "auto" else "run.time_step"
     changes = {step: FRACTION * (case.run.safety if case.run.time_step == "auto" else case.run.time_step)}
     yield label(case, changes), changes
     yield from _matched_factors(case)
     yield from _other_sides(case)
+
+
+def _coarser(case: DiskCase, factor: float) -> dict[str, Any]:
+    """Changes to disks larger by a factor, in the same extent."""
+    sizes: dict[str, Any] = {f"packing.{key}": size for key, size in case.packing.scaled(factor).items()}
+    if case.packing.bricks is None:
+        return sizes
+    return sizes | {"packing.size": case.packing.larger(factor)["size"], "packing.bricks": None}
 
 
 def _matched_factors(case: DiskCase) -> Named:

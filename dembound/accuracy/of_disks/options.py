@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -160,7 +159,7 @@ class Options:
         if factor == 1.0:
             return self._case, self.given.scene.ground
         try:
-            case = with_changes(self._case, {"packing": _larger(self._case, factor)})
+            case = with_changes(self._case, {"packing": self._case.packing.larger(factor)})
             ground = ground_of(case)
         except DemboundError:
             return None
@@ -224,14 +223,6 @@ def _with_step(case: DiskCase, shorter: float) -> DiskCase:
 def _area(case: DiskCase) -> float:
     """Area (m²) of the disks' box."""
     return case.packing.extent[0] * case.packing.extent[1]
-
-
-def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
-    """The packing table with larger disks in the same place."""
-    packing: dict[str, Any] = {key: value for key, value in case.packing.given().items() if key != "bricks"}
-    size = [round(length, 10) for length in case.packing.extent]
-    sizes = {key: float(f"{length:.15g}") for key, length in case.packing.scaled(factor).items()}
-    return packing | {"size": size, **sizes}
 
 
 def _is_narrow(case: DiskCase, ground: PackedMaterial) -> bool:
