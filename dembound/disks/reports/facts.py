@@ -214,9 +214,7 @@ def _mechanism_facts(name: str, found: Mechanisms) -> Entries:
         f"Q = {least:.3g} to {most:.3g} over {texts[0]} to {texts[1]} {unit}, by {len(found.weights)} mechanisms; wave "
         f"speeds hold at {with_unit(found.frequency, 'Hz')}",
     )
-    step = (
-        "" if name else f": the step is {found.unrelaxed**-0.5:.3g} times as long"
-    )  # in layers the stiffest limits it
+    step = "" if name else f": the step is {found.unrelaxed**-0.5:.3g} times as long"  # in layers the stiffest does
     yield (
         f"unrelaxed stiffness{name}",
         f"{found.unrelaxed:.4g} times that of the wave speeds{step}",
