@@ -212,6 +212,8 @@ def draw_panel(
 
 def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:
     """Thin lines at the joints of layers, and the names of layers where a window has room; inches per metre."""
+    if not disks.joints:
+        return
     left, right, bottom, top = window.extent
     looks: dict[str, Any] = {"linewidth": 0.7, "zorder": ABOVE_DISKS}
     for joint in disks.joints:  # dashes of two colours, visible on all others

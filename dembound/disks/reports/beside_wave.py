@@ -36,9 +36,6 @@ FEWEST, MOST = 12, 100
 WORK = 2e7
 """Largest number of nodes times steps; of longer runs only the beginning is computed, from the wave's start on."""
 
-ARRIVED = 1e-3
-"""Velocity at a place, over the largest that enters, from which on a wave has come there."""
-
 SAFETY = 0.9
 """Time step over the largest stable one."""
 
@@ -338,7 +335,7 @@ def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: S
         low = min(int(height), int(grid.cells[1]) - 1)
         moved = ground.v[:, low] + (height - low) * (ground.v[:, low + 1] - ground.v[:, low])
         whole = np.sum(moved**2, axis=0)
-        if np.abs(moved).max() > ARRIVED * np.abs(incoming).max():
+        if whole.any():
             most = int(np.argmax(whole))
             found[name] = math.sqrt(float(np.sum(error[:, number, most] ** 2)) / float(whole[most]))
     return found

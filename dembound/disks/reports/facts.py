@@ -9,16 +9,16 @@ import numpy as np
 from dembound.boundaries.words import side_in_words
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
+from dembound.damping.quality import Mechanisms
 from dembound.disks.contacts.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.material.at_rest import StressAtRest
-from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reports.continuum_facts import continuum_facts
 from dembound.disks.reports.incident_facts import incident_facts
+from dembound.disks.reports.materials import Own, materials_of
 from dembound.disks.reports.summary import describe_layers, describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
@@ -167,14 +167,13 @@ def _law_facts(scene: DiskScene) -> Entries:
         return
     start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
     yield "law", f"{material.law}{start}"
-    names = [f" of {name}" for name in scene.case.layer_names] if scene.ground.is_layered else [""]
-    for name, each, ground in zip(names, scene.case.materials, scene.ground.materials, strict=True):
-        yield from _strength_facts(name, each, ground)
+    for own in materials_of(scene):
+        yield from _strength_facts(own)
 
 
-def _strength_facts(name: str, material: Material, ground: PackedMaterial) -> Entries:
-    """The limits of contacts and bonds of a material; name : of the layer, after the name of each fact."""
-    bonds = "no bonds"
+def _strength_facts(own: Own) -> Entries:
+    """The limits of contacts and bonds of a material."""
+    material, ground, name, bonds = own.material, own.ground, own.name, "no bonds"
     if ground.moduli.pb_emod > 0.0:
         tension, shear = (
             "unbreakable" if strength is None else with_unit(strength, "Pa")
@@ -201,19 +200,24 @@ def _strength_facts(name: str, material: Material, ground: PackedMaterial) -> En
 
 def _damping_facts(scene: DiskScene) -> Entries:
     """Q over its band, the frequency at which wave speeds hold, the unrelaxed stiffness, and what the step costs."""
-    found = scene.ground.mechanisms
-    if found is None:
-        return
+    for own in materials_of(scene):
+        if (found := own.ground.mechanisms) is not None:
+            yield from _mechanism_facts(own.name, found)
+
+
+def _mechanism_facts(name: str, found: Mechanisms) -> Entries:
+    """Facts about the damping of a material; name : of its layer, after those of the facts."""
     (low, high), (least, most) = found.band, found.range
     texts, unit = in_one_unit((low, high), "Hz")
     yield (
-        "damping",
+        f"damping{name}",
         f"Q = {least:.3g} to {most:.3g} over {texts[0]} to {texts[1]} {unit}, by {len(found.weights)} mechanisms; wave "
         f"speeds hold at {with_unit(found.frequency, 'Hz')}",
     )
+    step = "" if name else f": the step is {found.unrelaxed**-0.5:.3g} times as long"  # in layers the stiffest does
     yield (
-        "unrelaxed stiffness",
-        f"{found.unrelaxed:.4g} times that of the wave speeds: the step is {found.unrelaxed**-0.5:.3g} times as long",
+        f"unrelaxed stiffness{name}",
+        f"{found.unrelaxed:.4g} times that of the wave speeds{step}",
     )
 
 

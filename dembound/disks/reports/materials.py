@@ -18,6 +18,11 @@ class Own:
     layer: str = ""
     given: Mapping[str, Any] = field(default_factory=dict)
 
+    @property
+    def name(self) -> str:
+        """Words after the names of its facts: " of" its layer, or nothing."""
+        return f" of {self.layer}" if self.layer else ""
+
     def key(self, name: str) -> str:
         """The path of a key of the material: in the layer if that gives it, else in [material]."""
         return f"layer.{self.layer}.{name}" if name in self.given else f"material.{name}"
