@@ -161,10 +161,14 @@ def test_transfer_functions_of_layers_are_drawn_and_written(dembound, recorded, 
     assert (frequency[0], over_outcrop[0], over_within[0]) == (0.0, 1.0, 1.0)
     softer = 2400.0 * 672.0 / (1900.0 * 200.0 / np.sqrt(2.0))
     assert 3.0 < over_outcrop.max() < softer
-    (tmp_path / "soil.toml").write_text(
-        text.replace("fric = 0.5", "fric = 0.5\nquality_factor = 20.0"), encoding="utf-8"
-    )
+    damped = text.replace("fric = 0.5", "fric = 0.5\nquality_factor = 20.0")
+    (tmp_path / "soil.toml").write_text(damped, encoding="utf-8")
     answer = dembound("wave", recorded, *options)
     assert answer.err.startswith("soil.toml: damping.band: is missing; a run takes it from its waves")
+    (tmp_path / "soil.toml").write_text(damped + "[damping]\nband = [0.3, 15.0]\n", encoding="utf-8")
+    answer = dembound("wave", recorded, *options, "--transfer", "damped.png")
+    assert answer.code == 0, answer.err
+    heads, *_ = (tmp_path / "damped.csv").read_text(encoding="utf-8").splitlines()
+    assert all(f"outcrop, {words}" in heads for words in ("Q as in runs", "hysteretic", "constant Q"))
     for option in (("--transfer", "ground.png"), ("--damping", "hysteretic")):
         assert dembound("wave", recorded, *option).err.startswith("--transfer, --damping: go with --deconvolve")
