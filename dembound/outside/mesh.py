@@ -95,6 +95,7 @@ class Mesh:
         below: Sequence[float] = (),
         above: Sequence[float] | None = None,
         base: float | None = None,
+        wider: Sequence[float] = (),
         **others: Any,
     ) -> "Mesh":
         """The mesh round a box (left, bottom, right, top; m), which may reach the free surface: no margin, no layer.
@@ -109,6 +110,7 @@ class Mesh:
         below, above : heights of rows below the box, in place of as many of the margin, and up to the surface, from the
             bottom, m; above is None: of equal height. base : height of the rows below all of them, m; None: that of the
             lowest row beside the box.
+        wider : widths of absorbing elements at left and right, outwards, over those beside the box; empty: equal.
         others : attributes of a mesh; levels : numbers of rows beside the box at left and right.
 
         Raises ValueError if the box is empty, or the surface is below its top or has a margin or layer below it.
@@ -117,7 +119,10 @@ class Mesh:
         rows = divided(box[3] - box[1], element[1]) if rows is None else tuple(rows)
         if not (columns and rows):
             raise ValueError("the box is empty")
-        left, right = ((columns[0],) * (margin.along(0)[side] + layer.along(0)[side]) for side in (0, 1))
+        left, right = (
+            (1.0,) * margin.along(0)[side] + tuple(wider or (1.0,) * count) * (count > 0)
+            for side, count in enumerate(layer.along(0))
+        )
         base = rows[0] if base is None else base
         bottom = (base,) * (max(margin.bottom - len(below), min(margin.bottom, 1)) + layer.bottom) + tuple(below)
         top = (rows[-1],) * (margin.top + layer.top)
@@ -131,9 +136,9 @@ class Mesh:
             levels = len(bottom) + levels[0], len(bottom) + levels[1]
         return cls(
             order=order,
-            widths=left + columns + right,
+            widths=tuple(columns[0] * times for times in left[::-1]) + columns + tuple(columns[0] * t for t in right),
             heights=bottom + rows + top,
-            origin=(box[0] - len(left) * columns[0], box[1] - (len(bottom) - len(below)) * base - sum(below)),
+            origin=(box[0] - sum(left) * columns[0], box[1] - (len(bottom) - len(below)) * base - sum(below)),
             box=(len(left), len(bottom), len(left) + len(columns), len(bottom) + len(rows)),
             levels=levels,
             layer=layer,

@@ -4,15 +4,15 @@ Pattern A, D = 1 m: soil of 200 m/s on rock of 400 m/s from y = 20 m down, under
 shortest wave in the soil, at three times that frequency, is 22 D long.
 """
 
-from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from dembound import api
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.layered_waves import rising_in_layers
-from dembound.disks.scene import build, with_waves
+from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.exact.column import Column, Layer
 from dembound.motion.simulation import Simulation
@@ -20,7 +20,10 @@ from dembound.motion.simulation import Simulation
 TOP, JOINT = 40.0, 20.0
 
 
-def case(width: float, height: float, boundary: dict[str, dict[str, str]], duration: float) -> DiskCase:
+SIDES = {key: {"type": "outside"} for key in ("left", "right", "bottom")}
+
+
+def case(width: float, height: float, boundary: dict[str, dict[str, str]], duration: float, **more: Any) -> DiskCase:
     return api.case(
         packing={"pattern": "A", "size": [width, height], "radius": 0.5, "origin": [-0.5 * width, TOP - height]},
         material={"density": 2300.0, "s_wave_speed": 400.0, "fric": 0.5},
@@ -29,31 +32,84 @@ def case(width: float, height: float, boundary: dict[str, dict[str, str]], durat
         wave={"pulse": {"type": "ricker", "frequency": 3.0, "amplitude": 1.0}},
         outside={"accuracy": 2e-3},
         run={"duration": duration},
+        **more,
     )
+
+
+def exact(plain: DiskCase, kind: str, times: np.ndarray, depth: float, height: float) -> np.ndarray:
+    """Velocity at times (k,) s, evenly spaced from 0 on, over the pulse at a height (m) in the rock, at a depth, m."""
+    soil, rock = (
+        Layer(TOP - JOINT, each.material.density, each.material.wave_speeds(1)[kind == "s"])
+        for each in build(plain).ground.layers[::-1]
+    )
+    incident = plain.wave["pulse"].velocity(times - (JOINT - height) / rock.speed)
+    return Column([soil, rock]).history(incident, times[1], depth)
 
 
 @pytest.mark.parametrize("height", [30.0, 10.0], ids=["joint in the box", "rock below"])
 def test_a_box_moves_as_the_ground(height: float) -> None:
-    """All its disks; the continuum, which has the scattered motion, is at rest."""
-    plain = case(20.0, height, {key: {"type": "outside"} for key in ("left", "right", "bottom")}, 0.9)
-    scene = build(plain)
-    ground, wave = scene.outside.body.ground, plain.wave["pulse"]
-    waves = rising_in_layers(
-        ground.media[::-1], ground.joints[::-1], scene.outside.free_surface, (wave, None), -25.0, (0.0, 0.9), 1.0
+    """All its disks under a wave from straight below; the continuum, which has the scattered motion, is at rest."""
+    scene = build(
+        case(20.0, height, SIDES, 0.9, incident={"type": "sv", "angle": 0.0, "wave": "pulse", "point": [0.0, -25.0]})
     )
-    scene = with_waves(replace(scene, ground_waves=waves), plain.wave)
+    waves, disks = scene.ground_waves, len(scene.assembly.radii)
     simulation = Simulation(scene, choose_step(scene)[0])
-    disks, moved, off, rest = len(scene.assembly.radii), 0.0, 0.0, 0.0
+    moved, off, rest = 0.0, 0.0, 0.0
     while simulation.time < 0.89:
         simulation.run(simulation.state.step + 10)
         time = np.array([simulation.time - 0.5 * simulation.time_step])
-        exact = waves.motion("velocity", time, scene.positions[:disks])[0].T[:2]
+        expected = waves.motion("velocity", time, scene.positions[:disks])[0].T[:2]
         found = simulation.state.velocity[:2]
-        moved, off = max(moved, np.abs(exact).max()), max(off, np.abs(found[:, :disks] - exact).max())
+        moved, off = max(moved, np.abs(expected).max()), max(off, np.abs(found[:, :disks] - expected).max())
         rest = max(rest, np.abs(found[:, disks:]).max())
     assert moved > 2.5
     assert off < 1e-3 * moved
     assert rest < 1e-3 * moved
+
+
+MONITORS = {"disk": [0.0, 39.5], "soil": [18.0, 25.0], "rock": [-18.0, 15.0], "below": [5.0, 3.0]}
+
+
+def test_monitors_of_a_box_in_layers(tmp_path: Path) -> None:
+    """Under a wave from straight below: in the disks and in the continuum at both sides of the joint, without hole."""
+    monitors = [{"name": name, "position": place} for name, place in MONITORS.items()]
+    incident = {"type": "sv", "angle": 0.0, "wave": "pulse", "point": [0.0, -25.0]}
+    plain = case(20.0, 30.0, SIDES, 0.9, incident=incident, monitor=monitors)
+    results = api.run(plain, tmp_path / "run")
+    waves = build(plain).ground_waves
+    for name in MONITORS:
+        history = results.histories[name]
+        place = np.array([history.attributes["position"]])
+        expected = waves.motion("velocity", history.time, place)[:, 0, 0]
+        assert np.abs(history.velocity[:, 0] - expected).max() < 2e-3 * np.abs(expected).max(), name
+
+
+@pytest.mark.parametrize("height", [30.0, 10.0], ids=["joint in the box", "rock below"])
+def test_a_box_beside_its_column(height: float) -> None:
+    """Waves enter through the foot of a free-field column, with the joint in both or below both.
+
+    The box moves as the column, whose surface moves as that of the ground.
+    """
+    plain = case(20.0, height, SIDES | {"bottom": {"type": "outside", "wave_s": "pulse"}}, 0.9)
+    scene = build(plain)
+    column, disks = scene.seam.count, len(scene.assembly.radii)
+    simulation = Simulation(scene, choose_step(scene)[0])
+    up = scene.assembly.positions[:, 1]
+    top = int(np.argmax(up[:column]))
+    steps = int(0.89 / simulation.time_step)
+    velocity, apart, rest = np.zeros(steps), 0.0, 0.0
+    for step in range(steps):
+        simulation.run(step + 1)
+        found = simulation.state.velocity[:2]
+        velocity[step] = found[0, top]
+        if step % 10 == 0:
+            apart = max(apart, np.abs(found[:, column:disks] - found[:, scene.twin[column:disks]]).max())
+            rest = max(rest, np.abs(found[:, scene.outside.nodes]).max())
+    half = 0.5 * simulation.time_step
+    expected = exact(plain, "s", half * np.arange(2 * steps), TOP - up[top], min(TOP - height, JOINT))[1::2]
+    peak = np.abs(expected).max()
+    assert np.abs(velocity - expected).max() < 1e-3 * peak
+    assert max(apart, rest) < 1e-9 * peak
 
 
 @pytest.mark.parametrize(("kind", "component"), [("s", 0), ("p", 1)])
@@ -73,11 +129,6 @@ def test_the_surface_over_rock_below(kind: str, component: int) -> None:
         simulation.run(step + 1)
         velocity[step] = simulation.state.velocity[component, top]
 
-    soil, rock = (
-        Layer(TOP - JOINT, each.material.density, each.material.wave_speeds(1)[component == 0])
-        for each in scene.ground.layers[::-1]
-    )
     half = 0.5 * simulation.time_step
-    incident = plain.wave["pulse"].velocity(half * np.arange(2 * steps))
-    exact = Column([soil, rock]).history(incident, half, TOP - up[top])[1::2]
-    assert np.abs(velocity - exact).max() < 1e-3 * np.abs(exact).max()
+    expected = exact(plain, kind, half * np.arange(2 * steps), TOP - up[top], JOINT)[1::2]
+    assert np.abs(velocity - expected).max() < 1e-3 * np.abs(expected).max()

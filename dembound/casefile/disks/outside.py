@@ -43,7 +43,8 @@ class OutsideTable(Table):
         None,
         unit="1",
         means="count",
-        help="elements that absorb, one behind the other; absent: from accuracy",
+        help="elements that absorb, one behind the other, and five wider ones more left and right of layers; absent: "
+        "from accuracy",
         ge=2,
         le=MOST_ELEMENTS,
     )

@@ -32,6 +32,7 @@ from dembound.disks.packing_errors import lattice_errors, unevenness
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import place_of
 from dembound.outside import sizing
+from dembound.outside.medium import Medium
 from dembound.outside.sizing import Signal
 
 PASSED, STEEP, RETURNED = 4.5, 8.0, 0.5
@@ -104,8 +105,26 @@ def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[
 
 
 def largest_element(outside: Surroundings) -> float:
-    """The largest side of the elements of a continuum, m."""
-    return float(outside.body.mesh.element_sizes.max())
+    """The largest side of the elements of a continuum, m, without those that absorb beside layers."""
+    return max(side for _, side in elements_by_layer(outside))
+
+
+def elements_by_layer(outside: Surroundings) -> list[tuple[Medium, float]]:
+    """The layers that a continuum has elements in, from the bottom up, each with the largest side (m) of these.
+
+    Wider ones that absorb beside layers are left out.
+    """
+    body, mesh = outside.body, outside.body.mesh
+    sizes, layer = mesh.element_sizes.max(axis=1), body.layer
+    if outside.settings.beside:
+        sizes = np.where(mesh.absorbs[:, 0], 0.0, sizes)
+    each = [(medium, sizes[layer == number]) for number, medium in enumerate(body.ground.media)]
+    return [(medium, float(own.max())) for medium, own in each if own.any()]
+
+
+def coarsest(outside: Surroundings) -> tuple[Medium, float]:
+    """The layer with the fewest elements to a wavelength, and the largest side (m) of these."""
+    return min(elements_by_layer(outside), key=lambda each: sizing.slowest(each[0]) / each[1])
 
 
 def near_error(scene: DiskScene, outside: Surroundings) -> float:
@@ -137,9 +156,9 @@ class _Parts(NamedTuple):
 
 def _parts(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal], lowest: float) -> _Parts:
     """The parts of the error; lowest : Hz, see `sizing.energies`."""
-    settings, medium, mesh = outside.settings, outside.body.medium, outside.body.mesh
-    passed = settings.order * sizing.slowest(medium) / (PASSED * largest_element(outside))
-    long = sizing.fastest(medium) / (2.0 * math.pi * mesh.inner)
+    settings, mesh, (medium, side) = outside.settings, outside.body.mesh, coarsest(outside)
+    passed = settings.order * sizing.slowest(medium) / (PASSED * side)
+    long = sizing.fastest(outside.body.medium) / (2.0 * math.pi * mesh.inner)
     elements, lasting = 0.0, 0.0
     for signal in signals:
         frequency, energy = sizing.energies(signal, lowest)

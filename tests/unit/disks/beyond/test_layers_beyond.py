@@ -15,13 +15,15 @@ from dembound.packings.cut import cut_contacts
 
 ROCK, SOIL = Medium.isotropic(2300.0, 1400.0, 700.0), Medium.isotropic(1800.0, 400.0, 200.0)
 BOX = (0.0, 0.0, 20.0, 30.0)
-SETTINGS = Settings(4, 10.0, 0.0, 1, 3, Absorption(), 0.1, taller=(2.0, 1.0), beside=6)
+SETTINGS = Settings(4, 10.0, 0.0, 1, 3, Absorption(), 0.1, taller=(2.0, 1.0), beside=(1.0, 1.0, 3.0))
 SIDES = ("left", "right", "bottom")
 
 
 def heights(joint: float, **more: float) -> list[float]:
     mesh = mesh_of(SETTINGS, BOX, SIDES, (10.0, 10.0), ground=Layered((ROCK, SOIL), (joint,)), **more)
-    assert mesh.layer == (6, 6, 3, 0)
+    assert mesh.layer == (3, 3, 3, 0)
+    assert mesh.widths == (30.0, *(10.0,) * 8, 30.0)
+    assert mesh.origin[0] == -60.0
     assert mesh.sides == pytest.approx((BOX[0], BOX[2], BOX[1], BOX[3]), abs=1e-9)
     return list(mesh.heights)
 
