@@ -406,4 +406,4 @@ def _element(case: DiskCase, medium: Ground, box: Box, sides: Sequence[str]) -> 
     if case.static is None:
         nothing = "the case has no wave or load to choose it from"
         raise CaseError([f"outside.element: is absent, but {nothing}; give the largest side of elements, m"])
-    return min([0.5 * (box[2] - box[0]), 0.5 * (box[3] - box[1]), *of_fields])
+    return min([0.25 * (box[2] - box[0]), 0.25 * (box[3] - box[1]), *of_fields])
