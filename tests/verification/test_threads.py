@@ -62,7 +62,7 @@ SCENES = {
         "load": WEIGHT,
         "layer": [{"thickness": 4.0, "density": 2000.0, "p_wave_speed": 500.0}, {"name": "stiff"}],
     },
-    "settled, layers under K0 in a continuum": {
+    "settled, layers under K0, continuum beside": {
         "size": FEW,
         "boundary": {**dict.fromkeys(("left", "right"), "outside"), "bottom": {"type": "outside", "wave_s": "pulse"}},
         "material": {"law": "linearpbond", "fric": 0.5},

@@ -48,7 +48,7 @@ UNEVEN = 0.01
 GIVES_WAY = 6.0
 """By how much the wall of a hole moves too far in a body that only forces hold, over (hole / body)² of their widths.
 
-The second harmonic of holes in the middle: 7.6, 6.4, 5.7, 5.2 for bodies 3, 4, 6, 8 times as wide; the mean motion less.
+The second harmonic of holes in the middle: 7.6, 6.4, 5.7, 5.2 for bodies 3, 4, 6, 8 times as wide; the mean less.
 """
 
 TOO_FAR = 0.05
@@ -134,10 +134,9 @@ def _holes_between_forces(scene: DiskScene) -> Iterator[str]:
     """Holes excavated where no support or continuum at left or right carries what they set free."""
     static, case, box = scene.case.static, scene.case, scene.case.packing.box
     sides = [side for side in ("left", "right") if side in scene.edges and not case.side(side).is_outside]
-    held = static and any(
-        0 in table.prescribed(0) for side, table in static.boundary.items() if table and side in sides
-    )
-    if static is None or held or len(sides) < 2:
+    if static is None or len(sides) < 2:
+        return
+    if any(table is not None and side in sides and 0 in table.prescribed(0) for side, table in static.boundary.items()):
         return
     for place, hole in numbered("hole", case.hole):
         x0, y0, x1, y1 = hole.box
@@ -145,9 +144,9 @@ def _holes_between_forces(scene: DiskScene) -> Iterator[str]:
         more = GIVES_WAY * (max(x1 - x0, y1 - y0) / min(box[2] - box[0], box[3] - box[1])) ** 2
         if hole.stage == "after" and inside and more > TOO_FAR:
             yield (
-                f"{place}: is excavated in a body that only forces hold at left and right, and its wall will move about "
-                f'{percent(more)} too far; take "outside" sides, a larger body, or "fixed" left, right and bottom sides '
-                "in [static.boundary]"
+                f"{place}: is excavated in a body that only forces hold at left and right, and its wall will move "
+                f'about {percent(more)} too far; take "outside" sides, a larger body, or hold left and right in '
+                "[static.boundary]"
             )
 
 
