@@ -148,10 +148,15 @@ class PlainPairs:
             total[:, j] += [*-on_i, moment_j]
         return total
 
+    def began(self, c):
+        """Stretch, shear and rotation (3,) that a pair has from the start."""
+        began = self.arrays.began
+        return np.zeros(3) if isinstance(began, float) else began[self.arrays.contact_type[c]]
+
     def strain(self, c, u_i, u_j, v_i, v_j, step):
         """Normal, arms, stretch, shear and its velocity along the normal of a pair."""
         p, geometry = self.arrays, self.limits.geometry
-        row = p.constants[p.contact_type[c]]
+        row, began = p.constants[p.contact_type[c]], self.began(c)
         apart, along = (u_j - u_i)[:2], (v_j - v_i)[:2]
         still = geometry == REFERENCE or (geometry == BONDED and p.state[c] == INTACT)
         vector = row[:2] if still else row[:2] + apart
@@ -159,15 +164,15 @@ class PlainPairs:
         n = vector / length
         t = np.array([-n[1], n[0]])
         arms = np.array([length / 2.0 + row[4], length / 2.0 - row[4]])
-        stretch = (n @ apart if still else length - row[2]) + row[12]
+        stretch = (n @ apart if still else length - row[2]) + began[0]
         slide = t @ along - arms @ [v_i[2], v_j[2]]
-        shear = t @ apart - arms @ [u_i[2], u_j[2]] + row[13] if still else p.shear[c] + step * slide
+        shear = t @ apart - arms @ [u_i[2], u_j[2]] + began[1] if still else p.shear[c] + step * slide
         return n, t, arms, stretch, shear, n @ along, slide
 
     def _push_one(self, c, u_i, u_j, v_i, v_j, step, number):
         """Force on the first disk, and the moments on both."""
         p, limits = self.arrays, self.limits
-        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend, _, _, turned = p.constants[p.contact_type[c]]
+        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = p.constants[p.contact_type[c]]
         n, t, arms, stretch, shear, opening, slide = self.strain(c, u_i, u_j, v_i, v_j, step)
         before, p.shear[c] = shear - step * slide, shear
         push, rub = k_n * (touch - rest - stretch), k_s * (shear - p.slip[c])
@@ -191,7 +196,7 @@ class PlainPairs:
         force, moment = -push * n + rub * t, 0.0
         side = rub
         if p.state[c] == INTACT:
-            turn, turning = u_j[2] - u_i[2] + turned, v_j[2] - v_i[2]
+            turn, turning = u_j[2] - u_i[2] + self.began(c)[2], v_j[2] - v_i[2]
             tension = b_n * stretch * per_area + abs(b_m * turn) * bend
             strength = limits.cohesion - b_n * stretch * per_area * limits.tan_fa
             if tension >= limits.tension or abs(b_s * shear) * per_area >= strength:
@@ -201,11 +206,7 @@ class PlainPairs:
                 broken = 0.5 * b_n * stretch * (stretch - step * opening)
                 broken += 0.5 * b_s * shear * before + 0.5 * b_m * turn * (turn - step * turning)
                 if limits.geometry == BONDED:  # from here on the contact has its true length
-                    longer = (
-                        np.hypot(*(p.constants[p.contact_type[c], :2] + (u_j - u_i)[:2]))
-                        - rest
-                        + p.constants[p.contact_type[c], 12]
-                    )
+                    longer = np.hypot(*(p.constants[p.contact_type[c], :2] + (u_j - u_i)[:2])) - rest + self.began(c)[0]
                     overlaps = [max(touch - rest - each, 0.0) for each in (stretch, longer)]
                     broken += 0.5 * k_n * (overlaps[0] ** 2 - overlaps[1] ** 2)
                 self.lost[1 if broken > 0.0 else 2] += broken
@@ -226,9 +227,8 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
     names = ("touch", "offset", "normal", "shear", "bond_normal", "bond_shear", "bending")
     springs = [columns[name] for name in names]
     bonds = [1.0 / columns["area"], 1.5 / columns["bond_radius"] ** 2]  # R̄/J with J = 2 R̄³/3
-    constants = np.ascontiguousarray(
-        np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds, *columns.get("began", np.zeros((3, b)))])
-    )
+    constants = np.ascontiguousarray(np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds]))
+    began = np.ascontiguousarray(columns["began"].T) if "began" in columns else np.float64(0.0)
     owner, end = np.concatenate([first, second]), np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
     return tables.Contacts(
         0,
@@ -236,6 +236,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
         second.astype(np.uint32),
         np.arange(b, dtype=np.uint32),
         constants,
+        began,
         columns["state"].astype(np.uint8),
         np.zeros(b),
         np.zeros(b),

@@ -93,7 +93,9 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
     In layers it is that of the slowest.
     """
     sides = [side for side, table in case.boundary.items() if table.is_outside]
-    if not sides or (case.outside.element is None and not signals_of(case)):  # which cannot be built
+    if not sides or (
+        case.outside.element is None and case.static is None and not signals_of(case)
+    ):  # which cannot be built
         return None
     speed, material = min(((_nominal_speed(each), each) for each in case.materials), key=lambda each: each[0])
     medium = Medium.isotropic(material.density, speed, 0.5 * speed)

@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit, types
 
 from dembound.kernels.apart import apart, in_chunks
+from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum, largest
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
 from dembound.kernels.limits import limit_of
@@ -33,7 +34,7 @@ def slack(u, contacts, limits, keeps_slip):
 def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
     """Fill closest (chunks,) with the least `slack` of each chunk of pairs, negative."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
-    constants, state, slip = contacts.constants, contacts.state, contacts.slip
+    constants, began, state, slip = contacts.constants, contacts.began, contacts.state, contacts.slip
     friction, tension, cohesion = limits.friction, limits.tension, limits.cohesion
     tan_fa, geometry = limits.tan_fa, limits.geometry
     b = first.size
@@ -42,7 +43,7 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
             c = U(p)
             i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
-            nx, ny, distance, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants)
+            nx, ny, distance, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants, began)
             if geometry == UPDATED:
                 room = min(room, TURN * distance - abs(nx * dy - ny * dx))
             kn = constants[k, U(5)]
@@ -63,7 +64,7 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
                 per_area = constants[k, U(10)]
                 bending = constants[k, U(9)] * constants[k, U(11)]
                 stress = constants[k, U(7)] * stretch * per_area
-                turned = bending * abs(u[U(2), j] - u[U(2), i] + constants[k, U(14)])
+                turned = bending * abs(u[U(2), j] - u[U(2), i] + began_with(began, k, U(2)))
                 normal = constants[k, U(7)] * per_area
                 sheared = constants[k, U(8)] * per_area
                 room = min(room, (limit_of(tension, k) - stress - turned) / (2.0 * normal))
@@ -89,7 +90,8 @@ def strain_energy(u, contacts, geometry):
 def _strain_energies(begin, end, u, contacts, geometry, stored):
     """Fill stored (chunks, 2) with the `strain_energy` of contacts and of bonds in each chunk of pairs."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
-    constants, state, all_shear, slip = contacts.constants, contacts.state, contacts.shear, contacts.slip
+    constants, began, state = contacts.constants, contacts.began, contacts.state
+    all_shear, slip = contacts.shear, contacts.slip
     b = first.size
     for chunk in range(begin, end):
         in_contacts = 0.0
@@ -99,9 +101,9 @@ def _strain_energies(begin, end, u, contacts, geometry, stored):
             i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
             intact = state[c] == INTACT
             if geometry >= REFERENCE or (geometry == BONDED and intact):
-                _, _, _, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants)
+                _, _, _, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants, began)
             else:
-                _, _, _, stretch = updated_stretch(k, dx, dy, constants)
+                _, _, _, stretch = updated_stretch(k, dx, dy, constants, began)
                 shear = all_shear[c]
             overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
             slid = shear
@@ -113,7 +115,7 @@ def _strain_energies(begin, end, u, contacts, geometry, stored):
                 slid -= slip[c]
             in_contacts += 0.5 * (constants[k, U(5)] * overlap * overlap + constants[k, U(6)] * slid * slid)
             if intact:
-                turn = u[U(2), j] - u[U(2), i] + constants[k, U(14)]
+                turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
                 in_bonds += 0.5 * (constants[k, U(7)] * stretch * stretch + constants[k, U(8)] * shear * shear)
                 in_bonds += 0.5 * constants[k, U(9)] * turn * turn
         stored[chunk, 0] = in_contacts

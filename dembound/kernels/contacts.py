@@ -5,19 +5,20 @@ A pair's motion is three numbers: the distance of the centres, the tangential di
 its unloaded state; the contact resists overlap and the part of `shear` that has not slid. No other history is needed:
 in two dimensions a shear force has one component, which rotates with the pair automatically.
 
-A row of constants (15,) of a pair with first disk i and second disk j:
+A row of constants (12,) of a pair with first disk i and second disk j:
 
-    [d_x, d_y, |d|, touch, (R_i − R_j)/2, k_n, k_s, k̄_n A, k̄_s A, k̄_n J, 1/A, R̄/J, e_0, s_0, θ_0]
+    [d_x, d_y, |d|, touch, (R_i − R_j)/2, k_n, k_s, k̄_n A, k̄_s A, k̄_n J, 1/A, R̄/J]
 
 d is the vector from i to j at the start, touch the distance at which the contact begins to act; then the stiffnesses of
-the contact and of the bond; last the stretch, shear and rotation that the pair has from the start, under a stress at
-rest. Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
+the contact and of the bond. Under a stress at rest a pair has a stretch, shear and rotation from the start (began.py).
+Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
 """
 
 import numpy as np
 from numba import njit
 
 from dembound.kernels.apart import apart, in_chunks
+from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
 from dembound.kernels.limits import limit_of
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
@@ -75,7 +76,7 @@ def closing_work(stiffness, before, now, had_closed, push):
 def push_pair(c, u, v, step, number, contacts, limits, lost):
     """Force of pair c, see `push`; returns the energy (J) taken by friction, and enters the rest in lost (4,)."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
-    constants, state, force = contacts.constants, contacts.state, contacts.force
+    constants, began, state, force = contacts.constants, contacts.began, contacts.state, contacts.force
     all_shear, all_slip, closed, cracked = contacts.shear, contacts.slip, contacts.closed, contacts.cracked
     geometry = limits.geometry
     rubbed = 0.0
@@ -83,11 +84,11 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
     intact = state[c] == INTACT
     keeps_geometry = geometry == REFERENCE or (geometry == BONDED and intact)
     if keeps_geometry:
-        nx, ny, distance, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants)
+        nx, ny, distance, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants, began)
         was = shear - step * slide(i, j, k, nx, ny, distance, v, constants)
     else:
         was = all_shear[c]
-        nx, ny, distance, stretch, shear = updated_strain(i, j, k, dx, dy, was, v, step, constants)
+        nx, ny, distance, stretch, shear = updated_strain(i, j, k, dx, dy, was, v, step, constants, began)
         all_shear[c] = shear
     overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
     arm_i = 0.5 * distance + constants[k, U(4)]
@@ -116,7 +117,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
     pull = -N
     moment = 0.0
     if intact:
-        turn = u[U(2), j] - u[U(2), i] + constants[k, U(14)]
+        turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
         Fn = constants[k, U(7)] * stretch
         Fs = constants[k, U(8)] * shear
         M = constants[k, U(9)] * turn
@@ -131,7 +132,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
             turning = v[U(2), j] - v[U(2), i]
             broken = 0.5 * (Fn * (stretch - step * opening) + Fs * was + M * (turn - step * turning))
             if geometry == BONDED:  # the contact changes to the updated geometry
-                _, _, _, longer = updated_stretch(k, dx, dy, constants)
+                _, _, _, longer = updated_stretch(k, dx, dy, constants, began)
                 later = max(overlap + stretch - longer, 0.0)
                 broken += 0.5 * constants[k, U(5)] * (max(overlap, 0.0) ** 2 - later**2)
             lost[1 if broken > 0.0 else 2] += broken
@@ -223,11 +224,11 @@ def start_from_displacements(u, contacts, keeps_slip=False):
     keeps_slip : contacts that are closed at the start keep their slip.
     """
     first, second, contact_type, constants = contacts.first, contacts.second, contacts.contact_type, contacts.constants
-    shear, slip = contacts.shear, contacts.slip
+    began, shear, slip = contacts.began, contacts.shear, contacts.slip
     for p in range(first.size):
         c = U(p)
         i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
-        _, _, _, stretch, sheared = reference_strain(i, j, k, dx, dy, u, constants)
+        _, _, _, stretch, sheared = reference_strain(i, j, k, dx, dy, u, constants, began)
         shear[c] = sheared
         if keeps_slip and constants[k, U(3)] >= constants[k, U(2)]:
             continue

@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.apart import in_chunks
+from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, U
 from dembound.kernels.pair_strain import pair, reference_strain
 
@@ -23,6 +24,7 @@ def least_factors(u, rest, contacts, slopes, allowed, least, where):
 @njit(**FAST)
 def _least_factors(begin, end, u, rest, contacts, slopes, allowed, least, where):
     first, second, contact_type, constants = contacts.first, contacts.second, contacts.contact_type, contacts.constants
+    began = contacts.began
     b = first.size
     limits = allowed.shape[1]
     for chunk in range(begin, end):
@@ -32,13 +34,13 @@ def _least_factors(begin, end, u, rest, contacts, slopes, allowed, least, where)
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
             c = U(p)
             i, j, k, x, y = pair(c, rest, first, second, contact_type, constants)
-            _, _, _, still_stretch, still_shear = reference_strain(i, j, k, x, y, rest, constants)
-            still_turn = rest[U(2), j] - rest[U(2), i] + constants[k, U(14)]
+            _, _, _, still_stretch, still_shear = reference_strain(i, j, k, x, y, rest, constants, began)
+            still_turn = rest[U(2), j] - rest[U(2), i] + began_with(began, k, U(2))
             i, j, k, x, y = pair(c, u, first, second, contact_type, constants)
-            _, _, _, stretch, shear = reference_strain(i, j, k, x, y, u, constants)
+            _, _, _, stretch, shear = reference_strain(i, j, k, x, y, u, constants, began)
             stretch -= still_stretch
             shear -= still_shear
-            turn = u[U(2), j] - u[U(2), i] + constants[k, U(14)] - still_turn
+            turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2)) - still_turn
             for number in range(limits):
                 m = U(number)
                 to_stretch = slopes[k, m, U(0)]

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.apart import in_chunks
+from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, push_pair
 from dembound.kernels.lane_step import INLINED, larger, next_place, place_of
@@ -170,15 +171,15 @@ def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, li
     """Forces of the pairs of a block of row q in the geometry of the start; their first disks are from slot i on."""
     c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
     k = pairs.constants
-    nx, ny = k[q, U(15)], k[q, U(16)]
+    nx, ny = k[q, U(12)], k[q, U(13)]
     rest = k[q, U(2)]
     arm_i = 0.5 * rest + k[q, U(4)]
     arm_j = rest - arm_i
     dx, dy = _apart(u, i, j)
     turn_i, turn_j = load(u[2], i), load(u[2], j)
-    stretch = nx * dx + ny * dy + k[q, U(12)]
-    shear = nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j + k[q, U(13)]
-    strain = stretch, shear, turn_j - turn_i + k[q, U(14)]
+    stretch = nx * dx + ny * dy + began_with(pairs.began, q, U(0))
+    shear = nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j + began_with(pairs.began, q, U(1))
+    strain = stretch, shear, turn_j - turn_i + began_with(pairs.began, q, U(2))
     gives_way = limits.geometry != REFERENCE or k[q, U(3)] < rest
     opening = splat(0.0)
     if gives_way:
@@ -200,13 +201,14 @@ def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limi
     x = k[q, U(0)] + dx
     y = k[q, U(1)] + dy
     distance = root(x * x + y * y)
-    stretch = ((k[q, U(0)] + x) * dx + (k[q, U(1)] + y) * dy) / (distance + k[q, U(2)]) + k[q, U(12)]
+    stretch = ((k[q, U(0)] + x) * dx + (k[q, U(1)] + y) * dy) / (distance + k[q, U(2)])
+    stretch += began_with(pairs.began, q, U(0))
     inverse = 1.0 / distance
     nx, ny = x * inverse, y * inverse
     arm_i = 0.5 * distance + k[q, U(4)]
     arm_j = distance - arm_i
     shear = load(contacts.shear, c) + step * _slide((nx, ny), (arm_i, arm_j), i, j, v)
-    strain = stretch, shear, load(u[2], j) - load(u[2], i) + k[q, U(14)]
+    strain = stretch, shear, load(u[2], j) - load(u[2], i) + began_with(pairs.began, q, U(2))
     _act(
         c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, nx * dvx + ny * dvy, True, True,
         u, v, step, number, pairs, contacts, limits, taken, lost,

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from dembound.kernels.began import began_with
 from dembound.kernels.common import FAST, U
 
 
@@ -16,19 +17,19 @@ def pair(c, u, first, second, contact_type, constants):
 
 
 @njit(**FAST, inline="always")
-def reference_strain(i, j, k, dx, dy, u, constants):
+def reference_strain(i, j, k, dx, dy, u, constants, began):
     """Normal at the start, distance, stretch and shear of a pair for small displacements."""
     rest = constants[k, U(2)]
     nx = constants[k, U(0)] / rest
     ny = constants[k, U(1)] / rest
-    stretch = nx * dx + ny * dy + constants[k, U(12)]
+    stretch = nx * dx + ny * dy + began_with(began, k, U(0))
     arm_i = 0.5 * rest + constants[k, U(4)]
-    shear = nx * dy - ny * dx - arm_i * u[U(2), i] - (rest - arm_i) * u[U(2), j] + constants[k, U(13)]
+    shear = nx * dy - ny * dx - arm_i * u[U(2), i] - (rest - arm_i) * u[U(2), j] + began_with(began, k, U(1))
     return nx, ny, rest, stretch, shear
 
 
 @njit(**FAST, inline="always")
-def updated_stretch(k, dx, dy, constants):
+def updated_stretch(k, dx, dy, constants, began):
     """Normal and distance of a pair whose vector has changed by dx, dy, and its stretch.
 
     The stretch is (d² − d_0²)/(d + d_0), which keeps the digits that d − d_0 loses, and that at the start.
@@ -37,7 +38,7 @@ def updated_stretch(k, dx, dy, constants):
     y = constants[k, U(1)]
     rest = constants[k, U(2)]
     distance = np.sqrt((x + dx) * (x + dx) + (y + dy) * (y + dy))
-    stretch = ((x + x + dx) * dx + (y + y + dy) * dy) / (distance + rest) + constants[k, U(12)]
+    stretch = ((x + x + dx) * dx + (y + y + dy) * dy) / (distance + rest) + began_with(began, k, U(0))
     return (x + dx) / distance, (y + dy) / distance, distance, stretch
 
 
@@ -50,7 +51,7 @@ def slide(i, j, k, nx, ny, distance, v, constants):
 
 
 @njit(**FAST, inline="always")
-def updated_strain(i, j, k, dx, dy, was, v, step, constants):
+def updated_strain(i, j, k, dx, dy, was, v, step, constants, began):
     """The strain of a pair whose normal and arms follow the motion; was: the shear before the step (s)."""
-    nx, ny, distance, stretch = updated_stretch(k, dx, dy, constants)
+    nx, ny, distance, stretch = updated_stretch(k, dx, dy, constants, began)
     return nx, ny, distance, stretch, was + step * slide(i, j, k, nx, ny, distance, v, constants)

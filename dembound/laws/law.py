@@ -104,7 +104,7 @@ class Law(ABC):
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 15) of pairs, in the columns explained in kernels/contacts.py.
+        """Constants (b, 15) of pairs, in the columns explained in kernels/contacts.py and, last, kernels/began.py.
 
         Parameters
         ----------

@@ -82,6 +82,10 @@ CASES = {
         "outside": {"element": 4.0},
         "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
         "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2, "k0": 0.5},
+        "layer": [
+            {"thickness": 9.0, "density": 2000.0, "p_wave_speed": 600.0, "k0": 0.8, "fric": 0.2},
+            {"name": "stiff"},
+        ],
         "monitor": [{"name": "middle", "position": [10.0, 10.0]}, {"name": "beside", "position": [4.0, 10.0]}],
     },
     "damped by Q, settled beside a free field": DISKS

@@ -119,6 +119,36 @@ def test_each_layer_has_its_own_k0(lab, law: str) -> None:
     assert speed(lab, scene, found) < 1e-9
 
 
+@pytest.mark.parametrize("material", [STRONG | {"pb_ten": 1e6, "pb_coh": 2e6}, {"quality_factor": 20.0}])
+@pytest.mark.parametrize("name", SIDES)
+def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, name: str, material) -> None:
+    """Each layer keeps its K0 and has its strengths; the ground rests with a hole, and a wave passes from below."""
+    layers = [
+        {"thickness": 10.0, "density": 1800.0, "p_wave_speed": 400.0, "k0": 0.8},
+        {"thickness": 10.0, "density": 2200.0, "p_wave_speed": 700.0, "k0": 0.6},
+        {"density": 2300.0},
+    ]
+    bonded = "law" in material
+    layers[0] |= {"pb_ten": 2e5, "pb_coh": 4e5, "fric": 0.4} if bonded else {}
+    silence = ground(lab, "A", silent(name), material, hole=True, size=(20.0, 30.0), static=K0, load=WEIGHT)
+    layered = build(with_changes(silence.case, {"layer": layers}))
+    found = settle(layered)
+    before = lab.simulation(layered.before, found.before.start)
+    xx, yy, _ = before.system.stress(before.state.displacement)[layered.before.column_count :].T
+    x, height = layered.before.assembly.positions[layered.before.column_count : layered.before.disk_count].T
+    for number, ratio in enumerate((0.5, 0.6, 0.8)):
+        inner = (np.abs(height - 10.0 * number - 5.0) < 2.0) & (np.abs(x - 10.0) < 8.0)
+        assert xx[: len(height)][inner].sum() / yy[: len(height)][inner].sum() == pytest.approx(ratio, abs=1e-3)
+    assert speed(lab, layered, found) < 1e-9
+    moved = build(with_changes(layered.case, {"boundary.bottom": SIDES[name]["bottom"], "wave": {"pulse": PULSE}}))
+    simulation = lab.simulation(moved, found.start)
+    ledger = lab.ledger(simulation, 20)
+    simulation.run(400)
+    assert np.abs(simulation.state.velocity).max() > 0.5 * PULSE["amplitude"]
+    most = max(abs(each.outside) for each in ledger.entries)
+    assert max(abs(entry.error) for entry in ledger.entries) < (1e-4 if bonded else 1e-9) * most
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SIDES)
 @pytest.mark.parametrize("static", [{"stress": STRESS}, K0])
@@ -143,7 +173,7 @@ def test_the_continuum_carries_what_an_excavation_sets_free(lab, radius: float, 
     static = {"stress": [mean + deviator, mean - deviator, 0.0], "ratio": 1e-6}
     case = lab.case("A", (wide, wide), held=(), material={"fric": 1.0}, boundary=sides, static=static)
     hole = HOLE | {"centre": [0.5 * wide] * 2, "radius": a}
-    scene = build(with_changes(case, {"hole": [hole], "outside.element": 0.75 * a}))
+    scene = build(with_changes(case, {"hole": [hole]}))
     found = settle(scene)
     disks = slice(scene.column_count, scene.disk_count)
     moved = (found.start.displacement[:, disks] - found.before.start.displacement[:, scene.kept[disks]])[:2]

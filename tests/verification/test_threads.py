@@ -62,6 +62,14 @@ SCENES = {
         "load": WEIGHT,
         "layer": [{"thickness": 4.0, "density": 2000.0, "p_wave_speed": 500.0}, {"name": "stiff"}],
     },
+    "settled, layers under K0, continuum beside": {
+        "size": FEW,
+        "boundary": {**dict.fromkeys(("left", "right"), "outside"), "bottom": {"type": "outside", "wave_s": "pulse"}},
+        "material": {"law": "linearpbond", "fric": 0.5},
+        "static": SETTLED | {"k0": 0.5},
+        "load": WEIGHT,
+        "layer": [{"thickness": 4.0, "density": 2000.0, "p_wave_speed": 500.0, "k0": 0.8}, {"name": "stiff"}],
+    },
     "settled, box in the ground": {"box": (20.0, 20.0, 40.0, 40.0), "static": SETTLED, "load": WEIGHT},
 }
 

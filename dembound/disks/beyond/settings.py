@@ -395,7 +395,7 @@ def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 def _sources(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray, Literal["force", "pressure", "waves"]]]:
     """The `extents`, each with the kind of source of its static field."""
     left, _, right, _ = case.packing.box
-    pressed = case.pressed
+    pressed = case.pressed if signals_of(case) else {hole.name for hole in case.hole}
     for hole in case.hole:
         low, high = np.array(hole.box[:2]), np.array(hole.box[2:])
         for side, floor in case.floors.items():
@@ -412,17 +412,16 @@ def _sources(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray, Literal["
             yield middle, middle, "force"
 
 
-def _why_nothing(case: DiskCase) -> str:
-    """Why no element size can be derived from the case, in words."""
-    if case.load:
-        return "its loads are steady and settle in the static stage, so that no waves are there to choose it from"
-    return "the case has no wave or load to choose it from"
-
-
 def _element(case: DiskCase, medium: Ground, box: Box, sides: Sequence[str]) -> float:
-    """Largest side (m) of elements that suits the waves, and the fields beside forces and holes."""
+    """Largest side (m) of elements that suits the waves, and the fields beside forces and holes.
+
+    Without waves a static stage frees the walls of holes, which move as if pressed; without holes nothing moves.
+    """
     keys, signals = case.outside, signals_of(case)
-    if not signals:
-        raise CaseError([f"outside.element: is absent, but {_why_nothing(case)}; give the largest side of elements, m"])
     of_fields = [field.largest_side(keys.order, keys.accuracy) for field in near_fields(case, medium, box, sides)]
-    return min([sizing.element_size(signals, medium, keys.order, keys.accuracy), *of_fields])
+    if signals:
+        return min([sizing.element_size(signals, medium, keys.order, keys.accuracy), *of_fields])
+    if case.static is None:
+        nothing = "the case has no wave or load to choose it from"
+        raise CaseError([f"outside.element: is absent, but {nothing}; give the largest side of elements, m"])
+    return min([0.25 * (box[2] - box[0]), 0.25 * (box[3] - box[1]), *of_fields])

@@ -9,13 +9,14 @@ from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels.began import began_of
 from dembound.kernels.contacts import INTACT, NONE
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import Contacts
 from dembound.motion.layout import aligned_zeros
 from dembound.packings.tiling import Assembly
 
-NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0]])
+NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
 """Constants of a place without a pair: far apart, without stiffness."""
 
 
@@ -91,7 +92,8 @@ def in_places(
         first=placed(first.astype(np.uint32), int(slot[0])),
         second=placed(second.astype(np.uint32), int(slot[0])),
         contact_type=placed(pairs.contact_type[order].astype(np.uint32), len(constants)),
-        constants=constants if plan is None else np.vstack([constants, NOTHING]),
+        constants=np.vstack([constants[:, :12], NOTHING]) if plan is not None else constants[:, :12].copy(),
+        began=began_of(constants if plan is None else np.vstack([constants, np.zeros(15)])),
         state=placed(history.state[order], NONE),
         shear=placed(history.shear[order]),
         slip=placed(history.slip[order]),
@@ -129,7 +131,8 @@ def plain_contacts(
         first=first,
         second=second,
         contact_type=kind.astype(np.uint32),
-        constants=constants,
+        constants=np.ascontiguousarray(constants[:, :12]),
+        began=began_of(constants),
         state=bonds_of(constants, kind),
         shear=nothing,
         slip=nothing,

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from dembound.disks.contacts.row_plan import RowPlan
+from dembound.kernels.began import began_of
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import PairRows
 
@@ -111,7 +112,8 @@ class PairPlan:
         exists = np.zeros(int(self.group_block[-1]), dtype=np.uint8)
         np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
         lines = constants[self.key % self.types, :15]
-        return self._empty._replace(exists=exists, constants=np.column_stack([lines, lines[:, :2] / lines[:, 2:3]]))
+        placed = np.column_stack([lines[:, :12], lines[:, :2] / lines[:, 2:3]])
+        return self._empty._replace(exists=exists, constants=placed, began=began_of(lines))
 
     @cached_property
     def _empty(self) -> PairRows:
@@ -135,7 +137,8 @@ class PairPlan:
             disk_block=self.first_block + plan.group_block[:-1],
             disk_rows=np.diff(plan.group_row),
             step=np.column_stack([owner - plan.group_row[group], self.shift]),
-            constants=np.zeros((0, 17)),
+            constants=np.zeros((0, 14)),
+            began=0.0,
             exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(counts)]),
             offset=offset[order],

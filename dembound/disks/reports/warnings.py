@@ -45,6 +45,15 @@ SPEED_ERROR = 0.1
 UNEVEN = 0.01
 """Deviation of a block, over the largest requested principal stress, up to which there is no warning."""
 
+GIVES_WAY = 6.0
+"""By how much the wall of a hole moves too far in a body that only forces hold, over (hole / body)² of their widths.
+
+The second harmonic of holes in the middle: 7.6, 6.4, 5.7, 5.2 for bodies 3, 4, 6, 8 times as wide; the mean less.
+"""
+
+TOO_FAR = 0.05
+"""Share by which the wall of a hole may move too far without a warning."""
+
 AT_REST = 1e-14
 """Velocity over that of waves, so strain, below which the motion of a settled body is rounding.
 
@@ -57,6 +66,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
     return [
         *_empty_holes(scene),
         *_holes_at_periodic_sides(scene),
+        *_holes_between_forces(scene),
         *_of_each_layer(scene, _unlike_strengths),
         *_steady_without_static(scene),
         *_of_each_layer(scene, _locked_in),
@@ -117,6 +127,26 @@ def _holes_at_periodic_sides(scene: DiskScene) -> Iterator[str]:
             yield (
                 f"{place}: is cut by the periodic {side} side, and the part beyond it is not removed at the opposite "
                 "side; move it, or give that part as a hole of its own"
+            )
+
+
+def _holes_between_forces(scene: DiskScene) -> Iterator[str]:
+    """Holes excavated where no support or continuum at left or right carries what they set free."""
+    static, case, box = scene.case.static, scene.case, scene.case.packing.box
+    sides = [side for side in ("left", "right") if side in scene.edges and not case.side(side).is_outside]
+    if static is None or len(sides) < 2:
+        return
+    if any(table is not None and side in sides and 0 in table.prescribed(0) for side, table in static.boundary.items()):
+        return
+    for place, hole in numbered("hole", case.hole):
+        x0, y0, x1, y1 = hole.box
+        inside = box[0] < x0 and x1 < box[2] and box[1] < y0 and y1 < box[3]
+        more = GIVES_WAY * (max(x1 - x0, y1 - y0) / min(box[2] - box[0], box[3] - box[1])) ** 2
+        if hole.stage == "after" and inside and more > TOO_FAR:
+            yield (
+                f"{place}: is excavated in a body that only forces hold at left and right, and its wall will move "
+                f'about {percent(more)} too far; take "outside" sides, a larger body, or hold left and right in '
+                "[static.boundary]"
             )
 
 

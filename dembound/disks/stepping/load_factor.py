@@ -15,6 +15,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import brick_constants, ground_limits, strength_of
 from dembound.disks.stepping.system import DiskSystem
+from dembound.kernels.began import began_of
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.limits import in_columns
 from dembound.kernels.load_factor import least_factors
@@ -90,7 +91,9 @@ class LoadFactor(Every):
         for part in system.disks.parts:
             constants, kind = stressed(scene.ground, plain, part.assembly, scene.at_rest)
             pairs = part.pairs._replace(
-                constants=np.ascontiguousarray(constants[:, :15]), contact_type=kind.astype(np.uint32)
+                constants=np.ascontiguousarray(constants[:, :12]),
+                began=began_of(constants),
+                contact_type=kind.astype(np.uint32),
             )
             own = in_columns(constants[:, 15:], limits.geometry) if scene.ground.is_layered else limits
             self._pairs.append((pairs, limit_lines(pairs.constants, own)))

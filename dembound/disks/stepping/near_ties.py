@@ -14,6 +14,7 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.contact_list import ContactList
+from dembound.kernels.began import began_with
 from dembound.kernels.contacts import BONDED, INTACT
 from dembound.kernels.tables import Contacts
 from dembound.motion.state import Arrays, State
@@ -117,13 +118,12 @@ class NearTies:
         """Force (w,) N per metre by which each watched contact differs from one that neither opens nor slides."""
         arrays = contacts.arrays
         at, listed = self._places(contacts)
-        constants = arrays.constants[arrays.contact_type[at]]
-        x, y, rest, touch, _, normal, shear = constants[:, :7].T
+        x, y, rest, touch, _, normal, shear = arrays.constants[arrays.contact_type[at], :7].T
         dx, dy = u[:2, arrays.second[at]] - u[:2, arrays.first[at]]
         stretch = ((2.0 * x + dx) * dx + (2.0 * y + dy) * dy) / (np.hypot(x + dx, y + dy) + rest)
         if contacts.limits.geometry == BONDED:
             stretch = np.where(arrays.state[at] == INTACT, (x * dx + y * dy) / rest, stretch)
-        gap = np.maximum(stretch + constants[:, 12] + rest - touch, 0.0)
+        gap = np.maximum(stretch + began_with(arrays.began, arrays.contact_type[at], 0) + rest - touch, 0.0)
         lost = np.maximum(normal * gap, shear * np.abs(arrays.slip[at] - self._slip))
         return np.where(listed, lost, np.inf)  # others are so far apart that they are no longer listed
 

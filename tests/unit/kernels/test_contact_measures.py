@@ -16,11 +16,11 @@ def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:
     excess = np.zeros(len(pairs.first))
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
         _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)
-        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend, _, _, turned = pairs.constants[c]
+        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = pairs.constants[c]
         overlap = touch - rest - stretch
         conditions = [-overlap, k_s * abs(shear) - limits.friction * k_n * overlap] if touch >= rest else [overlap]
         if pairs.state[c] == INTACT:
-            stress, turn = b_n * stretch * per_area, u[2, j] - u[2, i] + turned
+            stress, turn = b_n * stretch * per_area, u[2, j] - u[2, i] + law.began(c)[2]
             conditions += [
                 stress + abs(b_m * turn) * bend - limits.tension,
                 b_s * abs(shear) * per_area - (limits.cohesion - stress * limits.tan_fa),

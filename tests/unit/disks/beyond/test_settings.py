@@ -92,14 +92,19 @@ def test_what_makes_waves(case) -> None:
     assert [(each.wave.type, each.is_force) for each in both] == [("cosine", False), ("cosine", True)]
 
 
-def test_without_waves_the_size_has_to_be_given(case) -> None:
-    settled = case(load={"wave": None}, wave={}, static={"boundary": {"bottom": {"type": "fixed"}}})
-    of_none = "outside.element: is absent, but the case has no wave"
-    of_rest = "outside.element: is absent, but its loads are steady and settle in the static stage"
-    for each, said in ((replace(case(), load=(), wave={}), of_none), (settled, of_rest)):
-        with pytest.raises(CaseError, match=said):
-            chosen(each)
+def test_without_anything_that_moves_the_size_has_to_be_given(case) -> None:
+    with pytest.raises(CaseError, match=r"outside.element: is absent, but the case has no wave"):
+        chosen(replace(case(), load=(), wave={}))
     assert chosen(replace(case(outside={"element": 8.0}), load=(), wave={})).element == 8.0
+
+
+def test_without_waves_the_size_suits_the_holes(case) -> None:
+    """A quarter of the body where nothing is; near a hole as if its wall were pressed, as it moves when it is freed."""
+    still = {"load": {"wave": None, "position": None, "force": None, "acceleration": [0.0, -9.81]}, "wave": {}}
+    still["static"] = {"boundary": {"bottom": {"type": "fixed"}}}
+    assert chosen(case(**still)).element == 5.0
+    hole = {"name": "h", "type": "circle", "centre": [20.0, 5.0], "radius": 3.0}
+    assert chosen(case(hole=[hole | {"centre": [20.0, 3.0]}], **still), 0.1).element == pytest.approx(6.0 * 0.05**0.2)
 
 
 def test_a_load_that_stays_needs_a_margin(case) -> None:

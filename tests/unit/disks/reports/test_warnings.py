@@ -13,6 +13,9 @@ from dembound.disks.scene import build
 PERIODIC = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
 
 
+HOLE = {"name": "tunnel", "type": "circle", "centre": [5.0, 5.0], "radius": 1.5, "stage": "after"}
+
+
 @pytest.mark.parametrize(
     ("changes", "beyond"),
     [
@@ -45,6 +48,22 @@ def test_settling_under_a_tension_above_the_strength_is_warned_of(bar, stress, t
     said = "static.stress: has a tension of 1.1 MPa, above material.pb_ten = 1 MPa; bonds break in the static stage"
 
     assert [line for line in found if "tension of" in line] == [said] * tensile
+
+
+@pytest.mark.parametrize(
+    ("changes", "too_far"),
+    [
+        ({}, "54 %"),  # 6·(3/10)²
+        ({"boundary": {"left": {"type": "outside"}, "right": {"type": "outside"}}, "motion.held": []}, None),
+        ({"static.boundary": {"left": {"type": "roller"}}}, None),
+        ({"hole": [HOLE | {"radius": 0.4}]}, None),
+        ({"hole": [HOLE | {"stage": "before"}]}, None),
+    ],
+)
+def test_a_hole_between_sides_that_give_way_is_warned_of(bar, changes: dict, too_far: str | None) -> None:
+    body = {"packing.size": [10.0, 10.0], "static": {"stress": [-1e6, -1e6, 0.0]}, "hole": [HOLE], "motion.held": []}
+    found = [line for line in warned(bar({**SLOW, **body, **changes})) if "only forces hold" in line]
+    assert [too_far in line for line in found] == [True] * (too_far is not None)
 
 
 @pytest.mark.parametrize("settles", [False, True])
