@@ -13,6 +13,7 @@ from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
+from dembound.damping.quality import Mechanisms
 from dembound.disks.contacts.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.material.at_rest import StressAtRest
@@ -201,18 +202,23 @@ def _strength_facts(name: str, material: Material, ground: PackedMaterial) -> En
 
 def _damping_facts(scene: DiskScene) -> Entries:
     """Q over its band, the frequency at which wave speeds hold, the unrelaxed stiffness, and what the step costs."""
-    found = scene.ground.mechanisms
-    if found is None:
-        return
+    names = [f" of {name}" for name in scene.case.layer_names] if scene.ground.is_layered else [""]
+    for name, found in zip(names, scene.ground.mechanisms_by_layer, strict=True):
+        if found is not None:
+            yield from _quality_facts(name, found)
+
+
+def _quality_facts(name: str, found: Mechanisms) -> Entries:
+    """The damping of ground by mechanisms; name : of the layer, after the name of each fact."""
     (low, high), (least, most) = found.band, found.range
     texts, unit = in_one_unit((low, high), "Hz")
     yield (
-        "damping",
+        f"damping{name}",
         f"Q = {least:.3g} to {most:.3g} over {texts[0]} to {texts[1]} {unit}, by {len(found.weights)} mechanisms; wave "
         f"speeds hold at {with_unit(found.frequency, 'Hz')}",
     )
     yield (
-        "unrelaxed stiffness",
+        f"unrelaxed stiffness{name}",
         f"{found.unrelaxed:.4g} times that of the wave speeds: the step is {found.unrelaxed**-0.5:.3g} times as long",
     )
 
