@@ -200,13 +200,14 @@ def _strength_facts(own: Own) -> Entries:
 
 def _damping_facts(scene: DiskScene) -> Entries:
     """Q over its band, the frequency at which wave speeds hold, the unrelaxed stiffness, and what the step costs."""
-    for own in materials_of(scene):
-        if (found := own.ground.mechanisms) is not None:
-            yield from _mechanism_facts(own.name, found)
+    names = [f" of {name}" for name in scene.case.layer_names] if scene.ground.is_layered else [""]
+    for name, found in zip(names, scene.ground.mechanisms_by_layer, strict=True):
+        if found is not None:
+            yield from _quality_facts(name, found)
 
 
-def _mechanism_facts(name: str, found: Mechanisms) -> Entries:
-    """Facts about the damping of a material; name : of its layer, after those of the facts."""
+def _quality_facts(name: str, found: Mechanisms) -> Entries:
+    """The damping of ground by mechanisms; name : of the layer, after the name of each fact."""
     (low, high), (least, most) = found.band, found.range
     texts, unit = in_one_unit((low, high), "Hz")
     yield (
