@@ -231,6 +231,7 @@ MEANINGS: dict[str, Meaning] = {
     "factor": _free("of a wave or of a formula, any number is likely"),
     "factor of dashpots": _free("it is compared with the packing's own factors"),
     "Courant number": _free("it is compared with the stability limit"),
+    "ratio of stresses": _free("its limits, from 0 to 5, are those of the key"),
     "ratio of radii": _free("its limits, from 1 to 4, are those of the key"),
     "setting": _free("of a method, in its own units; its limits are those of the key"),
     "wall time": _free("of the machine, not of the scene"),

@@ -11,6 +11,7 @@ from dembound.disks.rest.settled import Settled
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
+from dembound.disks.stepping.load_factor import LoadFactor
 from dembound.kinds import with_changes
 
 STRESS = [-2e6, -3e6, 0.5e6]
@@ -147,6 +148,27 @@ def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, name: str, material)
     assert np.abs(simulation.state.velocity).max() > 0.5 * PULSE["amplitude"]
     most = max(abs(each.outside) for each in ledger.entries)
     assert max(abs(entry.error) for entry in ledger.entries) < (1e-4 if bonded else 1e-9) * most
+
+
+@pytest.mark.parametrize("name", SIDES)
+def test_layers_at_rest_begin_to_slide_at_their_load_factor(lab, name: str) -> None:
+    """Found under the elastic law; 0.1 % below it nothing slides in the geometry of the start, 0.1 % above it does."""
+    layers = [{"thickness": 10.0, "density": 1800.0, "p_wave_speed": 400.0, "k0": 0.8}, {"density": 2300.0, "k0": 0.6}]
+    wave, static = PULSE | {"period": 0.05}, K0 | {"ratio": 1e-9}
+    plain = ground(lab, "A", SIDES[name], {"fric": 0.9}, wave=wave, static=static, load=WEIGHT)
+    elastic = build(with_changes(plain.case, {"layer": layers, "output.load_factor": True}))
+    simulation = lab.simulation(elastic, settle(elastic).start)
+    found = LoadFactor(elastic.case, simulation.system)
+    simulation.track(found)
+    simulation.run(400)
+    for share in (0.999, 1.001):
+        amplitude = {"wave.pulse.amplitude": share * found.factor * PULSE["amplitude"]}
+        full = {"material.law": "linearpbond", "material.geometry": "reference", "layer": layers}
+        scene = build(with_changes(plain.case, full | amplitude))
+        other = lab.simulation(scene, settle(scene).start, simulation.time_step)
+        other.run(400)
+        slips = [part.contacts.of("slip") for part in other.system.disks.parts]
+        assert any(slip.any() for slip in slips) == (share > 1.0)
 
 
 @pytest.mark.slow

@@ -52,6 +52,7 @@ class Layer(Table):
     k0: float | None = quantity(
         None,
         unit="1",
+        means="ratio of stresses",
         help="stress along x over that along y due to weight; absent: static.k0, which it needs",
         ge=0.0,
         le=5.0,

@@ -28,6 +28,7 @@ class Static(Table):
     k0: float | None = quantity(
         None,
         unit="1",
+        means="ratio of stresses",
         help="stress along x over that along y due to weight, a load with an acceleration; absent: what settling makes",
         ge=0.0,
         le=5.0,
