@@ -11,6 +11,7 @@ e = exp(−Δt/τ) and g = w (1 − e)/2.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -72,6 +73,16 @@ def _factor(weights: np.ndarray, times: np.ndarray, frequency: np.ndarray) -> np
     """m(ω) (...) at frequencies (...) Hz."""
     terms = weights / (1.0 + 2j * math.pi * frequency[..., None] * times)
     return np.asarray(1.0 - terms.sum(axis=-1))
+
+
+def factors_of(layers: Sequence[Mechanisms | None], time_step: float) -> np.ndarray:
+    """Factors e and g (layers, 2, K) of the memories of layers of ground; of undamped ones zero."""
+    count = max((len(each.weights) for each in layers if each is not None), default=0)
+    factors = np.zeros((len(layers), 2, count))
+    for row, each in zip(factors, layers, strict=True):
+        if each is not None:
+            row[:, : len(each.weights)] = each.per_step(time_step)
+    return factors
 
 
 @lru_cache(maxsize=256)

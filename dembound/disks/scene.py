@@ -391,10 +391,12 @@ def _rising(
     """
     ground, height = beneath.body.ground, beneath.box[1]
     joints = tuple(joint for joint in ground.joints if joint < beneath.body.mesh.sides[2])
-    if not joints:
+    relative = [each and each.relative_modulus for each in beneath.body.mechanisms[len(joints) :: -1]]
+    if not joints and not any(relative):
         return rising_waves(ground.at(height), height, signals, grain)
     media, span = ground.media[len(joints) :: -1], (min(wave.start for wave in case.wave.values()), case.run.duration)
-    return rising_in_layers(media, joints[::-1], None, signals, joints[0], span, grain)
+    at = joints[0] if joints else height
+    return rising_in_layers(media, joints[::-1], None, signals, at, span, grain, relative)
 
 
 def _let_in_below(scene: DiskScene, signals: tuple[Incident | None, Incident | None], builder: SupportBuilder) -> None:

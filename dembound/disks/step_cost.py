@@ -24,7 +24,7 @@ DAMPED = 7.0
 
 def of_disk(scene: DiskScene) -> float:
     """Nanoseconds of a step per disk of a scene."""
-    damped = 0.0 if scene.ground.mechanisms is None else DAMPED
+    damped = DAMPED if scene.ground.is_damped else 0.0
     return DISK[scene.slots is not None and not scene.slots.is_plain, scene.has_history] + damped
 
 

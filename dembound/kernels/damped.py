@@ -204,10 +204,64 @@ def _work_on_supported(memories, v, nodes):
 
 
 @njit(**FAST)
+def remember_crossing(crossing, u, v):
+    """Fill `taken` with the forces that mechanisms take from those of contacts between layers, and their power."""
+    power = 0.0
+    for t in range(crossing.target.size):
+        i = U(crossing.target[t])
+        forces = row_force(
+            U(t), U(crossing.owner[t]), u, crossing.start, crossing.neighbour, crossing.contact_type, crossing.constants
+        )
+        for c in range(3):
+            crossing.taken[t, c] = _filtered(crossing, t, c, forces[c] - crossing.rest[t, c])
+            power += crossing.taken[t, c] * v[U(c), i]
+    crossing.power[0] = power
+
+
+@njit(**FAST)
+def _filtered(memories, t, c, f):
+    """The force Σ r that mechanisms take from component c of the force f on target t."""
+    memory, factors = memories.memory, memories.factors
+    total = 0.0
+    for k in range(factors.shape[2]):
+        part = factors[t, 1, k] * f
+        r = memory[t, c, k] + part
+        memory[t, c, k] = (factors[t, 0, k] * r + (part + FADED)) - FADED
+        total += r
+    return total
+
+
+@njit(**FAST)
+def _take_crossing(memories, v, body, u_next, damped):
+    """Subtract the forces taken from contacts between layers: the step of free disks is mended."""
+    crossing, force = memories.crossing, memories.force
+    after = 0.0
+    before = crossing.power[0]
+    for t in range(crossing.target.size):
+        i = U(crossing.target[t])
+        for each in range(3):
+            c = U(each)
+            r = crossing.taken[t, c]
+            if body.mobility[i] > 0.0:
+                change = -r * body.free[c] * (body.inverse_inertia[i] if each == 2 else body.mobility[i])
+                v[c, i] += change
+                u_next[c, i] += body.step * change
+                after += r * v[c, i] + force[c, i] * change
+            else:
+                u_next[c, i] -= r
+                before -= r * v[c, i]
+            force[c, i] += r
+    damped[0, 0] += 0.5 * body.step * (before + after)
+    damped[0, 1] += 0.5 * body.step * before
+
+
+@njit(**FAST)
 def move(damped, u, u_next, v, body, nodes):
     """One step of all disks, see law.move."""
     memories = damped.memories
+    remember_crossing(memories.crossing, u, v)
     move_remembering(damped.links.rows, memories, u, v, body, u_next, damped.links.damped)
+    _take_crossing(memories, v, body, u_next, damped.links.damped)
     memories.held[0] = 0.5 * body.step * _work_on_supported(memories, v, nodes)
 
 
@@ -223,18 +277,11 @@ def finish(damped, v, body, nodes, work):
 @njit(**FAST)
 def remember_ties(ties, u, v, force):
     """Filter the forces of ties in force (k, 3), which other ties have added."""
-    memory, factors = ties.memory, ties.factors
     for t in range(ties.line.size):
         s = ties.line[t]
         for c in range(3):
             f = force[s, c] - ties.rest[t, c]
-            total = 0.0
-            for k in range(factors.shape[2]):
-                part = factors[t, 1, k] * f
-                r = memory[t, c, k] + part
-                memory[t, c, k] = (factors[t, 0, k] * r + (part + FADED)) - FADED
-                total += r
-            force[s, c] = (f - total) + ties.rest[t, c]
+            force[s, c] = (f - _filtered(ties, t, c, f)) + ties.rest[t, c]
 
 
 answer(move_remembering, LaneRows, _move_lanes)

@@ -7,7 +7,7 @@ import numba
 import numpy as np
 
 from dembound.boundaries.sides import SIDES
-from dembound.damping.quality import Mechanisms
+from dembound.damping.quality import Mechanisms, factors_of
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.grid import fill_forces
 from dembound.kernels.lanes import LANES
@@ -26,7 +26,7 @@ class GridBody:
     Attributes
     ----------
     mesh, medium : its elements, and density and moduli; of layers, edges of elements lie on their joints. mechanisms :
-    of its damping, whose moduli are those of the medium at one frequency; None without damping.
+    of the damping of each layer, whose moduli are those of the medium at one frequency, None without; () without any.
     absorption : settings of the layers of the mesh.
     thickness : m, across the plane; by default that of the disks.
     added_mass : (n,) kg on nodes, beyond that of the medium; by default none.
@@ -37,7 +37,7 @@ class GridBody:
 
     mesh: Mesh
     medium: Ground
-    mechanisms: Mechanisms | None = None
+    mechanisms: tuple[Mechanisms | None, ...] = ()
     absorption: Absorption = USUAL
     thickness: float = 1.0
     added_mass: np.ndarray | float = 0.0
@@ -79,9 +79,8 @@ class GridBody:
     @property
     def stepped_media(self) -> tuple[Medium, ...]:
         """The medium of each layer with the unrelaxed moduli with which it is stepped."""
-        if self.mechanisms is None:
-            return self.ground.media
-        return tuple(medium.times(self.mechanisms.unrelaxed) for medium in self.ground.media)
+        each = zip(self.ground.media, self.mechanisms or (None,) * len(self.ground.media), strict=True)
+        return tuple(medium if damped is None else medium.times(damped.unrelaxed) for medium, damped in each)
 
     @cached_property
     def mass_for_limit(self) -> np.ndarray:
@@ -134,11 +133,11 @@ class GridBody:
 
     def damped(self, grid: Grid, time_step: float) -> DampedGrid | None:
         """The arrays of its law with memories for time steps Δt (s), at rest; None without damping."""
-        if self.mechanisms is None:
+        if not any(self.mechanisms):
             return None
-        each = self.mechanisms.per_step(time_step)
-        blocks, count = grid.blocks.blocks, each.shape[1]
-        factors = np.broadcast_to(each[None, :, :, None], (blocks, 2, count, LANES)).ravel()
+        each = factors_of(self.mechanisms, time_step)[self.layer[self.blocks.elements[:, 0]]]
+        blocks, count = grid.blocks.blocks, each.shape[2]
+        factors = np.repeat(each, LANES)
         memory = aligned_zeros(blocks * count * 2 * grid.elements.weight.shape[1] * LANES)
         held = np.zeros((2, blocks * grid.elements.core.size * LANES))
         return DampedGrid(grid, count, factors, memory, held, np.zeros(1))

@@ -3,6 +3,8 @@
 Three layers under an incident S or P wave, 2.5 times whose frequency has 40 disks in a wavelength of the slowest layer.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 import tomli_w
@@ -23,13 +25,17 @@ LAYERS = [
 ROUND = {side: {"type": "periodic"} for side in ("left", "right")}
 
 
-def error(lab, packing: dict, motion: str, bottom: dict, disks: float) -> float:
-    """RMS error of the mean velocity of the uppermost disks over its RMS, so many disks in the shortest wavelength."""
+def error(lab, packing: dict, motion: str, bottom: dict, disks: float, qualities: Sequence[float] = ()) -> float:
+    """RMS error of the mean velocity of the uppermost disks over its RMS, so many disks in the shortest wavelength.
+
+    qualities : Q of layers from the surface down, others are undamped.
+    """
     frequency, component = SPEEDS[0] / disks, {"s": 0, "p": 1}[motion]
+    damped = zip(LAYERS, qualities, strict=False)
     tables = {
         "packing": packing,
         "material": {"density": 1800.0, "s_wave_speed": 200.0, "fric": 0.5},
-        "layer": LAYERS,
+        "layer": [each | {"quality_factor": q} for each, q in damped] + LAYERS[len(qualities) :],
         "boundary": ROUND | {"bottom": bottom | {f"wave_{motion}": "pulse"}},
         "wave": {"pulse": {"type": "ricker", "amplitude": 1.0, "frequency": frequency / 2.5}},
         "run": {"duration": 1.2 + 20.0 / frequency},
@@ -38,19 +44,22 @@ def error(lab, packing: dict, motion: str, bottom: dict, disks: float) -> float:
     top, (_, _, _, surface) = np.flatnonzero(scene.positions[:, 1] > scene.case.box[3] - 1.0), scene.case.box
     history, mass = lab.run(scene, top, tables["run"]["duration"]), scene.mass[top]
     found = np.average(history.velocity[:, :, component], axis=1, weights=mass)
+    relative = [each and each.relative_modulus for each in scene.ground.mechanisms_by_layer]
     speeds = [each.material.wave_speeds(1)[1 - component] for each in reversed(scene.ground.layers)]
     ends = mass_begins(scene, "top")  # depth of the surface of the mass below that asked for
-    column = Column(
-        [
-            Layer(each - late, density, speed)
-            for each, late, density, speed in zip((*THICKNESSES, 1.0), (ends, 0.0, 0.0), DENSITIES, speeds, strict=True)
-        ]
-    )
-    way = late_by(scene) + (surface - sum(THICKNESSES)) / speeds[-1]
-    pulse = scene.case.wave["pulse"].velocity(history.times - way)
+    way = late_by(scene) * speeds[-1] + surface - sum(THICKNESSES)  # in the lowest layer, to where the wave enters
+    thicknesses = (THICKNESSES[0] - ends, THICKNESSES[1], way, 1.0)
+    each = zip(thicknesses, *map(_and_below, (DENSITIES, speeds, relative)), strict=True)
+    column = Column([Layer(high, density, speed, relative=modulus) for high, density, speed, modulus in each])
+    pulse = scene.case.wave["pulse"].velocity(history.times)
     depth = surface - ends - float(np.average(scene.positions[top, 1], weights=mass))
     exact = column.history(pulse, float(history.times[1]), depth)
     return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
+
+
+def _and_below(values: Sequence) -> list:
+    """Values of layers, with those of the last one again for the half-space below it."""
+    return [*values, values[-1]]
 
 
 LATTICE = {"pattern": "A", "radius": 0.5, "size": [1.0, 110.0]}
@@ -111,3 +120,9 @@ def test_a_body_beside_free_fields_follows_its_column(pattern) -> None:
         peak = max(peak, float(np.abs(velocity).max()))
     assert peak > 0.5  # the pulse did run
     assert apart < 1e-9 * peak
+
+
+@pytest.mark.parametrize("bottom", [HALF, {"type": "outside"}], ids=["dashpots", "continuum"])
+def test_layers_of_unlike_damping_have_the_motion_of_a_column(lab, bottom: dict) -> None:
+    """Q of 20 and 40 on undamped rock, beside a column with the same M(ω)."""
+    assert error(lab, LATTICE, "s", bottom, 40.0, (20.0, 40.0)) < 1e-3

@@ -244,7 +244,7 @@ def surroundings_of(
     grid = GridBody(
         mesh=mesh,
         medium=_on_edges(medium_of(ground), mesh),
-        mechanisms=ground.mechanisms,
+        mechanisms=ground.mechanisms_by_layer[::-1],
         absorption=size.settings.absorption,
         thickness=float(np.prod(mass_extent(ground, body) / size.box)),
         first_slot=-(-layout.count // LANES) * LANES,

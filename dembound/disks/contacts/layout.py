@@ -35,7 +35,7 @@ def lay_out(
     """
     each = [assembly.part(disks) for disks in parts.values()]
     plans = [_plan(part, by_level=by_level) for part in each]
-    if all(plan is None for plan in plans) and ground.mechanisms is None:  # memories are held in blocks
+    if all(plan is None for plan in plans) and not ground.is_damped:  # memories are held in blocks
         layout = Layout.plain(len(assembly.radii))
         return layout, tuple(
             contact_rows(part, ground, disks.start) for part, disks in zip(each, parts.values(), strict=True)

@@ -69,6 +69,16 @@ class PackedMaterial:
         return self.law.stiffness(self.moduli, first, second, np.hypot(*self.brick.vectors.T))
 
     @property
+    def mechanisms_by_layer(self) -> tuple[Mechanisms | None, ...]:
+        """The mechanisms of every layer, from the top; of one, except in a layered ground."""
+        return (self.mechanisms,)
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether any layer is damped."""
+        return any(self.mechanisms_by_layer)
+
+    @property
     def unrelaxed(self) -> float:
         """Stiffness of the springs with which it is stepped over `stiffness`; 1 without damping."""
         return 1.0 if self.mechanisms is None else self.mechanisms.unrelaxed

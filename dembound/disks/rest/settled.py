@@ -105,8 +105,8 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     if scene.outside is not None and scene.outside.twin is not None:
         keys["outside"] = case.outside.model_copy(update=scene.outside.settings.given)
         keys["outside_sides"] = scene.outside.sides
-    if scene.ground.mechanisms is not None:
-        keys["unrelaxed"] = scene.ground.unrelaxed
+    if scene.ground.is_damped:
+        keys["unrelaxed"] = [each and each.unrelaxed for each in scene.ground.mechanisms_by_layer]
     settling = every_key(keys) | {"particles": scene.disk_count, "reduced": list(scene.reduced)}
     del settling["static"]["from"]
     return settling

@@ -1,16 +1,25 @@
-"""The memories of forces of a scene whose ground is damped."""
+"""The memories of forces of a scene whose ground is damped.
+
+A contact between layers of unlike damping has the springs k₁ and k₂ of both in series, so that to the first order in 1/Q
+it is damped by m = w₁m₁ + w₂m₂, with w₁ = k₂/(k₁ + k₂). Disks filter all forces by the m of their own layer; what is
+lacking, (m₂ − m₁)w₂ for a disk of layer 1, is computed apart.
+"""
 
 import numpy as np
 
-from dembound.damping.quality import Mechanisms
+from dembound.damping.quality import Mechanisms, factors_of
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.layout import Rows
-from dembound.disks.stepping.memories import DampedTies, DiskMemories, factors_of
+from dembound.disks.contacts.rows import elastic_constants
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.stepping.memories import DampedTies, DiskMemories
+from dembound.kernels.tables import Crossing
 
 
 def layers_of(scene: DiskBody, nodes: np.ndarray) -> tuple[list[Mechanisms | None], np.ndarray]:
     """The mechanisms of every layer of the ground, None for undamped ones, and the layer (k,) of some nodes (k,)."""
-    return [scene.ground.mechanisms], np.zeros(len(nodes), dtype=np.uint8)
+    ground = scene.ground
+    return list(ground.mechanisms_by_layer), ground.layer_of(scene.positions[nodes, 1]).astype(np.uint8)
 
 
 def unrelaxed(scene: DiskBody) -> np.ndarray:
@@ -29,7 +38,68 @@ def disk_memories(
     layers, layer = layers_of(scene, np.arange(nodes.start, nodes.stop))
     if not any(layers):
         return None
-    return DiskMemories(factors_of(layers, time_step), layer, rows, nodes, scene.layout, supported)
+    factors, crossing = factors_of(layers, time_step), _crossing(scene, nodes, time_step)
+    return DiskMemories(factors, layer, rows, nodes, scene.layout, supported, crossing)
+
+
+def _crossing(scene: DiskBody, nodes: slice, time_step: float) -> Crossing:
+    """Memories of the contacts of a part's disks between layers of unlike damping, also of those across a seam."""
+    target, owner, neighbour, end = _contacts(scene, nodes)
+    layers, layer = layers_of(scene, np.arange(scene.disk_count))
+    number = np.array([layers.index(each) for each in layers])[layer]  # equal for layers of equal damping
+    chosen = np.flatnonzero(number[owner] != number[neighbour])
+    chosen = chosen[np.lexsort((neighbour[chosen], layer[neighbour[chosen]], owner[chosen], target[chosen]))]
+    target, owner, neighbour, end = (each[chosen] for each in (target, owner, neighbour, end))
+    keys = np.stack([target, owner, layer[neighbour]])
+    first = np.flatnonzero(np.append(True, (keys[:, 1:] != keys[:, :-1]).any(axis=0))[: len(target)])
+    each, count = factors_of(layers, time_step), len(first)
+    factors = np.zeros((count, 2, 2 * each.shape[2]))
+    own, other = layer[owner[first]], layer[neighbour[first]]
+    factors[:, 0] = np.concatenate([each[own, 0], each[other, 0]], axis=1)
+    share = _shares(scene.ground, scene.positions[owner[first], 1], scene.positions[neighbour[first], 1])
+    factors[:, 1] = share[:, None] * np.concatenate([-each[own, 1], each[other, 1]], axis=1)
+    constants, row_of = elastic_constants(scene.ground) if count else (np.zeros((0, 6)), np.zeros(0, dtype=np.int64))
+    slot = scene.layout.slot
+    return Crossing(
+        slot[target[first]],
+        slot[owner[first]],
+        np.append(first, len(target)).astype(np.uint32),
+        slot[neighbour].astype(np.uint32),
+        row_of[end].astype(np.uint32),
+        constants,
+        factors,
+        np.zeros((count, 3, factors.shape[2])),
+        np.zeros((count, 3)),
+        np.zeros((count, 3)),
+        np.zeros(1),
+    )
+
+
+def _contacts(scene: DiskBody, nodes: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Ends of contacts that act on disks of a part: the disk, that which has it, its neighbour, and 2·type + end."""
+    part, seam = scene.assembly.part(nodes), scene.seam
+    first, second = part.pairs.T.astype(np.int64) + nodes.start
+    owner, neighbour = np.concatenate([first, second]), np.concatenate([second, first])
+    end = np.concatenate([2 * part.contact_type, 2 * part.contact_type + 1])
+    if seam is None or nodes.start == 0:
+        return owner, owner, neighbour, end
+    target = np.repeat(seam.node, seam.contact_counts)
+    return (
+        np.concatenate([owner, target]),
+        np.concatenate([owner, seam.twin[target]]),
+        np.concatenate([neighbour, seam.neighbour]),
+        np.concatenate([end, 2 * seam.contact_type + seam.twin_is_second]),
+    )
+
+
+def _shares(ground: PackedMaterial, heights: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Share k₁/(k₁ + k₂) of the damping of the other layer in contacts of disks at heights (k,) with those at others."""
+    number, shares = ground.pairing_of(heights, others), np.zeros(len(heights))
+    for each in np.unique(number).tolist():
+        one, other = (ground.stiffness_of((zone, zone)) for zone in ground.pairings[each])
+        own, beyond = (float((each.normal + each.shear).sum()) for each in (one, other))
+        shares[number == each] = own / (own + beyond)
+    return shares
 
 
 def ties_remembering(scene: DiskBody, tied: np.ndarray, time_step: float) -> DampedTies | None:

@@ -84,7 +84,7 @@ class DiskParts:
         """Let memories begin at rest at displacements (3, n), with forces of ties (3, n) other than of seams."""
         for part in self.parts:
             if part.memories is not None:
-                part.memories.rest_at(part.elastic_forces(displacement))
+                part.memories.rest_at(part.layout.spread(displacement), part.elastic_forces(displacement))
         if self.damped_ties is not None:
             force = of_ties.copy()
             for tie in self.seams:

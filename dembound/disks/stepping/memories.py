@@ -1,26 +1,14 @@
 """Memories of past forces, by which ground is damped: of the disks of a part, and of the forces of ties."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from dembound.damping.quality import Mechanisms
 from dembound.disks.contacts.layout import Rows
+from dembound.kernels.damped import remember_crossing
 from dembound.kernels.lanes import LANES
-from dembound.kernels.tables import LaneRows, Memories, TieMemories
+from dembound.kernels.tables import Crossing, LaneRows, Memories, TieMemories
 from dembound.motion.layout import Layout, aligned_zeros
 from dembound.motion.part import Tie
 from dembound.motion.state import Arrays
-
-
-def factors_of(layers: Sequence[Mechanisms | None], time_step: float) -> np.ndarray:
-    """Factors e and g (layers, 2, K) of the memories of layers of ground; of undamped ones zero."""
-    count = max((len(each.weights) for each in layers if each is not None), default=0)
-    factors = np.zeros((len(layers), 2, count))
-    for row, each in zip(factors, layers, strict=True):
-        if each is not None:
-            row[:, : len(each.weights)] = each.per_step(time_step)
-    return factors
 
 
 class DiskMemories:
@@ -30,7 +18,7 @@ class DiskMemories:
     ----------
     factors : (layers, 2, K) see `factors_of`. layer : (m,) number of the layer of each disk. rows : their contacts.
     nodes : their range among the scene's nodes. layout : the slots of these. supported : (k,) ascending slots of all
-    supported nodes.
+    supported nodes. crossing : memories of contacts between layers.
     """
 
     def __init__(
@@ -41,6 +29,7 @@ class DiskMemories:
         nodes: slice,
         layout: Layout,
         supported: np.ndarray,
+        crossing: Crossing,
     ) -> None:
         slot = layout.slot[nodes]
         block = int(slot.min()) // LANES
@@ -50,26 +39,32 @@ class DiskMemories:
         empty = np.ones(layout.count, dtype=bool)
         empty[slot] = False
         special = np.zeros(-(-layout.count // LANES), dtype=np.uint8)
-        special[np.unique(supported // LANES)] = 1
+        special[np.union1d(supported, crossing.target) // LANES] = 1
         inner, unused = (each[LANES * block : LANES * end].reshape(-1, LANES) for each in (layers, empty))
         inner[unused] = np.repeat(np.where(unused, 0, inner).max(axis=1), unused.sum(axis=1))
         special[block:end] |= 2 * (inner.min(axis=1) != inner.max(axis=1)).astype(np.uint8)
         self._slot = slot - LANES * block
         memory = aligned_zeros(3 * factors.shape[2], LANES * (end - block))
         force = aligned_zeros(3, layout.count)
-        self.arrays = Memories(block, layers, special, factors, memory, np.zeros((3, 0)), force, np.zeros(1))
+        self.arrays = Memories(block, layers, special, factors, memory, np.zeros((3, 0)), force, np.zeros(1), crossing)
 
-    def rest_at(self, force: np.ndarray) -> None:
-        """Remember only differences from these contact forces (3, slots) at rest."""
-        self.arrays = self.arrays._replace(rest=force)
+    def rest_at(self, u: np.ndarray, force: np.ndarray) -> None:
+        """Remember only differences from contact forces (3, slots) at rest, at displacements u (3, slots)."""
+        crossing = self.arrays.crossing
+        memory, factors = np.zeros((len(crossing.target), 3, 1)), np.zeros((len(crossing.target), 2, 1))
+        factors[:, 1] = 1.0
+        rest = np.zeros_like(crossing.rest)
+        remember_crossing(crossing._replace(factors=factors, memory=memory, rest=np.zeros_like(rest), taken=rest), u, u)
+        self.arrays = self.arrays._replace(rest=force, crossing=crossing._replace(rest=rest))
 
     def saved_arrays(self) -> Arrays:
-        """The memories (3K, m) of the disks."""
-        return {"memory": np.take(self.arrays.memory, self._slot, axis=1)}
+        """The memories (3K, m) of the disks, and (t, 3, K) of contacts between layers."""
+        return {"memory": np.take(self.arrays.memory, self._slot, axis=1), "crossing": self.arrays.crossing.memory}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         self.arrays.memory[:, self._slot] = saved["memory"]
+        self.arrays.crossing.memory[...] = saved["crossing"]
 
 
 class DampedTies(Tie):

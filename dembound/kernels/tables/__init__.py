@@ -2,7 +2,7 @@
 
 from dembound.kernels.tables.bar_layers import BarLayers
 from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
-from dembound.kernels.tables.damping import DampedGrid, DampedLinks, Memories, TieMemories
+from dembound.kernels.tables.damping import Crossing, DampedGrid, DampedLinks, Memories, TieMemories
 from dembound.kernels.tables.grid import ALONG, Absorber, Blocks, Elements, Grid, Shape
 from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
 from dembound.kernels.tables.motion import Body, Followers, Log, Supports
@@ -22,6 +22,7 @@ __all__ = [
     "Bonded",
     "Cells",
     "Contacts",
+    "Crossing",
     "DampedGrid",
     "DampedLinks",
     "Elements",

@@ -8,13 +8,35 @@ from dembound.kernels.tables.grid import Grid
 from dembound.kernels.tables.laws import Links
 
 
+class Crossing(NamedTuple):
+    """Memories of the forces of contacts between layers of unlike damping, on t targets.
+
+    target : (t,) slot of the disk on which contacts start[t]:start[t + 1] act, see tables.NeighbourTable. owner : (t,)
+    slot of the disk that has these contacts, across a seam its twin. factors : (t, 2, K) e and g of the mechanisms of
+    the contacts less those of the disk. memory : (t, 3, K) N and N·m. rest (t, 3) forces at rest, which nothing
+    remembers; taken (t, 3) and power (1,) W : work space.
+    """
+
+    target: np.ndarray
+    owner: np.ndarray
+    start: np.ndarray
+    neighbour: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
+    factors: np.ndarray
+    memory: np.ndarray
+    rest: np.ndarray
+    taken: np.ndarray
+    power: np.ndarray
+
+
 class Memories(NamedTuple):
     """Memories of the contact forces of a part, in blocks of eight slots from number `block` on.
 
     layer : (slots,) uint8, row of each disk in factors (layers, 2, K), e and g of the mechanisms. special : (blocks,)
-    uint8 of the scene, 1 for blocks with supported disks, 2 more for those with disks of several layers. memory : (3K,
+    uint8 of the scene, 1 for blocks with supported disks or contacts between layers, 2 more for those with disks of several layers. memory : (3K,
     n) N and N·m, component by component. rest : (3, slots) contact forces at rest, which nothing remembers, or (3, 0)
-    for none. force (3, slots), held (1,) : work space.
+    for none. force (3, slots), held (1,) : work space. crossing : of contacts between layers.
     """
 
     block: int
@@ -25,6 +47,7 @@ class Memories(NamedTuple):
     rest: np.ndarray
     force: np.ndarray
     held: np.ndarray
+    crossing: Crossing
 
 
 class DampedLinks(NamedTuple):

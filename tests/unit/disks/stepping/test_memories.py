@@ -1,13 +1,17 @@
 """Steps of damped disks beside the same arithmetic in numpy, particle by particle."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from dembound.damping.quality import fitted
+from dembound.disks.contacts.rows import contact_rows
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping import damped_ground
 from dembound.errors import RunError
+from dembound.kernels.elastic import contact_forces
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
@@ -18,18 +22,31 @@ BODY = {"boundary": {"right": {"type": "viscous"}}, "wave": {}, "monitor": [], "
 
 
 def stepped(scene, layers, layer: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, float]:
-    """Displacements (3, n) after all steps from velocities (3, n), and energy taken by damping, without sides."""
-    part = scene.system(STEP).parts[0]
+    """Displacements (3, n) after all steps from velocities (3, n), and energy taken by damping, without sides.
+
+    The mechanisms of both ends take half of the forces of contacts, which have one stiffness in all layers.
+    """
+    assembly, ends = scene.assembly, np.sort(layer[scene.assembly.pairs], axis=1)
+    kinds = []
+    for pair in np.unique(ends, axis=0):
+        chosen = (ends == pair).all(axis=1)
+        some = replace(assembly, pairs=assembly.pairs[chosen], contact_type=assembly.contact_type[chosen])
+        e, g = np.moveaxis(damped_ground.factors_of(layers, STEP)[pair], 1, 0).reshape(2, -1, 1, 1)
+        kinds.append([contact_rows(some, scene.ground), e, 0.5 * g, np.zeros((len(e), *first.shape))])
     inertia = np.stack([scene.mass, scene.mass, scene.inertia])
-    factors = damped_ground.factors_of(layers, STEP)[layer]  # (n, 2, K)
-    e, g = factors[:, 0].T[:, None], factors[:, 1].T[:, None]
-    u, v, p, taken = np.zeros_like(first), first.copy(), np.zeros((factors.shape[2], *first.shape)), 0.0
+    u, v, taken = np.zeros_like(first), first.copy(), 0.0
     for _ in range(STEPS):
-        f = scene.layout.gather(part.elastic_forces(u))
-        r = p + g * f
-        p = e * r + g * f
-        now = v + STEP * (f - r.sum(axis=0)) / inertia
-        taken += 0.5 * STEP * float(np.sum(r.sum(axis=0) * (v + now)))
+        total, lost = np.zeros_like(u), np.zeros_like(u)
+        for kind in kinds:
+            rows, e, g, p = kind
+            f = np.zeros_like(u)
+            contact_forces(u, rows, f)
+            r = p + g * f
+            kind[3] = e * r + g * f
+            total += f
+            lost += r.sum(axis=0)
+        now = v + STEP * (total - lost) / inertia
+        taken += 0.5 * STEP * float(np.sum(lost * (v + now)))
         u, v = u + STEP * now, now
     return u, taken
 
