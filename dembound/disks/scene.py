@@ -391,7 +391,7 @@ def _rising(
     """
     ground, height = beneath.body.ground, beneath.box[1]
     joints = tuple(joint for joint in ground.joints if joint < beneath.body.mesh.sides[2])
-    relative = [each and each.relative_modulus for each in beneath.body.mechanisms[len(joints) :: -1]]
+    relative = [None if each is None else each.relative_modulus for each in beneath.body.mechanisms[len(joints) :: -1]]
     if not joints and not any(relative):
         return rising_waves(ground.at(height), height, signals, grain)
     media, span = ground.media[len(joints) :: -1], (min(wave.start for wave in case.wave.values()), case.run.duration)

@@ -135,11 +135,10 @@ def _layers(scene: DiskScene, motion: Motion, bottom: float, top: float) -> tupl
     zones = ground.layers[::-1] if isinstance(ground, LayeredGround) else [Zone(-math.inf, math.inf, 0, ground)]
     for table, (low, high, _, material) in zip(scene.case.materials, zones, strict=True):
         if (thickness := min(high, top) - max(low, bottom)) > 0.0:
-            speed, mechanisms = material.wave_speeds(1)[MOTIONS.index(motion)], getattr(material, "mechanisms", None)
+            speed, mechanisms = material.wave_speeds(1)[MOTIONS.index(motion)], material.mechanisms
             layer = Layer(thickness, material.density, speed)
             if mechanisms is not None:
-                quality: float = getattr(table, "quality_factor", math.inf)
-                layer = replace(layer, quality=quality, relative=mechanisms.relative_modulus)
+                layer = replace(layer, quality=table.quality_factor or math.inf, relative=mechanisms.relative_modulus)
                 frequency = mechanisms.frequency
             found.append(layer)
     return tuple(found), frequency

@@ -29,6 +29,9 @@ Damping = Literal["elastic", "hysteretic", "constant_q"]
 Reference = Literal["incident", "outcrop", "within"]
 """Motion at the top of the half-space: up-going wave, its surface without layers, or the motion there."""
 
+FAST = 1e15
+"""A frequency, Hz, of which moduli no longer depend."""
+
 PADDED = 4
 """Length of the window of a history over that of the history, at least; a power of two in samples."""
 
@@ -62,6 +65,12 @@ class Layer:
         gamma = math.atan(1.0 / self.quality) / math.pi
         power: np.ndarray = (1j * omega / (2.0 * math.pi * reference)) ** (2.0 * gamma)
         return elastic * math.cos(0.5 * math.pi * gamma) ** 2 * power
+
+    def relaxation(self, frequencies: np.ndarray) -> np.ndarray:
+        """M over that of fast motion (k,) at frequencies (k,) Hz, of a layer with a modulus of its own; else 1."""
+        if self.relative is None:
+            return np.ones(np.shape(frequencies), dtype=complex)
+        return self.relative(frequencies) / self.relative(np.array([FAST])).real
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,10 @@ import numpy as np
 
 from dembound.exact.column import DECAY, PADDED, Column
 
-Quantity = Literal["displacement", "velocity", "gradient", "rate", "traction", "impulse"]
-"""u m, v m/s, ∂u/∂y, ∂v/∂y 1/s, with y upwards, and on planes facing up the traction, Pa, and its integral, Pa·s."""
+Quantity = Literal["displacement", "velocity", "gradient", "rate", "traction", "impulse", "relaxed", "relaxed_rate"]
+"""u m, v m/s, ∂u/∂y, ∂v/∂y 1/s, with y upwards, and on planes facing up the traction, Pa, and its integral, Pa·s.
+
+relaxed, relaxed_rate : u and v under which the unrelaxed springs of a layer have the forces of the damped ones."""
 
 QUANTITIES: dict[Quantity, tuple[int, int]] = {
     "displacement": (0, 0),
@@ -24,6 +26,8 @@ QUANTITIES: dict[Quantity, tuple[int, int]] = {
     "rate": (1, 1),
     "traction": (2, 0),
     "impulse": (2, -1),
+    "relaxed": (0, 0),
+    "relaxed_rate": (0, 1),
 }
 """Row of `Column.motion`, and number of derivatives in time."""
 
@@ -131,6 +135,8 @@ class ColumnMotion:
         found = np.zeros((count + POINTS, len(depths)))
         for place, depth in enumerate(depths):
             own = self._column.motion(window.frequencies, [depth], number)[row, 0]
+            if of in ("relaxed", "relaxed_rate") and number is not None:
+                own = own * self._column.layers[number].relaxation(window.frequencies)
             found[POINTS:, place] = np.fft.irfft(incident * own, PADDED * window.kept)[:count] * growth
         return found
 

@@ -1,10 +1,10 @@
 """The ``[damping]`` table."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from pydantic import model_validator
 
-from dembound.casefile.disks.material import Material
 from dembound.table import Table, quantity
 
 LEAST_RATIO = 1.5
@@ -44,7 +44,13 @@ class Damping(Table):
         return self
 
 
-def damping_problems(damping: Damping, material: Material) -> Iterator[str]:
+def is_damped(tables: Mapping[str, Any]) -> bool:
+    """Whether the ground, or a layer of it, has a quality factor; an invalid table is None."""
+    each = (tables["material"], *tables["layer"])
+    return any(table is not None and table.quality_factor is not None for table in each)
+
+
+def damping_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     """A table [damping] that changes nothing."""
-    if damping.model_fields_set and material.quality_factor is None:
+    if tables["damping"].model_fields_set and not is_damped(tables):
         yield "damping: is of no use without material.quality_factor"

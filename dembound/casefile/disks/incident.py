@@ -34,8 +34,11 @@ class IncidentWave(Table):
 
 def incident_problems(incident: IncidentWave, tables: Mapping[str, Any]) -> Iterator[str]:
     """Check the wave against the sides; an invalid side is None."""
-    if tables["material"] and tables["material"].quality_factor is not None:
-        yield "incident: is a wave of undamped ground; leave material.quality_factor out, or let it enter at the bottom"
+    if incident.angle != 0.0 and is_damped(tables):
+        yield (
+            f"incident.angle: is {incident.angle:g}, must be 0 in damped ground (quality_factor), where waves at an "
+            "angle are not known"
+        )
     for side in SIDES:
         table = tables["boundary"].get(side, Free())
         if table is None or table.is_outside or (side == "top" and table.is_free):

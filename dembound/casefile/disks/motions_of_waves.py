@@ -52,8 +52,6 @@ def not_level(side: str, table: Boundary, tables: Mapping[str, Any]) -> Iterator
         yield f"boundary.{side} without springs"
     if tables["hole"]:
         yield "ground without holes"
-    if tables["material"] and tables["material"].quality_factor is not None:
-        yield "ground without damping (material.quality_factor)"
     held = tables["motion"] and tables["motion"].held
     lateral = {name: sides.get(name) for name in ("left", "right")}
     taking = [name for name, each in lateral.items() if each and each.factors and not each.needs_column and not held]

@@ -68,7 +68,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     if tables["damping"] and tables["material"]:
-        yield from damping_problems(tables["damping"], tables["material"])
+        yield from damping_problems(tables)
     if tables["output"] and tables["material"]:
         yield from _no_load_factor(tables["output"], tables["material"], tables["load"], "static" in given)
         if not (LAWS[tables["material"].law].has_history or tables["output"].load_factor):

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -173,8 +172,11 @@ class NearLayers:
         return 2 * DELAYS * len(self._parts)
 
     def amplitudes(self, times: np.ndarray, behind: float) -> np.ndarray:
-        """Displacements m at times (k,) s and velocities m/s `behind` (s) earlier: (k, count)."""
-        late: tuple[tuple[Quantity, np.ndarray], ...] = ("displacement", times), ("velocity", times - behind)
+        """Displacements m at times (k,) s and velocities m/s `behind` (s) earlier: (k, count).
+
+        Of damped ground those that give the forces of damping in unrelaxed springs.
+        """
+        late: tuple[tuple[Quantity, np.ndarray], ...] = ("relaxed", times), ("relaxed_rate", times - behind)
         return np.hstack(
             [self.ground.along(wave, of, t, heights, layer) for of, t in late for layer, wave, heights in self._parts]
         )
@@ -257,7 +259,7 @@ def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -
     table, layers = case.incident, [ground]
     if isinstance(ground, LayeredGround):
         layers = [zone.material for zone in reversed(ground.layers)]
-    if table is None or table.angle != 0.0 or (len(layers) == 1 and _mechanisms(ground) is None):
+    if table is None or table.angle != 0.0 or (len(layers) == 1 and ground.mechanisms is None):
         return ground_waves(case, ground, outside)
     wave, grain = case.wave[table.wave], ground.brick.mean_diameter
     found = rising_in_layers(
@@ -268,15 +270,10 @@ def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -
         reference_point(case)[1],
         (wave.begin(), case.run.duration),
         grain,
-        [mechanisms and mechanisms.relative_modulus for mechanisms in map(_mechanisms, layers)],
+        [None if each.mechanisms is None else each.mechanisms.relative_modulus for each in layers],
     )
     must_not_be_there(case, found, outside)
     return found
-
-
-def _mechanisms(material: PackedMaterial) -> Any:
-    """The mechanisms of damped ground; None for others."""
-    return getattr(material, "mechanisms", None)
 
 
 def _summed(

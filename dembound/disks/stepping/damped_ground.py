@@ -1,8 +1,8 @@
 """The memories of forces of a scene whose ground is damped.
 
-A contact between layers of unlike damping has the springs k₁ and k₂ of both in series, so that to the first order in 1/Q
-it is damped by m = w₁m₁ + w₂m₂, with w₁ = k₂/(k₁ + k₂). Disks filter all forces by the m of their own layer; what is
-lacking, (m₂ − m₁)w₂ for a disk of layer 1, is computed apart.
+A contact between layers of unlike damping has the springs k₁ and k₂ of both in series, so that to the first order in
+1/Q it is damped by m = w₁m₁ + w₂m₂, with w₁ = k₂/(k₁ + k₂). Disks filter all forces by the m of their own layer; what
+is lacking, (m₂ − m₁)w₂ for a disk of layer 1, is computed apart.
 """
 
 import numpy as np
@@ -93,7 +93,7 @@ def _contacts(scene: DiskBody, nodes: slice) -> tuple[np.ndarray, np.ndarray, np
 
 
 def _shares(ground: PackedMaterial, heights: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Share k₁/(k₁ + k₂) of the damping of the other layer in contacts of disks at heights (k,) with those at others."""
+    """Share k₁/(k₁ + k₂) of the other layer's damping in contacts of disks at heights (k,) with those at others."""
     number, shares = ground.pairing_of(heights, others), np.zeros(len(heights))
     for each in np.unique(number).tolist():
         one, other = (ground.stiffness_of((zone, zone)) for zone in ground.pairings[each])

@@ -34,9 +34,10 @@ class Memories(NamedTuple):
     """Memories of the contact forces of a part, in blocks of eight slots from number `block` on.
 
     layer : (slots,) uint8, row of each disk in factors (layers, 2, K), e and g of the mechanisms. special : (blocks,)
-    uint8 of the scene, 1 for blocks with supported disks or contacts between layers, 2 more for those with disks of several layers. memory : (3K,
-    n) N and N·m, component by component. rest : (3, slots) contact forces at rest, which nothing remembers, or (3, 0)
-    for none. force (3, slots), held (1,) : work space. crossing : of contacts between layers.
+    uint8 of the scene, 1 for blocks with supported disks or contacts between layers, 2 more for those with disks of
+    several layers. memory : (3K, n) N and N·m, component by component. rest : (3, slots) contact forces at rest, which
+    nothing remembers, or (3, 0) for none. force (3, slots), held (1,) : work space. crossing : of contacts between
+    layers.
     """
 
     block: int

@@ -71,12 +71,14 @@ def test_a_damped_body_moves_as_its_arithmetic_says(bar, monkeypatch, size: list
     assert simulation.state.work[0, 1] == pytest.approx(taken, rel=1e-10)
 
 
-@pytest.mark.parametrize("boundary", ["viscous", "outside"])
-def test_the_ledger_closes(bar, boundary: str) -> None:
-    sides = {side: {"type": boundary} for side in ("left", "right", "bottom")}
+@pytest.mark.parametrize("boundary", ["viscous", "outside", "free_field"])
+@pytest.mark.parametrize("layer", [[], [{"thickness": 4.2, "quality_factor": 50.0}, {}]], ids=["uniform", "layers"])
+def test_the_ledger_closes(bar, boundary: str, layer: list) -> None:
+    sides = {side: {"type": boundary} for side in ("left", "right")}
+    sides |= {"bottom": {"type": "viscous" if boundary == "free_field" else boundary}}
     more = {"outside.element": 2.0} if boundary == "outside" else {}
     changes = {**BODY, "boundary": sides, "packing": GRAINS | {"size": [16.0, 8.0]}, "material.quality_factor": 5.0}
-    scene = build(bar(changes | more))
+    scene = build(bar(changes | more | {"layer": layer}))
     simulation = Simulation(scene, choose_step(scene)[0])
     ledger = Ledger(simulation, 50)
     simulation.track(ledger)
