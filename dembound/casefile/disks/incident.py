@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
 from dembound.boundaries import SIDES, Free
+from dembound.casefile.disks.damping import is_damped
 from dembound.table import Table, quantity
 
 
