@@ -235,7 +235,7 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
         snapshot += 34 * _pairs(z)[0]  # forces, to count contacts
         steady = 24 * (z.disks + z.slots) + 24 * z.disks  # with the velocity at the change of law
     settled = 2 * 24 * z.disks * (case.static is not None)  # datum and balancing forces
-    if any(each.quality_factor is not None for each in case.materials):  # memories, forces, layers, and forces at rest
+    if case.is_damped:  # memories, forces and layers, and forces at rest
         settled += (24 * case.damping.mechanisms + 25 + 24 * (case.static is not None)) * z.slots
     if case.output.stress:
         snapshot = max(snapshot, 24 * z.disks + stress_bytes(z))

@@ -64,6 +64,11 @@ class DiskCase(Case):
         return tuple(layer.merged(self.material) for layer in self.layer) or (self.material,)
 
     @property
+    def is_damped(self) -> bool:
+        """Whether the ground, or a layer of it, has a quality factor."""
+        return any(material.quality_factor is not None for material in self.materials)
+
+    @property
     def joints(self) -> tuple[float, ...]:
         """Heights y (m) of the planes between layers, from the uppermost down."""
         return tuple(bottoms(self.layer, self.box[3])[:-1])

@@ -14,7 +14,7 @@ from dembound.casefile.cross_checks import (
     too_many,
     unknown_waves,
 )
-from dembound.casefile.disks.damping import damping_problems
+from dembound.casefile.disks.damping import damping_problems, is_damped
 from dembound.casefile.disks.floors import lowered_in, lowered_problems
 from dembound.casefile.disks.ground import Box, Ground, ground_problems, is_in, reach
 from dembound.casefile.disks.hole_problems import hole_problems
@@ -70,7 +70,9 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["damping"] and tables["material"]:
         yield from damping_problems(tables)
     if tables["output"] and tables["material"]:
-        yield from _no_load_factor(tables["output"], tables["material"], tables["load"], "static" in given)
+        yield from _no_load_factor(
+            tables["output"], tables["material"], tables["load"], "static" in given, damped=is_damped(tables)
+        )
         if not (LAWS[tables["material"].law].has_history or tables["output"].load_factor):
             for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
                 yield from _no_strength(place, table)
@@ -114,16 +116,16 @@ def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
 
 
 def _no_load_factor(
-    output: Output, material: Material, loads: Sequence[Load | None], has_static: bool
+    output: Output, material: Material, loads: Sequence[Load | None], has_static: bool, *, damped: bool
 ) -> Iterator[str]:
-    """A load factor that cannot be computed; has_static : whether there is a static stage."""
+    """A load factor that cannot be computed; has_static : whether there is a static stage; damped : the ground."""
     if not output.load_factor:
         return
     if not LAWS[material.law].is_linear:
         yield f'output.load_factor: is of linear laws, material.law is "{material.law}"; give "elastic"'
     if material.damp > 0.0:
         yield f"output.load_factor: needs material.damp = 0, as local damping is not linear; it is {material.damp:g}"
-    if material.quality_factor is not None:
+    if damped:
         yield "output.load_factor: is of undamped ground; leave material.quality_factor out"
     for place, load in numbered("load", loads):
         if load.wave is None and not has_static:

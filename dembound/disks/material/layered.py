@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.damping.quality import Mechanisms
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
 from dembound.laws import Moduli, Stiffness
@@ -96,11 +95,6 @@ class LayeredGround(PackedMaterial):
     def layer_of(self, heights: np.ndarray) -> np.ndarray:
         """Number of the layer, from the top, of disks at heights (n,) m."""
         return np.array([zone.layer for zone in self.zones])[self.zone_of(heights)]
-
-    @property
-    def mechanisms_by_layer(self) -> tuple[Mechanisms | None, ...]:
-        """The mechanisms of every layer, from the top."""
-        return tuple(each.material.mechanisms for each in reversed(self.layers))
 
     def disk_masses(self, assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:
         """Masses (n,) kg and moments of inertia (n,) kg·m² of an assembly's disks."""

@@ -70,8 +70,8 @@ class PackedMaterial:
 
     @property
     def mechanisms_by_layer(self) -> tuple[Mechanisms | None, ...]:
-        """The mechanisms of every layer, from the top; of one, except in a layered ground."""
-        return (self.mechanisms,)
+        """The mechanisms of every layer, from the surface down."""
+        return tuple(each.mechanisms for each in self.materials)
 
     @property
     def is_damped(self) -> bool:

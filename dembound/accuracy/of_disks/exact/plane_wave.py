@@ -29,7 +29,7 @@ class ExactPlaneWave(Exact[DiskCase]):
     @classmethod
     def of(cls, case: DiskCase) -> ExactPlaneWave | None:
         """The solution of a case; None if it is another problem."""
-        other = case.material.quality_factor is not None or len(case.layer) > 1
+        other = case.is_damped or len(case.layer) > 1
         if other or case.hole or case.load or case.static or len(case.driving) != 1:
             return None
         ((side, waves),) = case.driving.items()

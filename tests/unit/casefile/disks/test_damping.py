@@ -27,6 +27,17 @@ def test_each_mistake_names_what_works(bar, changes: dict, line: str) -> None:
         bar(changes)
 
 
+def test_a_layer_may_be_damped_alone_and_waves_at_an_angle_are_refused(bar) -> None:
+    grains = {"pattern": "A", "radius": 0.25, "size": [8.0, 8.0]}
+    layers = {"packing": grains, "layer": [{"thickness": 4.0, "quality_factor": 20.0}, {}], "damping.mechanisms": 2}
+    assert bar(layers).is_damped
+    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
+    inclined = {"boundary": sides, "incident": {"type": "sv", "angle": 10.0, "wave": "pulse"}, "motion.held": []}
+    with pytest.raises(CaseError, match=r"incident.angle: is 10, must be 0 in damped ground"):
+        bar(layers | inclined)
+    bar(Q | inclined | {"incident": {"type": "sv", "angle": 0.0, "wave": "pulse"}})
+
+
 def test_the_band_is_that_of_the_waves(bar) -> None:
     low, high = band_of(bar())
 
