@@ -4,15 +4,14 @@ Pattern A, D = 1 m: soil of 200 m/s on rock of 400 m/s from y = 20 m down, under
 shortest wave in the soil, at three times that frequency, is 22 D long.
 """
 
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from dembound import api
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.layered_waves import rising_in_layers
-from dembound.disks.scene import build, with_waves
+from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.exact.column import Column, Layer
 from dembound.motion.simulation import Simulation
@@ -20,28 +19,36 @@ from dembound.motion.simulation import Simulation
 TOP, JOINT = 40.0, 20.0
 
 
-def case(width: float, height: float, boundary: dict[str, dict[str, str]], duration: float) -> DiskCase:
+def case(
+    width: float,
+    height: float,
+    boundary: dict[str, dict[str, str]],
+    duration: float,
+    *,
+    quality: float | None = None,
+    **more: Any,
+) -> DiskCase:
+    damped = {} if quality is None else {"quality_factor": quality}
     return api.case(
         packing={"pattern": "A", "size": [width, height], "radius": 0.5, "origin": [-0.5 * width, TOP - height]},
-        material={"density": 2300.0, "s_wave_speed": 400.0, "fric": 0.5},
+        material={"density": 2300.0, "s_wave_speed": 400.0, "fric": 0.5} | damped,
         layer=[{"bottom": JOINT, "density": 1800.0, "s_wave_speed": 200.0}, {}],
         boundary=boundary,
         wave={"pulse": {"type": "ricker", "frequency": 3.0, "amplitude": 1.0}},
         outside={"accuracy": 2e-3},
         run={"duration": duration},
+        **more,
     )
 
 
+@pytest.mark.parametrize("quality", [None, 20.0], ids=["undamped", "damped"])
 @pytest.mark.parametrize("height", [30.0, 10.0], ids=["joint in the box", "rock below"])
-def test_a_box_moves_as_the_ground(height: float) -> None:
+def test_a_box_moves_as_the_ground(height: float, quality: float | None) -> None:
     """All its disks; the continuum, which has the scattered motion, is at rest."""
-    plain = case(20.0, height, {key: {"type": "outside"} for key in ("left", "right", "bottom")}, 0.9)
-    scene = build(plain)
-    ground, wave = scene.outside.body.ground, plain.wave["pulse"]
-    waves = rising_in_layers(
-        ground.media[::-1], ground.joints[::-1], scene.outside.free_surface, (wave, None), -25.0, (0.0, 0.9), 1.0
-    )
-    scene = with_waves(replace(scene, ground_waves=waves), plain.wave)
+    sides = {key: {"type": "outside"} for key in ("left", "right", "bottom")}
+    incident = {"type": "sv", "angle": 0.0, "wave": "pulse", "point": [0.0, -25.0]}
+    scene = build(case(20.0, height, sides, 0.9, quality=quality, incident=incident))
+    waves = scene.ground_waves
     simulation = Simulation(scene, choose_step(scene)[0])
     disks, moved, off, rest = len(scene.assembly.radii), 0.0, 0.0, 0.0
     while simulation.time < 0.89:
