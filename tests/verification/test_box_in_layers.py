@@ -23,10 +23,19 @@ TOP, JOINT = 40.0, 20.0
 SIDES = {key: {"type": "outside"} for key in ("left", "right", "bottom")}
 
 
-def case(width: float, height: float, boundary: dict[str, dict[str, str]], duration: float, **more: Any) -> DiskCase:
+def case(
+    width: float,
+    height: float,
+    boundary: dict[str, dict[str, str]],
+    duration: float,
+    *,
+    quality: float | None = None,
+    **more: Any,
+) -> DiskCase:
+    damped = {} if quality is None else {"quality_factor": quality}
     return api.case(
         packing={"pattern": "A", "size": [width, height], "radius": 0.5, "origin": [-0.5 * width, TOP - height]},
-        material={"density": 2300.0, "s_wave_speed": 400.0, "fric": 0.5},
+        material={"density": 2300.0, "s_wave_speed": 400.0, "fric": 0.5} | damped,
         layer=[{"bottom": JOINT, "density": 1800.0, "s_wave_speed": 200.0}, {}],
         boundary=boundary,
         wave={"pulse": {"type": "ricker", "frequency": 3.0, "amplitude": 1.0}},
@@ -46,12 +55,12 @@ def exact(plain: DiskCase, kind: str, times: np.ndarray, depth: float, height: f
     return Column([soil, rock]).history(incident, times[1], depth)
 
 
+@pytest.mark.parametrize("quality", [None, 20.0], ids=["undamped", "damped"])
 @pytest.mark.parametrize("height", [30.0, 10.0], ids=["joint in the box", "rock below"])
-def test_a_box_moves_as_the_ground(height: float) -> None:
-    """All its disks under a wave from straight below; the continuum, which has the scattered motion, is at rest."""
-    scene = build(
-        case(20.0, height, SIDES, 0.9, incident={"type": "sv", "angle": 0.0, "wave": "pulse", "point": [0.0, -25.0]})
-    )
+def test_a_box_moves_as_the_ground(height: float, quality: float | None) -> None:
+    """All its disks; the continuum, which has the scattered motion, is at rest."""
+    incident = {"type": "sv", "angle": 0.0, "wave": "pulse", "point": [0.0, -25.0]}
+    scene = build(case(20.0, height, SIDES, 0.9, quality=quality, incident=incident))
     waves, disks = scene.ground_waves, len(scene.assembly.radii)
     simulation = Simulation(scene, choose_step(scene)[0])
     moved, off, rest = 0.0, 0.0, 0.0

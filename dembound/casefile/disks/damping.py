@@ -44,10 +44,16 @@ class Damping(Table):
         return self
 
 
+def qualities(tables: Mapping[str, Any]) -> set[float | None]:
+    """The quality factors of all layers, None for undamped ones; an invalid table is None."""
+    own = tables["material"] and tables["material"].quality_factor
+    layers = [layer for layer in tables["layer"] if layer is not None]
+    return {own if layer.quality_factor is None else layer.quality_factor for layer in layers} or {own}
+
+
 def is_damped(tables: Mapping[str, Any]) -> bool:
     """Whether the ground, or a layer of it, has a quality factor; an invalid table is None."""
-    each = (tables["material"], *tables["layer"])
-    return any(table is not None and table.quality_factor is not None for table in each)
+    return qualities(tables) != {None}
 
 
 def damping_problems(tables: Mapping[str, Any]) -> Iterator[str]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
 from dembound.boundaries import SIDES, Free
-from dembound.casefile.disks.damping import is_damped
+from dembound.casefile.disks.damping import is_damped, qualities
 from dembound.table import Table, quantity
 
 
@@ -39,6 +39,11 @@ def incident_problems(incident: IncidentWave, tables: Mapping[str, Any]) -> Iter
         yield (
             f"incident.angle: is {incident.angle:g}, must be 0 in damped ground (quality_factor), where waves at an "
             "angle are not known"
+        )
+    if len(qualities(tables)) > 1:
+        yield (
+            "incident: needs one quality_factor in all layers, as forces that enter beside a joint would not balance; "
+            "let the wave enter at boundary.bottom"
         )
     for side in SIDES:
         table = tables["boundary"].get(side, Free())

@@ -35,7 +35,10 @@ def test_a_layer_may_be_damped_alone_and_waves_at_an_angle_are_refused(bar) -> N
     inclined = {"boundary": sides, "incident": {"type": "sv", "angle": 10.0, "wave": "pulse"}, "motion.held": []}
     with pytest.raises(CaseError, match=r"incident.angle: is 10, must be 0 in damped ground"):
         bar(layers | inclined)
-    bar(Q | inclined | {"incident": {"type": "sv", "angle": 0.0, "wave": "pulse"}})
+    straight = inclined | {"incident": {"type": "sv", "angle": 0.0, "wave": "pulse"}}
+    with pytest.raises(CaseError, match="incident: needs one quality_factor in all layers"):
+        bar(layers | straight)
+    bar(Q | straight)
 
 
 def test_the_band_is_that_of_the_waves(bar) -> None:
