@@ -88,6 +88,19 @@ def shifted(cut, by: float):
     return lambda ground, height: (cut(ground, height)[0] + by, cut(ground, height)[1] + by)
 
 
+@pytest.mark.parametrize("joint", [15.0, *(pytest.param(joint, marks=pytest.mark.slow) for joint in (7.0, 22.0))])
+def test_a_bench_of_layers_moves_as_one_of_disks_alone(lab, joint: float) -> None:
+    """Soil 1.4 times slower than the rock below; it begins below the floor, at it, or above it at the slope."""
+    rock = build(bench(lab)).ground
+    soil = {"density": 0.9 * rock.density, "s_wave_speed": rock.wave_speeds(1)[1] / 1.4, "bottom": joint}
+    case = bench(lab, layer=[soil, {}], **monitors(PLACES), **{"wave.pulse.period": 0.15, "outside.accuracy": 2e-3})
+    own, expected, _ = both(case)
+    found = errors(own, expected)
+
+    assert found[0].max() < 7e-4
+    assert found[1].max() < 3e-3
+
+
 def test_a_ridge_between_two_floors_moves_as_one_of_disks_alone(lab) -> None:
     """Under a traction on the continuum's own surface beyond the left floor, which the other scene has on disks."""
     holes = [

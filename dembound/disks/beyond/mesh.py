@@ -95,7 +95,7 @@ class Level(NamedTuple):
         x, y = body.positions.T
         highest = float(y[x < x.min() + near if side == "left" else x > x.max() - near].max())
         height = floor.height + float(np.copysign(rounding, highest - floor.height + rounding))
-        mass_end, surface = ground.at(floor.height).cut(height - float(body.origin[1]))
+        mass_end, surface = ground.at(floor.height - near).cut(height - float(body.origin[1]))
         return cls(floor.height, height, height + mass_end, height + surface)
 
 
@@ -137,7 +137,7 @@ class Rim(NamedTuple):
         for side in SIDES:
             if case.side(side).is_free and _is_beside(side, sides):
                 number, outwards = normal_axis(side) + 2 * is_far(side), 1.0 if is_far(side) else -1.0
-                skins[side] = ground.at(box[1 if side == "bottom" else 3]).skin(side)
+                skins[side] = ground.at(box[3 if side == "top" else 1]).skin(side)  # left and right: of what is below
                 box[number] = inset(rim, skins)[number]
                 massless[side] = outwards * (mass[number] - box[number])
         surface = None
