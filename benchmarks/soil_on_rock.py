@@ -51,8 +51,8 @@ class Errors(NamedTuple):
     hysteretic_spectrum: float
 
 
-def column(diameter: float, damped: bool) -> str:
-    """The case of a column of disks of a diameter (m)."""
+def column(diameter: float, damped: bool, duration: float) -> str:
+    """The case of a column of disks of a diameter (m), run for a duration (s)."""
     rock = {"density": ROCK, "p_wave_speed": 1500.0, "s_wave_speed": 760.0}
     tables = {
         "packing": {"pattern": "A", "radius": 0.5 * diameter, "size": [diameter, 20.0]},
@@ -64,7 +64,7 @@ def column(diameter: float, damped: bool) -> str:
         },
         "wave": {"record": {"type": "file", "path": str(RECORD), "motion": "outcrop"}},
         "monitor": [{"name": "surface", "position": [0.5 * diameter, 20.0 - 0.5 * diameter]}],
-        "run": {"duration": 61.0},
+        "run": {"duration": duration},
         "output": {"snapshots": 0, "pictures": False},
     }
     if damped:
@@ -101,9 +101,9 @@ def errors(case: DiskCase, time: np.ndarray, found: np.ndarray) -> Errors:
     return Errors(*parts[0], *parts[1])
 
 
-def errors_of(diameter: float, damped: bool, folder: Path) -> Errors:
-    """Of a run with disks of a diameter (m)."""
-    case = loads(column(diameter, damped))
+def errors_of(diameter: float, damped: bool, folder: Path, duration: float = 61.0) -> Errors:
+    """Of a run with disks of a diameter (m), by default under the whole record; duration : s."""
+    case = loads(column(diameter, damped, duration))
     history = run(case, folder / f"{diameter:g}_{damped}").histories["surface"]
     return errors(case, history["time"], history["velocity"][:, 0])
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The charts of docs/evidence/charts.md: error against cost of the long bar under P and S pulses, of the external source, of Lamb's
-# problem, of a blast, of a hole under plane waves, of Garvin's problem, of the tunnel, of L's bar, and of the laws.
+# problem, of a blast, of a hole under plane waves, of Garvin's problem, of the tunnel, of a tunnel below damped soil, of
+# L's bar, and of the laws.
 #
 #   cases/charts/run.sh [RESULTS]      (default: results/charts)
 #
@@ -35,6 +36,7 @@ chart external_source --quantity displacement
 chart laws
 chart laws_spall
 chart tunnel
+chart soil_tunnel
 tunnel A 1200 '' 'beta_p=1' 'beta_p=1' 'half_mass=true'
 tunnel B 968.76 ',radius_ratio=1.5,brick=[25.0,25.0],seed=1' 'beta_p=0.7149,beta_s=0.7332' \
     'beta_p=0.7932,beta_s=0.8135' 'beta_p=0.8116,beta_s=0.8402'
