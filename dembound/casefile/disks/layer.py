@@ -147,8 +147,8 @@ def _problems_of_heights(layers: Sequence[Layer], packing: Packing, box: Box, go
             yield f"{place}: ends at {bottom:.10g} m, above the bottom of the ground at {lowest:.10g} m; leave it out"
         elif last and not goes_on and bottom < lowest - near:
             yield (
-                f"{place}: ends at {bottom:.10g} m, below the bottom of the ground at {lowest:.10g} m, where nothing goes"
-                " on; leave it out, or make the ground higher"
+                f"{place}: ends at {bottom:.10g} m, below the bottom of the ground at {lowest:.10g} m, where nothing "
+                "goes on; leave it out, or make the ground higher"
             )
         if number > 1 and not goes_on and top < lowest + least - near:
             yield (
