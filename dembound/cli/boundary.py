@@ -77,8 +77,9 @@ def boundary(
 ) -> None:
     """Compute the energy that sides reflect, by angle and frequency.
 
-    Nothing is run. With several sides, pictures and tables have their names; a left or right side beside layers has
-    one for each layer.
+    Nothing is run. With several sides, pictures and tables have their names.
+
+    A left or right side beside layers has one of each for every layer.
     """
     one_thread_for_matrices()  # before numpy is imported
     from dembound.disks.reflection import (

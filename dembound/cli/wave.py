@@ -172,6 +172,7 @@ def wave(
     damping: Annotated[
         Damping,
         typer.Option(
+            metavar="DAMPING",
             help="Q of the case in --deconvolve: as_run, by the mechanisms of runs; hysteretic, G(1 + i/Q), as in "
             "equivalent-linear programs; or constant_q, causal.",
         ),

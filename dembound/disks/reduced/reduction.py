@@ -54,7 +54,8 @@ def identical_row(scene: DiskScene) -> OneRow | None:
     if apart or scene.outside is not None or scene.seam is not None:
         return None
     copies = scene.assembly.copies
-    several = [axis for axis in np.argsort(copies, kind="stable").tolist() if copies[axis] > 1]
+    axes = (0,) if scene.ground.is_layered else np.argsort(copies, kind="stable").tolist()
+    several = [axis for axis in axes if copies[axis] > 1]
     rows = (one_row(scene, axis) for axis in several)
     return next((row for row in rows if row is not None and moves_as_all(row)), None)
 
