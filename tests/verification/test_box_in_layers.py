@@ -79,6 +79,7 @@ def test_a_box_moves_as_the_ground(height: float, quality: float | None) -> None
 MONITORS = {"disk": [0.0, 39.5], "soil": [18.0, 25.0], "rock": [-18.0, 15.0], "below": [5.0, 3.0]}
 
 
+@pytest.mark.slow
 def test_monitors_of_a_box_in_layers(tmp_path: Path) -> None:
     """Under a wave from straight below: in the disks and in the continuum at both sides of the joint, without hole."""
     monitors = [{"name": name, "position": place} for name, place in MONITORS.items()]

@@ -179,8 +179,8 @@ def differences(one, other) -> list[str]:
     return sorted(name for name in first.keys() | second.keys() if first.get(name) != second.get(name))
 
 
-LATE = "settled box in the ground"
-"""Case whose loop takes minutes to compile."""
+LATE = ("settled box in the ground", "damped by Q, settled beside a free field")
+"""Cases whose loops take long to compile."""
 
 FILED = ("law changes, bonds break", "cracks that open")
 """Cases whose checkpoints in files are tried; the others with ``-m slow``."""
@@ -202,7 +202,7 @@ BREAKING = (
 )
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n == LATE else n for n in CASES])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in LATE else n for n in CASES])
 def test_a_run_cut_and_rebuilt_from_its_arrays_comes_to_the_same_bits(name) -> None:
     case = case_of(name)
     kind = kind_of(case)
@@ -229,7 +229,7 @@ def test_a_run_cut_and_rebuilt_from_its_arrays_comes_to_the_same_bits(name) -> N
 
     cracks = sum(len(values) for name, values in expected.items() if name.endswith("crack_step"))  # of disks
     broken = sum(np.count_nonzero(values >= 0) for name, values in expected.items() if name.endswith("_broken"))
-    if name != LATE:
+    if name not in LATE:
         assert len(whole.state.laws) == (2 if name in CHANGING else 1)
         assert (cracks + broken > 0) == (name in BREAKING)
 

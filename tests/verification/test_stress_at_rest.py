@@ -47,7 +47,7 @@ def speed(lab, scene: DiskScene, found: Settled, steps: int = 500) -> float:
     return float(np.abs(simulation.state.velocity).max())
 
 
-@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
+@pytest.mark.parametrize("law", [pytest.param("elastic", marks=pytest.mark.slow), "linearpbond"])
 @pytest.mark.parametrize("name", SIDES)
 def test_a_stress_is_there_from_the_start(lab, name: str, law: str) -> None:
     """On the lattice to rounding: ε of a stress, over the forces of some ten contacts in sums of a block's 400."""
