@@ -9,7 +9,8 @@ from dembound.boundaries import Motion, axis_of_motion
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.boundaries.words import reflected
-from dembound.disks.scene import DiskScene, media_of
+from dembound.disks.scene import DiskScene
+from dembound.disks.side_media import media_of
 from dembound.errors import CaseError
 
 

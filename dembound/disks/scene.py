@@ -7,37 +7,34 @@ from functools import cached_property
 import numpy as np
 
 from dembound.boundaries import Periodic, is_far
-from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor, with_shares
-from dembound.boundaries.support import BoundaryMedium, Edge, Incident, SupportBuilder, Supports, Waves
+from dembound.boundaries.half_mass import half_edges, mass_factor, with_shares
+from dembound.boundaries.support import Edge, SupportBuilder, Waves
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.beyond.edges import edges_beside_column, find_edges
-from dembound.disks.beyond.ground_waves import GroundWaves, rising_waves
 from dembound.disks.beyond.hollowed import hollowed
-from dembound.disks.beyond.incident import let_in, let_in_below, power_through
-from dembound.disks.beyond.layered_waves import LayeredWaves, rising_in_layers, undisturbed
+from dembound.disks.beyond.layered_waves import undisturbed
 from dembound.disks.beyond.mechanisms import mechanisms_of
 from dembound.disks.beyond.mesh import NO_FLOORS, Outline
 from dembound.disks.beyond.surroundings import Surroundings, surroundings_of
 from dembound.disks.body import DiskBody, differs_by_level, parts_of
 from dembound.disks.body_sides import sides_of, tied_of
+from dembound.disks.contact_types import with_half_contacts, with_layers
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
-from dembound.disks.loads import drive, steady
-from dembound.disks.material.layered import LayeredGround, layered
-from dembound.disks.material.mirrored import with_images
+from dembound.disks.loads import steady
+from dembound.disks.material.layered import layered
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.monitors import monitors_of
 from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
-from dembound.disks.stepping.continuum_ties import disks_on_foot
+from dembound.disks.side_media import boundary_medium
 from dembound.disks.stepping.stress import particle_stress
 from dembound.disks.stepping.system import DiskSystem
+from dembound.disks.support_rows import supports_of
 from dembound.holes.floor import Floor
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.layout import Layout
 from dembound.outside.ram import GridSizes
-from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
 
@@ -273,144 +270,4 @@ def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
 
 def with_waves(scene: DiskScene, waves: Waves) -> DiskScene:
     """The scene with these waves, by the names that its sides have for them."""
-    return replace(scene, supports=_supports(scene, waves))
-
-
-def with_half_contacts(
-    case: DiskCase, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
-) -> tuple[Assembly, Seam | None]:
-    """Replace contacts along sides of half cells, also across a seam, by types with half the stiffness."""
-    vectors, whole = brick.vectors, len(brick.pairs)
-
-    def halved(contact_type: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-        plain = contact_type % whole
-        half = half_contacts(first, second, vectors[plain], edges, case.boundary)
-        return plain + whole * half.astype(contact_type.dtype)
-
-    assembly = replace(assembly, contact_type=halved(assembly.contact_type, *assembly.pairs.T))
-    if seam is not None:
-        owner = np.repeat(seam.twin[seam.node], seam.contact_counts)
-        seam = replace(seam, contact_type=halved(seam.contact_type, owner, seam.neighbour))
-    return assembly, seam
-
-
-def with_layers(ground: PackedMaterial, assembly: Assembly, seam: Seam | None) -> tuple[Assembly, Seam | None]:
-    """Replace the contacts of a layered ground, also across a seam, by types with the springs of their zones."""
-    if not ground.is_layered:
-        return assembly, seam
-    up, types = assembly.positions[:, 1], 2 * len(ground.brick.pairs)
-    pairing = ground.pairing_of(*up[assembly.pairs].T)
-    assembly = replace(assembly, contact_type=(assembly.contact_type + types * pairing).astype(np.int32))
-    if seam is not None:
-        owner = up[np.repeat(seam.twin[seam.node], seam.contact_counts)]
-        other = up[seam.neighbour]
-        pairing = ground.pairing_of(*np.where(seam.twin_is_second, [other, owner], [owner, other]))
-        seam = replace(seam, contact_type=seam.contact_type + types * pairing)
-    return assembly, seam
-
-
-def boundary_medium(ground: PackedMaterial, axis: int) -> BoundaryMedium:
-    """The medium beyond a side: the wave speeds given in the case, else those of the packing along the side's normal.
-
-    axis : of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
-    """
-    p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see homogenise.GRADIENTS
-    p_speed, s_speed = ground.given_speeds
-    if p_speed is None:
-        p_speed = float(np.sqrt(ground.material_tensor[p_gradient, p_gradient] / ground.density))
-    if s_speed is None:
-        s_speed = float(np.sqrt(ground.material_tensor[s_gradient, s_gradient] / ground.density))
-
-    def mirror_stiffness(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        between = with_images(ground, axis, diameters)
-        return between.normal, between.bending
-
-    return BoundaryMedium(
-        ground.density, p_speed, s_speed, mirror_stiffness, own_speeds=lambda: ground.wave_speeds(axis)
-    )
-
-
-def media_of(scene: DiskScene, side: str) -> list[tuple[Edge, BoundaryMedium]]:
-    """The parts of a side within one layer, with the medium that each represents; the lowest first."""
-    ground, edge = scene.ground, scene.edges[side]
-    if not isinstance(ground, LayeredGround):
-        return [(edge, boundary_medium(ground, edge.axis))]
-    layer = ground.layer_of(edge.positions[:, 1])
-    found = []
-    for each in ground.layers:
-        chosen = layer == each.layer
-        if chosen.any():
-            low, high = scene.low[1], scene.low[1] + edge.length
-            length = min(each.high, high) - max(each.low, low) if edge.axis == 0 else edge.length
-            found.append((edge.only(chosen, length), boundary_medium(each.material, edge.axis)))
-    return found
-
-
-def layers_beside(scene: DiskScene, side: str) -> list[int]:
-    """Number of the layer, from the top, of each of the parts of a side, see `media_of`."""
-    return [int(scene.ground.layer_of(edge.positions[:1, 1])[0]) for edge, _ in media_of(scene, side)]
-
-
-def ground_at(scene: DiskScene, side: str) -> PackedMaterial:
-    """The material at a side; in a layered ground that of the lowest of its layers."""
-    return scene.ground.at(scene.case.box[3 if side == "top" else 1])
-
-
-def medium_of_side(scene: DiskScene, side: str) -> BoundaryMedium:
-    """The medium that a side represents; in a layered ground that of the lowest of its layers."""
-    return media_of(scene, side)[0][1]
-
-
-def _supports(scene: DiskScene, waves: Waves) -> Supports:
-    """The support table: rows of all sides under these waves, of all loads that follow a wave, and of continua."""
-    case, builder = scene.case, SupportBuilder(held=scene.ground.held)
-    for side, table in case.boundary.items():
-        builder.side = side
-        for edge, medium in media_of(scene, side) if side in scene.edges else ():
-            table.support(edge, medium, waves, builder)
-    builder.side = ""
-    drive(scene, builder)
-    for each in scene.continua:
-        each.support(builder)
-    bottom = case.side("bottom")
-    if bottom.is_outside and bottom.waves:
-        names = bottom.waves_by_axis(1)
-        x, y = (None if name is None else waves[name] for name in names)
-        _let_in_below(scene, (x, y), builder)
-    if scene.outside is not None and scene.ground_waves is not None:
-        let_in(scene.outside, scene.ground_waves, scene.positions, builder)
-    return builder.table()
-
-
-def _rising(
-    case: DiskCase, beneath: Surroundings, signals: tuple[Incident | None, Incident | None], grain: float
-) -> GroundWaves | LayeredWaves:
-    """The motion of the ground beneath a body under waves that run straight up, as if its layer there went on above.
-
-    They have the given velocities at the lower side of the body; with layers below it, at the top of the lowest layer.
-    """
-    ground, height = beneath.body.ground, beneath.box[1]
-    joints = tuple(joint for joint in ground.joints if joint < beneath.body.mesh.sides[2])
-    relative = [None if each is None else each.relative_modulus for each in beneath.body.mechanisms[len(joints) :: -1]]
-    if not joints and not any(relative):
-        return rising_waves(ground.at(height), height, signals, grain)
-    media, span = ground.media[len(joints) :: -1], (min(wave.start for wave in case.wave.values()), case.run.duration)
-    at = joints[0] if joints else height
-    return rising_in_layers(media, joints[::-1], None, signals, at, span, grain, relative)
-
-
-def _let_in_below(scene: DiskScene, signals: tuple[Incident | None, Incident | None], builder: SupportBuilder) -> None:
-    """Add the waves along x and y, None for none, that enter through the continuum below to the support table.
-
-    Beside a free-field column they enter through its foot, and the body's disks that stand on the ground below have the
-    forces of their twins.
-    """
-    beneath = scene.outside if scene.foot is None else scene.foot
-    assert beneath is not None
-    waves = _rising(scene.case, beneath, signals, scene.ground.brick.mean_diameter)
-    disks = disks_on_foot(scene)
-    twins = disks if scene.twin is None else scene.twin[disks]
-    builder.side = "bottom"
-    let_in_below(beneath, waves, scene.positions, builder, (twins, disks))
-    side = "bottom" if scene.foot is None else f"bottom{FREE_FIELD}"
-    builder.add_power(side, power_through("bottom", beneath.body.mesh.sides, waves, beneath.body.thickness))
+    return replace(scene, supports=supports_of(scene, waves))

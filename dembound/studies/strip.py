@@ -12,7 +12,8 @@ from dembound.boundaries import OPPOSITE, Motion, Periodic, Velocity, normal_axi
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import linear_law
 from dembound.disks.material.layered import LayeredGround
-from dembound.disks.scene import boundary_medium, ground_of
+from dembound.disks.scene import ground_of
+from dembound.disks.side_media import boundary_medium
 from dembound.errors import CaseError
 from dembound.waves import Cosine
 

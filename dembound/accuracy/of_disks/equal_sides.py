@@ -14,7 +14,8 @@ from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import homogenised_beta, per_metre
-from dembound.disks.scene import DiskScene, build, ground_at, medium_of_side
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.side_media import ground_at, medium_of_side
 from dembound.errors import CaseError
 
 EQUAL = 1e-3

@@ -20,7 +20,8 @@ from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.matching import homogenised_beta, require_dashpots_alone
 from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.reflection.meter import Meter
-from dembound.disks.scene import DiskScene, media_of, with_boundaries
+from dembound.disks.scene import DiskScene, with_boundaries
+from dembound.disks.side_media import media_of
 from dembound.errors import CaseError
 
 FREQUENCIES = 3

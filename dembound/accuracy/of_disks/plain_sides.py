@@ -15,7 +15,8 @@ from dembound.boundaries import Viscoelastic, Viscous
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import BoundaryMedium, Edge, Supports
 from dembound.disks.matching import Held, supports_of
-from dembound.disks.scene import DiskScene, media_of, medium_of_side, with_boundaries
+from dembound.disks.scene import DiskScene, with_boundaries
+from dembound.disks.side_media import media_of, medium_of_side
 
 EVEN = 1e-6
 """Largest relative difference between numbers that count as equal: rounding."""

@@ -19,7 +19,8 @@ from dembound.accuracy.of_disks.waves import crossing_time
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.disks.entry import side_ends
 from dembound.disks.matching import factors_in, homogenised_beta
-from dembound.disks.scene import DiskScene, ground_at
+from dembound.disks.scene import DiskScene
+from dembound.disks.side_media import ground_at
 
 
 def errors_on_rock(

@@ -9,9 +9,10 @@ from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Supports
 from dembound.disks.beyond.edges import find_edges
 from dembound.disks.body import parts_of
+from dembound.disks.contact_types import with_half_contacts, with_layers
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.ram import run_bytes
-from dembound.disks.scene import DiskScene, with_half_contacts, with_layers
+from dembound.disks.scene import DiskScene
 from dembound.packings.tiling import Assembly, tile
 
 

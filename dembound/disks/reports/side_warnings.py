@@ -11,7 +11,8 @@ from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.matching import Held, factors_in, homogenised_beta, sent_back
 from dembound.disks.material.mirrored import continues
 from dembound.disks.reports.beside_wave import taken_from_waves
-from dembound.disks.scene import DiskScene, layers_beside, media_of
+from dembound.disks.scene import DiskScene
+from dembound.disks.side_media import layers_beside, media_of
 
 
 def side_warnings(scene: DiskScene) -> Iterator[str]:

@@ -7,7 +7,8 @@ import numpy as np
 
 from dembound.boundaries.viscoelastic import Springs
 from dembound.disks.loads import forces_of
-from dembound.disks.scene import DiskScene, media_of
+from dembound.disks.scene import DiskScene
+from dembound.disks.side_media import media_of
 from dembound.words import with_unit
 
 UNLIKE = 2.0

@@ -7,7 +7,8 @@ import numpy as np
 from dembound.disks.material.layered import Joint, LayeredGround
 from dembound.disks.rest.block_stress import Uniformity
 from dembound.disks.rest.settled import Settled
-from dembound.disks.scene import DiskScene, layers_beside, media_of
+from dembound.disks.scene import DiskScene
+from dembound.disks.side_media import layers_beside, media_of
 from dembound.disks.stepping.load_factor import load_factor_of
 from dembound.disks.stepping.near_ties import OPENED
 from dembound.disks.stepping.system import DiskSystem

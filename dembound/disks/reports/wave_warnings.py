@@ -22,7 +22,8 @@ from dembound.disks.beyond.frequencies import share_above
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.reports.incident_facts import arrival
 from dembound.disks.reports.materials import materials_of
-from dembound.disks.scene import DiskScene, boundary_medium, medium_of_side
+from dembound.disks.scene import DiskScene
+from dembound.disks.side_media import boundary_medium, medium_of_side
 from dembound.errors import CaseError
 from dembound.waves.constant import Constant
 from dembound.waves.spectrum import HANN_FADE

@@ -9,8 +9,9 @@ from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.rest.tractions import Tractions
-from dembound.disks.scene import DiskScene, media_of
+from dembound.disks.scene import DiskScene
 from dembound.disks.side_forces import forces_at_rest
+from dembound.disks.side_media import media_of
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.state import State
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.disks.scene import boundary_medium, build, with_boundaries
+from dembound.disks.scene import build, with_boundaries
+from dembound.disks.side_media import boundary_medium
 from dembound.errors import CaseError, PackingError
 
 RANDOM = {
