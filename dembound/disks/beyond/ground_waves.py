@@ -148,8 +148,11 @@ class NearPlaces:
             matrix[own, own] = -scale * self._rule.slope(self._rule.points + scale * behind)
         return matrix
 
-    def strained(self, places: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count)."""
+    def strained(self, places: np.ndarray, values: np.ndarray, heights: np.ndarray | None = None) -> np.ndarray:
+        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count).
+
+        heights : (d,) m in the layers whose gradients these are, in layered ground.
+        """
         each = []
         for wave, (low, high) in zip(self.ground.waves, self.spans, strict=True):
             slope = self._rule.slope(self._places(wave, places, low, high)) * (2.0 / (high - low))

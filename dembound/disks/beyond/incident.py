@@ -93,7 +93,7 @@ def _part_of(wall: Wall, ground: Undisturbed, positions: np.ndarray, first: int)
     edges = _at_edges(bonds, positions, wall.mesh.sides)
     near = ground.near(np.concatenate([positions[disk], edges]))
     of_bonds = np.zeros((3, len(disk), near.count))
-    for sums, forces in zip(of_bonds, near.strained(edges, bonds.on_disks), strict=True):
+    for sums, forces in zip(of_bonds, near.strained(edges, bonds.on_disks, bonds.height), strict=True):
         np.add.at(sums, place, forces)
     of_ties, reactions = forces_at_rest(wall, disk, -near.motion(positions[disk], bonds.own[:, :, own]))
     component, node, at_once = _listed(of_bonds + of_ties, disk)

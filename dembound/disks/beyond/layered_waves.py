@@ -189,10 +189,13 @@ class NearLayers:
         """Matrix (count, count) from the amplitudes to the velocities that they have for the displacements."""
         return np.eye(self.count, k=self.count // 2)
 
-    def strained(self, places: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count)."""
+    def strained(self, places: np.ndarray, values: np.ndarray, heights: np.ndarray | None = None) -> np.ndarray:
+        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count).
+
+        heights : (d,) m in the layers whose gradients these are, by default the places', which may be across a joint.
+        """
         found = np.zeros((3, len(places), self.count))
-        for own, columns, scale, at, motion in self._groups(places):
+        for own, columns, scale, at, motion in self._groups(places, places[:, 1] if heights is None else heights):
             slope = scale * self._rule.slope(at)
             found[:, own, columns] = np.einsum("cgd,g->cd", values[:, :, own], _gradient(motion))[:, :, None] * slope
         return found
@@ -200,13 +203,18 @@ class NearLayers:
     def motion(self, places: np.ndarray, corrector: np.ndarray) -> np.ndarray:
         """Motion (3, d, count) of disks at places (d, 2) m with correctors (3, 4, d), per unit of amplitudes."""
         moved = self.strained(places, corrector)
-        for own, columns, _, at, motion in self._groups(places):
+        for own, columns, _, at, motion in self._groups(places, places[:, 1]):
             moved[:2, own, columns] += motion[:, None, None] * self._rule.shape(at)
         return moved
 
-    def _groups(self, places: np.ndarray) -> Iterator[tuple[np.ndarray, slice, float, np.ndarray, np.ndarray]]:
-        """Of each group of displacements: its places and columns, d/dy of the scaled height, this, and motion (2,)."""
-        layers = self.ground.layer_of(places[:, 1])
+    def _groups(
+        self, places: np.ndarray, within: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, slice, float, np.ndarray, np.ndarray]]:
+        """Of each group of displacements: its places and columns, d/dy of the scaled height, this, and motion (2,).
+
+        within : (d,) m, heights in the layers of the places.
+        """
+        layers = self.ground.layer_of(within)
         for number, (layer, wave, heights) in enumerate(self._parts):
             if len(own := np.flatnonzero(layers == layer)) > 0:
                 scale = 2.0 / float(heights[-1] - heights[0])

@@ -38,18 +38,18 @@ class ObliqueLayers:
 
     def arrives(self, places: np.ndarray) -> float:
         """Time (s) from the incident wave at its reference to that at the first of places (k, 2) m."""
-        return min(self.layers[layer].arrives(places[own]) for layer, own in self.parts(places))
+        return min(self.layers[layer].arrives(places[own]) for layer, own in self.parts(places[:, 1]))
 
-    def parts(self, places: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
-        """Layers with any of places (k, 2) m, and the numbers (m,) of these."""
-        layers = layer_at(places[:, 1], self.joints, self.layers[0].grain)
+    def parts(self, heights: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
+        """Layers with any of the heights (k,) m, and the numbers (m,) of these."""
+        layers = layer_at(heights, self.joints, self.layers[0].grain)
         for layer in np.unique(layers).tolist():
             yield layer, np.flatnonzero(layers == layer)
 
     def near(self, places: np.ndarray) -> NearObliqueLayers:
         """The waves near places (k, 2) m only."""
         return NearObliqueLayers(
-            self, {layer: self.layers[layer].near(places[own]) for layer, own in self.parts(places)}
+            self, {layer: self.layers[layer].near(places[own]) for layer, own in self.parts(places[:, 1])}
         )
 
     def motion(self, of: str, times: np.ndarray, places: np.ndarray, corrector: np.ndarray | None = None) -> np.ndarray:
@@ -58,7 +58,7 @@ class ObliqueLayers:
         of : "displacement" (m and rad) or "velocity" (m/s and rad/s).
         """
         moved = np.zeros((len(times), len(places), 3))
-        for layer, own in self.parts(places):
+        for layer, own in self.parts(places[:, 1]):
             values = None if corrector is None else corrector[:, :, own]
             moved[:, own] = self.layers[layer].motion(of, times, places[own], values)
         return moved
@@ -100,20 +100,27 @@ class NearObliqueLayers:
             found[columns, columns] = self.layers[layer].velocities(behind)
         return found
 
-    def strained(self, places: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count)."""
-        return self._joined(places, values, NearPlaces.strained)
+    def strained(self, places: np.ndarray, values: np.ndarray, heights: np.ndarray | None = None) -> np.ndarray:
+        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count).
+
+        heights : (d,) m in the layers whose gradients these are, by default the places', which may be across a joint.
+        """
+        return self._joined(places, values, places[:, 1] if heights is None else heights, NearPlaces.strained)
 
     def motion(self, places: np.ndarray, corrector: np.ndarray) -> np.ndarray:
         """Motion (3, d, count) of disks at places (d, 2) m with correctors (3, 4, d), per unit of amplitudes."""
-        return self._joined(places, corrector, NearPlaces.motion)
+        return self._joined(places, corrector, places[:, 1], NearPlaces.motion)
 
     def _joined(
-        self, places: np.ndarray, values: np.ndarray, of: Callable[[NearPlaces, np.ndarray, np.ndarray], np.ndarray]
+        self,
+        places: np.ndarray,
+        values: np.ndarray,
+        heights: np.ndarray,
+        of: Callable[[NearPlaces, np.ndarray, np.ndarray], np.ndarray],
     ) -> np.ndarray:
-        """Each layer's part (3, d, count) at places (d, 2) m with values (3, 4, d)."""
+        """Each layer's part (3, d, count) at places (d, 2) m with values (3, 4, d) and heights (d,) m in the layers."""
         found = np.zeros((3, len(places), self.count))
-        for layer, own in self.ground.parts(places):
+        for layer, own in self.ground.parts(heights):
             found[:, own, self._columns[layer]] = of(self.layers[layer], places[own], values[:, :, own])
         return found
 
