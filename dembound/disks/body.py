@@ -10,8 +10,7 @@ import numpy as np
 from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.ground_waves import GroundWaves
-from dembound.disks.beyond.layered_waves import LayeredWaves
+from dembound.disks.beyond.layered_waves import Undisturbed
 from dembound.disks.beyond.recorded import RecordedContinuum
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.contacts.layout import Rows
@@ -59,7 +58,7 @@ class DiskBody(Scene):
     outside: Surroundings | None = None
     foot: Surroundings | None = None
     between: Mapping[str, Between] = field(default_factory=dict)
-    ground_waves: GroundWaves | LayeredWaves | None = None
+    ground_waves: Undisturbed | None = None
 
     kind = "disks"
     energy_unit = "J/m"

@@ -19,8 +19,7 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import is_in, reach
 from dembound.casefile.disks.monitor import FREE_FIELD
-from dembound.disks.beyond.ground_waves import GroundWaves
-from dembound.disks.beyond.layered_waves import LayeredWaves
+from dembound.disks.beyond.layered_waves import Undisturbed
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.wave_front import INDEX
@@ -45,7 +44,7 @@ def monitors_of(
     assembly: Assembly,
     seam: Seam | None,
     outside: Surroundings | None,
-    waves: GroundWaves | LayeredWaves | None = None,
+    waves: Undisturbed | None = None,
 ) -> Monitors:
     """The disk nearest to each monitor's position, of the body or in the continuum, and their twins.
 
@@ -87,7 +86,7 @@ Moving = Callable[[np.ndarray], np.ndarray]
 """Displacement and velocity (s, 6) at times (s,) s."""
 
 
-def _moving(waves: GroundWaves | LayeredWaves, ground: PackedMaterial, place: np.ndarray, kind: int) -> Moving:
+def _moving(waves: Undisturbed, ground: PackedMaterial, place: np.ndarray, kind: int) -> Moving:
     """The motion in the undisturbed ground of a disk of the brick, `kind`, at a place (2,) m."""
     corrector = np.moveaxis(ground.at(float(place[1])).continuum.corrector[:, [kind]], 1, 2)
 

@@ -23,6 +23,8 @@ from typing import Literal
 
 import numpy as np
 
+from dembound.exact.histories import DECAY, PADDED
+
 Damping = Literal["elastic", "hysteretic", "constant_q"]
 """How the quality of layers enters their moduli."""
 
@@ -31,12 +33,6 @@ Reference = Literal["incident", "outcrop", "within"]
 
 FAST = 1e15
 """A frequency, Hz, of which moduli no longer depend."""
-
-PADDED = 4
-"""Length of the window of a history over that of the history, at least; a power of two in samples."""
-
-DECAY = math.log(1e8)
-"""Decay of signals over a window: what comes round again has 1e-8 of its size."""
 
 
 @dataclass(frozen=True)

@@ -100,24 +100,25 @@ def vertical_slownesses(medium: Medium, sx: float) -> np.ndarray:
     return scale * np.roots(determinant)
 
 
-def downgoing(medium: Medium, sx: float) -> list[ElasticPlaneWave] | None:
-    """The two waves with a horizontal slowness (s/m) whose energy runs down, of unit amplitude, the slower one first.
+def waves_with(medium: Medium, sx: float) -> tuple[list[ElasticPlaneWave], list[ElasticPlaneWave]] | None:
+    """The two waves with a horizontal slowness (s/m) whose energy runs up, and the two whose energy runs down.
 
-    None if one of them is evanescent.
+    They have unit amplitude; the slower one comes first. None if one of them is evanescent.
     """
     roots = vertical_slownesses(medium, sx)
     apart = np.abs(roots[:, None] - roots)[np.triu_indices(4, 1)]
     least = EVANESCENT * np.abs(roots).max()
     if np.abs(roots.imag).max() > least or apart.min() < least:
         return None
-    waves = []
+    up, down = list[ElasticPlaneWave](), list[ElasticPlaneWave]()
     for sy in roots.real:
         strain = strain_of(sx, sy)
         polarisation = np.linalg.svd(strain.T @ medium.matrix @ strain - medium.density * np.eye(2))[2][-1].real
         wave = ElasticPlaneWave((sx, float(sy)), _pair(polarisation))
-        if wave.flux(medium)[1] < 0.0:
-            waves.append(wave)
-    return sorted(waves, key=lambda wave: -np.hypot(*wave.slowness)) if len(waves) == 2 else None
+        (down if wave.flux(medium)[1] < 0.0 else up).append(wave)
+    for waves in (up, down):
+        waves.sort(key=lambda wave: -np.hypot(*wave.slowness))
+    return (up, down) if len(down) == 2 else None
 
 
 def reflected_waves(
@@ -131,9 +132,10 @@ def reflected_waves(
     with A/2 ± A′/ε whose delays differ by ε, the travel time of waves through a thickness of the medium with this mass.
     """
     sx, sy = incident.slowness
-    waves = downgoing(medium, sx)
-    if waves is None or incident.flux(medium)[1] <= 0.0:
+    all_four = waves_with(medium, sx)
+    if all_four is None or incident.flux(medium)[1] <= 0.0:
         return None
+    waves = all_four[1]
     motions = np.array([wave.motion for wave in waves]).T
     tractions = np.column_stack([traction_of(medium, *wave.slowness) @ wave.motion for wave in waves])
     amplitudes = np.linalg.solve(tractions, -traction_of(medium, sx, sy) @ incident.motion)
@@ -154,14 +156,17 @@ def reflected_waves(
     return found
 
 
-def critical_angle(medium: Medium, kind: WaveKind, sign: float = 1.0) -> float:
+def critical_angle(medium: Medium, kind: WaveKind, sign: float = 1.0, above: Medium | None = None) -> float:
     """Smallest angle (degrees) to the right (sign 1) or left (−1) at which a reflected wave is evanescent.
 
-    90 if there is none, as for P waves of isotropic media.
+    90 if there is none, as for P waves of isotropic media. above : of a layer, of which one wave then is evanescent.
     """
 
     def is_critical(angle: float) -> bool:
-        return reflected_waves(medium, incident_wave(medium, kind, sign * angle), 0.0) is None
+        incident = incident_wave(medium, kind, sign * angle)
+        if above is not None:
+            return waves_with(above, incident.slowness[0]) is None
+        return reflected_waves(medium, incident, 0.0) is None
 
     angles = np.arange(0.0, GRAZING, 0.25)
     beyond = np.array([is_critical(angle) for angle in angles])

@@ -19,7 +19,8 @@ from dembound.disks.entry import mass_begins
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
-from dembound.exact.column import DECAY, PADDED, Column, Layer
+from dembound.exact.column import Column, Layer
+from dembound.exact.histories import DECAY, PADDED
 
 Relative = Callable[[np.ndarray], np.ndarray]
 """M/ρc² (k,) at frequencies (k,) Hz."""

@@ -9,7 +9,7 @@ from dembound.table import Table, quantity
 
 
 class IncidentWave(Table):
-    """A plane wave that enters the disks at an angle, with its reflections at the free surface.
+    """A plane wave that enters the disks at an angle, with its reflections at the free surface and at joints of layers.
 
     For sides of type "outside". At a point the incident wave, without reflections, has the velocity of its wave: along
     its direction (P), or to the right of its direction (SV), which is +x where it runs straight up.
@@ -20,7 +20,7 @@ class IncidentWave(Table):
         ...,
         unit="degrees",
         means="direction",
-        help="from the vertical, of the direction in which it runs; positive to the right",
+        help="from the vertical, of the direction in which it runs, in the lowest layer; positive to the right",
         gt=-90.0,
         lt=90.0,
     )

@@ -106,11 +106,6 @@ def layer_problems(tables: Mapping[str, Any]) -> Iterator[str]:
             yield f"layer[{number}].name: {show(name)} is taken by layer[{first[name]}]"
     if (below := tables["boundary"].get("bottom")) is not None and below.is_periodic:
         yield 'layer: boundary.bottom is "periodic", below which the surface follows again; layers need another side'
-    if (incident := tables["incident"]) and incident.angle != 0.0:
-        yield (
-            f"incident.angle: is {incident.angle:g}, but waves enter ground with [[layer]] straight from below only; "
-            "write 0, or leave out the layers"
-        )
     if tables["ground"] and tables["packing"] and not ("bottom" in tables["boundary"] and below is None):
         goes_on = below is not None and below.is_outside
         yield from _problems_of_heights(layers, tables["packing"], tables["ground"].box(tables["packing"]), goes_on)

@@ -7,6 +7,7 @@ x_i moves by u(x_i) + χ_i : ∇u, with the correctors χ of homogenise.py.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -18,6 +19,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.incident import IncidentWave
 from dembound.disks.beyond.cut_bonds import GRADIENT
 from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.material.layered import ON_JOINT
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
 from dembound.outside.gll import Rule
@@ -146,8 +148,11 @@ class NearPlaces:
             matrix[own, own] = -scale * self._rule.slope(self._rule.points + scale * behind)
         return matrix
 
-    def strained(self, places: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count)."""
+    def strained(self, places: np.ndarray, values: np.ndarray, heights: np.ndarray | None = None) -> np.ndarray:
+        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count).
+
+        heights : (d,) m in the layers whose gradients these are, in layered ground.
+        """
         each = []
         for wave, (low, high) in zip(self.ground.waves, self.spans, strict=True):
             slope = self._rule.slope(self._places(wave, places, low, high)) * (2.0 / (high - low))
@@ -167,6 +172,14 @@ class NearPlaces:
     def _places(wave: ElasticPlaneWave, places: np.ndarray, low: float, high: float) -> np.ndarray:
         """Delays of a wave at places (d, 2) m, scaled to −1 … 1 within its span."""
         return (2.0 * wave.delays(places) - low - high) / (high - low)
+
+
+def layer_at(heights: np.ndarray, joints: Sequence[float], grain: float) -> np.ndarray:
+    """The number (k,) of the layer at heights (k,) m, from 0 at the surface; on a joint that above.
+
+    joints : heights (m), from the uppermost down. grain : mean diameter of the disks, m.
+    """
+    return len(joints) - np.searchsorted(np.array(joints[::-1]), heights + ON_JOINT * grain, "right")
 
 
 def rising_waves(

@@ -33,8 +33,9 @@ import numpy as np
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import Incident, SupportBuilder
 from dembound.disks.beyond.cut_bonds import CutBonds
-from dembound.disks.beyond.ground_waves import GroundWaves, NearPlaces
-from dembound.disks.beyond.layered_waves import LayeredWaves, NearLayers
+from dembound.disks.beyond.ground_waves import NearPlaces
+from dembound.disks.beyond.layered_waves import LayeredWaves, NearLayers, Undisturbed
+from dembound.disks.beyond.oblique_layers import NearObliqueLayers, ObliqueLayers
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.beyond.wall import Wall
 from dembound.kernels.sums import add_weighted_sums, weighted_sums
@@ -44,9 +45,6 @@ from dembound.outside.plane_waves import ElasticPlaneWave
 
 PLACES = 8
 """Places along a side at which the power of waves is summed."""
-
-Waves = GroundWaves | LayeredWaves
-"""The motion of the undisturbed ground."""
 
 Sharing = tuple[np.ndarray, np.ndarray]
 """Tied disks (k,), and disks (k,) on which the same forces act."""
@@ -59,7 +57,7 @@ class TieForces(NamedTuple):
     per unit of the displacements, and of the velocities seen by the ties, of all amplitudes.
     """
 
-    ground: NearPlaces | NearLayers
+    ground: NearPlaces | NearLayers | NearObliqueLayers
     node: np.ndarray
     component: np.ndarray
     moved: np.ndarray
@@ -79,7 +77,7 @@ class TieForces(NamedTuple):
         return TieForces(self.ground, node, self.component[rows], self.moved[:, rows], self.moving[:, rows])
 
 
-def parts_of(wall: Wall, ground: Waves, positions: np.ndarray, first: int) -> Iterator[TieForces]:
+def parts_of(wall: Wall, ground: Undisturbed, positions: np.ndarray, first: int) -> Iterator[TieForces]:
     """The forces by which the ground's motion enters through the ties of each element.
 
     positions : (n, 2) m of disks. first : number of the first node of the grid.
@@ -88,14 +86,14 @@ def parts_of(wall: Wall, ground: Waves, positions: np.ndarray, first: int) -> It
         yield _part_of(wall.only(np.flatnonzero(wall.element == element)), ground, positions, first)
 
 
-def _part_of(wall: Wall, ground: Waves, positions: np.ndarray, first: int) -> TieForces:
+def _part_of(wall: Wall, ground: Undisturbed, positions: np.ndarray, first: int) -> TieForces:
     """The forces that enter through a few ties."""
     bonds = wall.bonds
     disk, own, place = np.unique(bonds.particle, return_index=True, return_inverse=True)
     edges = _at_edges(bonds, positions, wall.mesh.sides)
     near = ground.near(np.concatenate([positions[disk], edges]))
     of_bonds = np.zeros((3, len(disk), near.count))
-    for sums, forces in zip(of_bonds, near.strained(edges, bonds.on_disks), strict=True):
+    for sums, forces in zip(of_bonds, near.strained(edges, bonds.on_disks, bonds.height), strict=True):
         np.add.at(sums, place, forces)
     of_ties, reactions = forces_at_rest(wall, disk, -near.motion(positions[disk], bonds.own[:, :, own]))
     component, node, at_once = _listed(of_bonds + of_ties, disk)
@@ -174,7 +172,7 @@ class SummedDrives:
         return forces
 
 
-def let_in(outside: Surroundings, ground: Waves, positions: np.ndarray, builder: SupportBuilder) -> None:
+def let_in(outside: Surroundings, ground: Undisturbed, positions: np.ndarray, builder: SupportBuilder) -> None:
     """Add the forces by which the ground's motion enters a body on all its sides to the support table.
 
     positions : (n, 2) m of all nodes of the scene.
@@ -190,7 +188,7 @@ def let_in(outside: Surroundings, ground: Waves, positions: np.ndarray, builder:
 
 
 def let_in_below(
-    outside: Surroundings, ground: Waves, positions: np.ndarray, builder: SupportBuilder, sharing: Sharing
+    outside: Surroundings, ground: Undisturbed, positions: np.ndarray, builder: SupportBuilder, sharing: Sharing
 ) -> None:
     """Add the forces of waves that run straight up and enter a body from below to the support table.
 
@@ -204,7 +202,7 @@ def let_in_below(
 
 
 def power_through(
-    side: str, edges: Sequence[float], ground: Waves, thickness: float = 1.0
+    side: str, edges: Sequence[float], ground: Undisturbed, thickness: float = 1.0
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Power (W), at times (k,) s, of the waves whose energy runs inwards through a side, the mean of `PLACES` places.
 
@@ -213,6 +211,12 @@ def power_through(
     if isinstance(ground, LayeredWaves):
         return ground.power_through(side, edges, thickness)
     number, axis = SIDES.index(side), normal_axis(side)
+    if isinstance(ground, ObliqueLayers):
+        span = (edges[number], edges[number]) if axis else (edges[2], edges[3])
+        parts = [
+            power_through(side, (*edges[:2], low, high), waves, thickness) for low, high, waves in ground.within(*span)
+        ]
+        return lambda times: np.sum([part(times) for part in parts], axis=0)
     inwards = -1.0 if number % 2 else 1.0
     low, high = edges[2 - 2 * axis], edges[3 - 2 * axis]
     rule = Rule(PLACES - 1)

@@ -22,17 +22,22 @@ from dembound.disks.beyond.ground_waves import (
     NO_PART,
     GroundWaves,
     ground_waves,
+    incident_in,
+    layer_at,
     must_not_be_there,
     reference_point,
 )
 from dembound.disks.beyond.mesh import homogeneous
+from dembound.disks.beyond.oblique_layers import ObliqueLayers, oblique_in_layers
 from dembound.disks.beyond.surroundings import Surroundings
-from dembound.disks.material.layered import ON_JOINT, LayeredGround
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.errors import CaseError
 from dembound.exact.column import Column, Layer
 from dembound.exact.column_motion import ColumnMotion, Quantity
 from dembound.outside.gll import Rule
 from dembound.outside.medium import Medium
+from dembound.outside.plane_waves import critical_angle
 
 Relative = Callable[[np.ndarray], np.ndarray]
 """M(ω)/M₀ (k,) of damped ground at frequencies (k,) Hz, which may be complex."""
@@ -73,8 +78,7 @@ class LayeredWaves:
 
     def layer_of(self, heights: np.ndarray) -> np.ndarray:
         """The number (k,) of the layer at heights (k,) m, from 0 at the surface; on a joint that above."""
-        near = ON_JOINT * self.grain
-        return len(self.joints) - np.searchsorted(np.array(self.joints[::-1]), heights + near, "right")
+        return layer_at(heights, self.joints, self.grain)
 
     def near(self, places: np.ndarray) -> NearLayers:
         """The waves near places (k, 2) m only."""
@@ -185,10 +189,13 @@ class NearLayers:
         """Matrix (count, count) from the amplitudes to the velocities that they have for the displacements."""
         return np.eye(self.count, k=self.count // 2)
 
-    def strained(self, places: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count)."""
+    def strained(self, places: np.ndarray, values: np.ndarray, heights: np.ndarray | None = None) -> np.ndarray:
+        """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count).
+
+        heights : (d,) m in the layers whose gradients these are, by default the places', which may be across a joint.
+        """
         found = np.zeros((3, len(places), self.count))
-        for own, columns, scale, at, motion in self._groups(places):
+        for own, columns, scale, at, motion in self._groups(places, places[:, 1] if heights is None else heights):
             slope = scale * self._rule.slope(at)
             found[:, own, columns] = np.einsum("cgd,g->cd", values[:, :, own], _gradient(motion))[:, :, None] * slope
         return found
@@ -196,13 +203,18 @@ class NearLayers:
     def motion(self, places: np.ndarray, corrector: np.ndarray) -> np.ndarray:
         """Motion (3, d, count) of disks at places (d, 2) m with correctors (3, 4, d), per unit of amplitudes."""
         moved = self.strained(places, corrector)
-        for own, columns, _, at, motion in self._groups(places):
+        for own, columns, _, at, motion in self._groups(places, places[:, 1]):
             moved[:2, own, columns] += motion[:, None, None] * self._rule.shape(at)
         return moved
 
-    def _groups(self, places: np.ndarray) -> Iterator[tuple[np.ndarray, slice, float, np.ndarray, np.ndarray]]:
-        """Of each group of displacements: its places and columns, d/dy of the scaled height, this, and motion (2,)."""
-        layers = self.ground.layer_of(places[:, 1])
+    def _groups(
+        self, places: np.ndarray, within: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, slice, float, np.ndarray, np.ndarray]]:
+        """Of each group of displacements: its places and columns, d/dy of the scaled height, this, and motion (2,).
+
+        within : (d,) m, heights in the layers of the places.
+        """
+        layers = self.ground.layer_of(within)
         for number, (layer, wave, heights) in enumerate(self._parts):
             if len(own := np.flatnonzero(layers == layer)) > 0:
                 scale = 2.0 / float(heights[-1] - heights[0])
@@ -251,7 +263,11 @@ def rising_in_layers(
     return LayeredWaves(top, tuple(joints), tuple(columns), moved, stiff, grain, height, speeds)
 
 
-def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -> GroundWaves | LayeredWaves | None:
+Undisturbed = GroundWaves | LayeredWaves | ObliqueLayers
+"""The motion of the undisturbed ground."""
+
+
+def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -> Undisturbed | None:
     """The motion of the ground under the incident wave of a case, None without one; errors as of `ground_waves`.
 
     Damped uniform ground is one layer if the wave runs straight up.
@@ -259,21 +275,53 @@ def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -
     table, layers = case.incident, [ground]
     if isinstance(ground, LayeredGround):
         layers = [zone.material for zone in reversed(ground.layers)]
-    if table is None or table.angle != 0.0 or (len(layers) == 1 and ground.mechanisms is None):
+    if table is None or (len(layers) == 1 and (table.angle != 0.0 or ground.mechanisms is None)):
         return ground_waves(case, ground, outside)
-    wave, grain = case.wave[table.wave], ground.brick.mean_diameter
-    found = rising_in_layers(
-        [homogeneous(material) for material in layers],
-        case.joints,
-        outside.free_surface,
-        (wave, None) if table.type == "sv" else (None, wave),
-        reference_point(case)[1],
-        (wave.begin(), case.run.duration),
-        grain,
-        [None if each.mechanisms is None else each.mechanisms.relative_modulus for each in layers],
-    )
+    found: LayeredWaves | ObliqueLayers
+    wave, grain, media = case.wave[table.wave], ground.brick.mean_diameter, [homogeneous(each) for each in layers]
+    if table.angle != 0.0:
+        incident, until = incident_in(case, media[-1]), case.run.duration
+        last = until - float(incident.delays(outside.body.mesh.positions).min())
+        span = wave.begin(), max(last, until)
+        oblique = oblique_in_layers(media, case.joints, outside.free_surface, incident, wave, span, grain)
+        if oblique is None:
+            raise CaseError([_beyond(case, media)])
+        found = oblique
+    else:
+        found = rising_in_layers(
+            media,
+            case.joints,
+            outside.free_surface,
+            (wave, None) if table.type == "sv" else (None, wave),
+            reference_point(case)[1],
+            (wave.begin(), case.run.duration),
+            grain,
+            [None if each.mechanisms is None else each.mechanisms.relative_modulus for each in layers],
+        )
     must_not_be_there(case, found, outside)
     return found
+
+
+def critical_in_layers(case: DiskCase, media: Sequence[Medium]) -> tuple[float, str]:
+    """Smallest angle (degrees) of an incident wave at which a wave of a layer is evanescent, and the layer's name.
+
+    media : of the layers, from the surface down.
+    """
+    assert case.incident is not None
+    sign = float(np.copysign(1.0, case.incident.angle))
+    angles = [critical_angle(media[-1], case.incident.type, sign, above) for above in media]
+    least = int(np.argmin(angles))
+    return sign * angles[least], case.layer_names[least]
+
+
+def _beyond(case: DiskCase, media: Sequence[Medium]) -> str:
+    """The message about an angle that is not below the critical one."""
+    assert case.incident is not None
+    critical, name = critical_in_layers(case, media)
+    return (
+        f"incident.angle: is {case.incident.angle:g}; from the critical angle of layer {name} on, {critical:.5g} "
+        f"degrees, a wave no longer runs through it; must be {'below' if critical > 0.0 else 'above'} that"
+    )
 
 
 def _summed(

@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from dembound.disks.beyond.ground_motion import GroundMotion
-from dembound.disks.beyond.ground_waves import GroundWaves
-from dembound.disks.beyond.layered_waves import LayeredWaves
+from dembound.disks.beyond.layered_waves import Undisturbed
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.motion.beside import Beside
 from dembound.packings.column import nearest_in_column
@@ -32,7 +31,7 @@ class RecordedContinuum(Beside):
     def __init__(
         self,
         outside: Surroundings,
-        waves: GroundWaves | LayeredWaves | None,
+        waves: Undisturbed | None,
         disks: Assembly,
         column: int,
         mass: np.ndarray,

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from dembound.disks.beyond.ground_waves import GroundWaves, reference_point
-from dembound.disks.beyond.layered_waves import LayeredWaves
+from dembound.disks.beyond.layered_waves import LayeredWaves, Undisturbed, critical_in_layers
+from dembound.disks.beyond.oblique_layers import ObliqueLayers
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.scene import DiskScene
 from dembound.outside.plane_waves import GRAZING, ElasticPlaneWave, critical_angle
@@ -27,15 +28,22 @@ def incident_facts(scene: DiskScene) -> Entries:
     assert table is not None
     assert outside is not None
     x, y = reference_point(scene.case)
-    along = "" if isinstance(waves, LayeredWaves) else _along(waves.waves[0], outside)
+    along = ""
+    if not isinstance(waves, LayeredWaves):
+        along = _along((waves.layers[-1] if isinstance(waves, ObliqueLayers) else waves).waves[0], outside)
     yield (
         "incident wave",
         f"{NAMES[table.type]}, {_way(table.angle)}, with the velocity of wave {table.wave} at "
         f"({x:.10g}, {y:.10g}) m{along}; reaches the disks at {arrival(scene, waves):.4g} s",
     )
+    surface = " and by the surface" * (outside.free_surface is not None)
     if isinstance(waves, LayeredWaves):
-        surface = " and by the surface" * (outside.free_surface is not None)
         yield "reflected waves", f"by the layers{surface}, from the column of layers at each frequency"
+        return
+    if isinstance(waves, ObliqueLayers):
+        critical, name = critical_in_layers(scene.case, [layer.medium for layer in waves.layers])
+        below = "no critical angle" if abs(critical) == GRAZING else f"critical from {abs(critical):.4g}° on, by {name}"
+        yield "reflected waves", f"by the layers{surface}, from P and SV waves of each layer at each frequency; {below}"
         return
     if outside.free_surface is None:
         yield "reflected waves", "none, as the ground has no surface"
@@ -60,7 +68,7 @@ def _along(wave: ElasticPlaneWave, outside: Surroundings) -> str:
     return f", at {1.0 / slowness:.5g} m/s along {where}" if slowness > STRAIGHT * abs(wave.slowness[1]) else ""
 
 
-def arrival(scene: DiskScene, waves: GroundWaves | LayeredWaves) -> float:
+def arrival(scene: DiskScene, waves: Undisturbed) -> float:
     """Time (s) at which the wave reaches the first of the disks."""
     assert scene.case.incident is not None
     return scene.case.wave[scene.case.incident.wave].start + waves.arrives(scene.assembly.positions)
