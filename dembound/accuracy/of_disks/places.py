@@ -52,7 +52,7 @@ def _on_rims(holes: Sequence[Hole], disks: np.ndarray, within: float) -> np.ndar
     beside = (disks[:, None] + within * NINE).reshape(-1, 2)
     found = np.zeros(len(disks), dtype=bool)
     for hole in holes:
-        found |= hole.contains(beside).reshape(-1, len(NINE)).any(axis=1)
+        found |= hole.takes(beside).reshape(-1, len(NINE)).any(axis=1)
     return found
 
 

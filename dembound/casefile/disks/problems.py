@@ -4,10 +4,11 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from dembound.boundaries.boundary import Boundary
+from dembound.boundaries import Boundary, beside_disks
 from dembound.casefile.cross_checks import (
     driving_waves,
     never_estimated,
+    never_past_peak,
     never_silent,
     repeated_names,
     steps_too_long,
@@ -47,6 +48,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     yield from motion_problems(tables)
     for side, table in tables["boundary"].items():
         yield from table.problems(side, tables) if table else ()
+    for side, table in (tables["static"].boundary if tables["static"] else {}).items():
+        yield from beside_disks(f"static.boundary.{side}", side, table, tables)
     if tables["motion"]:
         yield from _loaded_but_held(tables["load"], tables["motion"])
         if tables["material"]:
@@ -82,6 +85,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
         yield from never_silent(tables["run"], tables["monitor"])
+        yield from never_past_peak(tables["run"], tables["boundary"])
     if tables["output"]:
         yield from never_estimated(tables["output"], tables["monitor"])
 
