@@ -24,6 +24,7 @@ from dembound.disks.contacts.layout import lay_out
 from dembound.disks.loads import steady
 from dembound.disks.material.layered import layered
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
+from dembound.disks.membrane import in_run
 from dembound.disks.monitors import monitors_of
 from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
@@ -107,7 +108,7 @@ class DiskScene(DiskBody):
 
     def system(self, time_step: float) -> DiskSystem:
         """Its parts and ties at rest as built, to be stepped by time_step (s)."""
-        return DiskSystem(self, time_step)
+        return DiskSystem(self, time_step, load=in_run(self, np.zeros((3, self.count)), self.steady_load))
 
     @property
     def largest_memory(self) -> float:

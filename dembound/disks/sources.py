@@ -63,7 +63,9 @@ def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
 
 
 def place_of(case: DiskCase, load: Load) -> Box:
-    """The rectangle that a load acts on; for a pressure the one round its hole."""
+    """The rectangle that a load acts on; for a pressure the one round its hole, or the disks."""
+    if load.sides is not None:
+        return case.packing.box
     if load.pressure is not None:
         return case.hole_of(load).box
     if load.position is not None:

@@ -98,7 +98,7 @@ def places_of_loads(scene: DiskScene) -> list[LoadPlace]:
         return []
     found: list[LoadPlace] = []
     for load in case.load:
-        if load.wave is None and case.static is not None:
+        if (load.wave is None and case.static is not None) or load.sides is not None:
             continue
         if load.pressure is not None:
             left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)

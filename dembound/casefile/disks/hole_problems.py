@@ -26,7 +26,7 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
         for key in ("load", "monitor"):
             yield from _places_in_it(place, hole, key, tables[key])
     for place, load in numbered("load", tables["load"]):
-        if load.pressure is not None:
+        if load.hole is not None:
             yield from _no_wall(place, load, tables)
 
 

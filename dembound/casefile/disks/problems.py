@@ -21,7 +21,7 @@ from dembound.casefile.disks.ground import Box, Ground, ground_problems, is_in, 
 from dembound.casefile.disks.hole_problems import hole_problems
 from dembound.casefile.disks.incident import incident_problems
 from dembound.casefile.disks.layer import Layer, layer_problems
-from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.load import Load, pressed_side_problems
 from dembound.casefile.disks.material import STRENGTH_KEYS, Material, with_history
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
@@ -60,6 +60,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     for key in ("hole", "load", "monitor"):
         yield from repeated_names(key, tables[key])
     yield from too_many(tables["monitor"])
+    yield from pressed_side_problems(numbered("load", tables["load"]), tables)
     yield from layer_problems(tables)
     ground, packing = tables["ground"], tables["packing"]
     if ground and packing:

@@ -284,7 +284,8 @@ def _whole_of(load: Load, scene: DiskScene, forces: np.ndarray) -> str:
     whole[np.abs(whole) < BALANCED * all_forces] = 0.0
     left = f", {_force(whole)} in all" if whole.any() else ""
     length = all_forces / abs(load.pressure)
-    return f"{with_unit(load.pressure, 'Pa')} on {length:.3g} m of wall of hole {load.hole}{left},"
+    where = f"wall of hole {load.hole}" if load.sides is None else f"the sides {', '.join(load.sides)}"
+    return f"{with_unit(load.pressure, 'Pa')} on {length:.3g} m of {where}{left},"
 
 
 def _force(whole: np.ndarray) -> str:
