@@ -8,6 +8,7 @@ from dembound.casefile.messages import counted
 from dembound.machine import memory_here
 from dembound.motion.echoes import echoes
 from dembound.motion.kind import Plan
+from dembound.motion.peak import peak_rule
 from dembound.motion.ram import has_in_words, in_words
 from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
@@ -39,7 +40,7 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
     scene = planned.stepped
     step, limit = planned.time_step, planned.step_limit
     yield "time step", f"{with_unit(step, 's')}, {step / limit:.3g} of the limit {with_unit(limit, 's')}"
-    yield "steps", f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}"
+    yield "steps", f"{planned.steps:,} for {scene.case.run.duration:g} s{_until(planned)}"
     yield "memory", f"about {in_words(scene.largest_memory)} at its peak{_here()}"
     yield "disk", space_in_words(planned, results)
     left_out = ", ".join(["building", *planned.kind.not_estimated(scene.case), "pictures"])
@@ -74,11 +75,19 @@ def _here() -> str:
     return "" if here is None else f"; {has_in_words(here)}"
 
 
-def _until_silent(planned: Plan) -> str:
+def _until(planned: Plan) -> str:
     """When a run may end before its duration."""
-    if planned.scene.case.run.until != "silent":
+    until = planned.scene.case.run.until
+    if until == "duration":
         return ""
-    rule = silent_rule(planned.scene, planned.kind.sources(planned.scene))
+    sources = planned.kind.sources(planned.scene)
+    if until == "peak":
+        past = peak_rule(planned.scene, sources)
+        return (
+            f", or until the forces on all driven sides are below {percent(past.share, 3)} of their peaks for "
+            f"{with_unit(past.hold, 's')}"
+        )
+    rule = silent_rule(planned.scene, sources)
     return (
         f", or until all monitors are below {percent(rule.level, 3)} of their peaks for {with_unit(rule.hold, 's')}, "
         f"after {with_unit(rule.earliest, 's')}"

@@ -10,6 +10,7 @@ from dembound.boundaries.free_field import FreeField
 from dembound.boundaries.matched_layer import MatchedLayer
 from dembound.boundaries.outside import Outside
 from dembound.boundaries.periodic import Periodic
+from dembound.boundaries.platen import beside_disks, driven_components
 from dembound.boundaries.roller import Roller
 from dembound.boundaries.sides import OPPOSITE, SIDES, Motion, axis_of_motion, is_far, normal_axis, plane_of
 from dembound.boundaries.symmetry import Symmetry
@@ -54,6 +55,8 @@ __all__ = [
     "Viscous",
     "ViscousInput",
     "axis_of_motion",
+    "beside_disks",
+    "driven_components",
     "is_far",
     "normal_axis",
     "plane_of",

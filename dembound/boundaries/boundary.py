@@ -49,6 +49,10 @@ class Boundary(Table):
 
     type: str
 
+    def part_of(self, edge: Edge) -> Edge:
+        """The part of an edge on which the side acts; by default all of it."""
+        return edge
+
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Fill rows of the support table for the particles of an edge; by default none.
 

@@ -2,12 +2,12 @@
 
 from typing import ClassVar, Literal
 
-from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.platen import Holding
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import quantity
 
 
-class Fixed(Boundary):
+class Fixed(Holding):
     """A rigid wall: its particles neither move nor turn; reflected velocities have the opposite sign."""
 
     for_bars: ClassVar[bool] = True
@@ -29,4 +29,4 @@ class Fixed(Boundary):
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Prescribe zero velocity."""
         for component in range(3):
-            supports.add(edge.nodes, component, prescribed=True)
+            supports.add(self.part_of(edge).nodes, component, prescribed=True)

@@ -2,12 +2,12 @@
 
 from typing import ClassVar, Literal
 
-from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.platen import Holding
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import quantity
 
 
-class Roller(Boundary):
+class Roller(Holding):
     """A smooth rigid wall: no motion along the side's normal; sliding and turning are free."""
 
     for_static: ClassVar[bool] = True
@@ -27,4 +27,4 @@ class Roller(Boundary):
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Prescribe zero velocity along the normal."""
-        supports.add(edge.nodes, edge.axis, prescribed=True)
+        supports.add(self.part_of(edge).nodes, edge.axis, prescribed=True)

@@ -1,35 +1,74 @@
 """A driven side: the velocity of its particles is prescribed."""
 
-from typing import ClassVar, Literal
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
+
+from pydantic import model_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.fixed import Fixed
+from dembound.boundaries.platen import Holding
+from dembound.boundaries.roller import Roller
+from dembound.boundaries.sides import Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
+from dembound.table import quantity
+
+Component = Literal["normal", "shear"]
+"""Component of the motion of a side: along its normal, or across it."""
+
+MOTIONS: Mapping[Component, Motion] = {"normal": "p", "shear": "s"}
+"""Component -> the waves that move the side along it."""
 
 
-class Velocity(Driven):
-    """A rigid grip that moves with the given waves; the component without a wave is held, rotation is free."""
+class Velocity(Holding, Driven):
+    """A rigid platen that moves with the given waves.
+
+    A component that it holds and that has no wave does not move; a component that it does not hold is free, and so is
+    rotation. By default it is a grip that holds both; one that holds "normal" alone is a smooth platen.
+    """
 
     for_bars: ClassVar[bool] = True
 
     type: Literal["velocity"]
 
+    hold: tuple[Component, ...] = quantity(
+        ("normal", "shear"), unit="1", help="components of motion that it prescribes; others are free", min_length=1
+    )
+
+    @model_validator(mode="after")
+    def _holds_what_it_moves(self) -> "Velocity":
+        loose = [f"wave_{motion}" for part, motion in MOTIONS.items() if part not in self.hold and motion in self.waves]
+        if loose:
+            raise ValueError(f"{loose[0]}: moves a component that hold does not name; add it there")
+        return self
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Components of an end of a bar."""
+        yield from super().problems(side, tables)
+        if "bar" in tables and "hold" in self.model_fields_set:
+            yield f"boundary.{side}.hold: is for sides of disks; a bar moves only along its axis"
+
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:
-        """Both axes."""
-        return (0, 1)
+        """The axes of the components that it holds."""
+        axes = {"normal": normal_axis, "shear": 1 - normal_axis}
+        return tuple(sorted({axes[component] for component in self.hold}))
 
     def at_rest(self) -> Boundary:
-        """A rigid wall."""
-        return Fixed(type="fixed")
+        """A rigid wall, or a smooth one."""
+        if set(self.hold) == set(MOTIONS):
+            return Fixed(type="fixed", within=self.within)
+        return Roller(type="roller", within=self.within) if "normal" in self.hold else super().at_rest()
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """Prescribe v = wave(t) along each named direction and v = 0 along the other."""
+        """Prescribe v = wave(t) along each named direction and v = 0 along others that are held."""
+        nodes, held = self.part_of(edge).nodes, self.prescribed(edge.axis)
         for component, name in enumerate(self.waves_by_axis(edge.axis)):
-            supports.add(
-                edge.nodes,
-                component,
-                drive=1.0 if name else 0.0,
-                signal=waves[name].velocity if name else None,
-                prescribed=True,
-            )
+            if component in held:
+                supports.add(
+                    nodes,
+                    component,
+                    drive=1.0 if name else 0.0,
+                    signal=waves[name].velocity if name else None,
+                    prescribed=True,
+                )

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from dembound.boundaries import Boundary
+from dembound.boundaries import Boundary, driven_components
 from dembound.casefile.messages import choices, show
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
@@ -39,6 +39,14 @@ def too_many(monitors: Sequence[Any]) -> Iterator[str]:
     """Too many monitors."""
     if len(monitors) > MOST_MONITORS:
         yield f"monitor: there are {len(monitors):,}, must be {MOST_MONITORS:,} or less; snapshots have all places"
+
+
+def never_past_peak(run: Run, sides: Mapping[str, Boundary | None]) -> Iterator[str]:
+    """A run that ends after the peak of the forces on driven sides, without such a side, or shorter than the fall."""
+    if run.until == "peak" and None not in sides.values() and not any(True for _ in driven_components(sides)):
+        yield 'run.until: is "peak", but no side prescribes the motion of a wave; give one type = "velocity"'
+    if run.peak_for is not None and run.peak_for > run.duration:
+        yield f"run.peak_for: is {run.peak_for:g}, must be at most run.duration, {run.duration:g} (s)"
 
 
 def never_silent(run: Run, monitors: Sequence[Any]) -> Iterator[str]:

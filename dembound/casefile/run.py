@@ -6,11 +6,12 @@ from pydantic import Field, model_validator
 
 from dembound.table import Table, quantity
 
-SILENT_KEYS = ("silent_level", "silent_for")
+ENDING_KEYS = {"silent": ("silent_level", "silent_for"), "peak": ("peak_share", "peak_for")}
+"""Ends before the duration, and the keys that belong to each."""
 
 
 class Run(Table):
-    """Simulated time and time step, and whether the run ends when all monitors are at rest."""
+    """Simulated time and time step, and whether the run ends before it."""
 
     duration: float = quantity(..., unit="s", help="simulated time", gt=0.0)
     time_step: Annotated[float, Field(gt=0.0)] | Literal["auto"] = quantity(
@@ -26,8 +27,11 @@ class Run(Table):
         help="wall time between two checkpoints; 0: none, and the run cannot be resumed",
         ge=0.0,
     )
-    until: Literal["duration", "silent"] = quantity(
-        "duration", unit="1", help='when it ends; "silent": before its duration if all monitors are silent'
+    until: Literal["duration", "silent", "peak"] = quantity(
+        "duration",
+        unit="1",
+        help='when it ends; "silent": before its duration if all monitors are silent; "peak": if the forces on all '
+        "sides whose motion a wave prescribes have passed their peaks",
     )
     silent_level: float = quantity(
         1e-3,
@@ -44,9 +48,34 @@ class Run(Table):
         gt=0.0,
     )
 
+    peak_share: float = quantity(
+        0.7,
+        unit="1",
+        means="share",
+        help="share of its peak, both counted from the force at the start, below which a side's force has fallen",
+        gt=0.0,
+        lt=1.0,
+    )
+    peak_for: float | None = quantity(
+        None,
+        unit="s",
+        help="time for which all forces must have fallen; absent: until the slowest wave has crossed the body twice",
+        gt=0.0,
+    )
+
+    @property
+    def is_test(self) -> bool:
+        """Whether it is a test to failure, in which waves are not what is studied."""
+        return self.until == "peak"
+
     @model_validator(mode="after")
-    def _silent_keys_have_effect(self) -> "Run":
-        stray = [key for key in SILENT_KEYS if self.until != "silent" and key in self.model_fields_set]
+    def _ending_keys_have_effect(self) -> "Run":
+        stray = [
+            f'{key}: is only allowed with until = "{until}"'
+            for until, keys in ENDING_KEYS.items()
+            for key in keys
+            if self.until != until and key in self.model_fields_set
+        ]
         if stray:
-            raise ValueError("\n".join(f'{key}: is only allowed with until = "silent"' for key in stray))
+            raise ValueError("\n".join(stray))
         return self

@@ -115,7 +115,7 @@ def _has(case: Case, means: str) -> bool:
 
 def _damps_waves(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
     """Local damping while waves run."""
-    if numbers[0] == 0.0 or not waves_used(case):
+    if numbers[0] == 0.0 or case.run.is_test or not waves_used(case):
         return None
     return (
         f"is {numbers[0]:g} while waves run: of a burst {DAMPED}; for waves write 0, [static] has a damping of its own"

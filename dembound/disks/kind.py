@@ -10,7 +10,9 @@ from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts.breaks import first_break
 from dembound.disks.entry import all_late_by
+from dembound.disks.following import Membranes
 from dembound.disks.material.wave_front import front_of
+from dembound.disks.membrane import follows, in_run
 from dembound.disks.ram import expected_bytes
 from dembound.disks.reduced.reduction import reduced
 from dembound.disks.reports.contact_mesh import contact_mesh
@@ -79,21 +81,22 @@ class Disks(Kind[DiskCase, DiskScene]):
         if scene.case.static is None:
             return Beginning(scene.system(time_step))
         settled = settle(scene, on_look, stages)
+        datum = settled.start.displacement
         return Beginning(
-            system=DiskSystem(scene, time_step, settled.start),
-            datum=settled.start.displacement,
+            system=DiskSystem(scene, time_step, settled.start, load=in_run(scene, datum, scene.steady_load)),
+            datum=datum,
             stages=tuple(_stages(scene, settled)),
             summary=describe_static(settled, asked_stress(scene)),
         )
 
     def trackers(self, run: Run) -> list[Tracker]:
-        """The load factor, if the case asks for it."""
-        case, system = run.scene.case, run.system
-        if not case.output.load_factor:
-            return []
+        """The membranes of pressures on sides, if there are any, and the load factor, if the case asks for it."""
+        scene, case, system = run.scene, run.scene.case, run.system
         assert isinstance(case, DiskCase)
         assert isinstance(system, DiskSystem)
-        return [LoadFactor(case, system)]
+        assert isinstance(scene, DiskScene)
+        found: list[Tracker] = [Membranes(scene)] if follows(scene) else []
+        return [*found, LoadFactor(case, system)] if case.output.load_factor else found
 
     def trials(self, case: DiskCase, *, full: bool = False) -> tuple[list[Trial], list[str]]:
         """Fewer copies of the brick under the linear law, and under the case's own law if that is history-dependent."""

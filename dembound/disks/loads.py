@@ -9,6 +9,7 @@ from dembound.casefile.disks.load import Load
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.body import DiskBody
 from dembound.disks.hole_wall import pressure_on
+from dembound.disks.membrane import forces_on_sides
 from dembound.errors import CaseError
 from dembound.nearest import EQUAL, nearest
 from dembound.outside.traction import Traction, traction_in
@@ -24,11 +25,13 @@ def forces_of(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
 
     On particles a force is shared in proportion to the masses, which are as the areas of the disks and halved for half
     cells; an acceleration acts on each particle's mass. On the free surface of a continuum a force is a uniform
-    traction over the part of the surface in the load's region. For a pressure see `hole_wall`.
+    traction over the part of the surface in the load's region. For a pressure see `hole_wall` and `membrane`.
 
     Raises CaseError if there is neither a particle nor a free surface, or both, for tractions on less than an element
     or on a layer that absorbs, and for holes without a wall.
     """
+    if load.sides is not None:
+        return forces_on_sides(load, scene)
     if load.pressure is not None:
         return pressure_on(load, scene)
     traction = None if scene.outside is None else _traction(load, scene.outside)

@@ -10,7 +10,7 @@ from dembound.boundaries import Periodic, is_far
 from dembound.boundaries.half_mass import half_edges, mass_factor, with_shares
 from dembound.boundaries.support import Edge, SupportBuilder, Waves
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.edges import edges_beside_column, find_edges
+from dembound.disks.beyond.edges import edges_beside_column, find_edges, require_held
 from dembound.disks.beyond.hollowed import hollowed
 from dembound.disks.beyond.layered_waves import undisturbed
 from dembound.disks.beyond.mechanisms import mechanisms_of
@@ -24,6 +24,7 @@ from dembound.disks.contacts.layout import lay_out
 from dembound.disks.loads import steady
 from dembound.disks.material.layered import layered
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
+from dembound.disks.membrane import in_run
 from dembound.disks.monitors import monitors_of
 from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
@@ -107,7 +108,7 @@ class DiskScene(DiskBody):
 
     def system(self, time_step: float) -> DiskSystem:
         """Its parts and ties at rest as built, to be stepped by time_step (s)."""
-        return DiskSystem(self, time_step)
+        return DiskSystem(self, time_step, load=in_run(self, np.zeros((3, self.count)), self.steady_load))
 
     @property
     def largest_memory(self) -> float:
@@ -138,10 +139,15 @@ def build(case: DiskCase) -> DiskScene:
     must_fit_here(case)
     ground = ground_of(case)
     body = tile(ground.brick, case.packing.copies, case.periodic, case.packing.origin)
-    edges = find_edges(body, case.periodic, case.packing.regular_sides)
-    first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
+    shapes = [hole for hole in case.hole if hole.is_shape]
+    for shape in shapes:
+        body, _ = body.without(shape.takes(body.positions))
+    edges = find_edges(body, case.periodic, () if shapes else case.packing.regular_sides)
+    holes = [hole for hole in case.hole if not hole.is_shape]
+    first, later = (tuple(hole for hole in holes if hole.stage == stage) for stage in ("before", "after"))
     if first:
         body, edges, _ = hollowed(case, ground.brick, body, edges, first, case.floors_of(first))
+    require_held(case, edges)
     scene = _scene(case, ground, body, edges, case.floors_of(first))
     if not later:
         return scene

@@ -63,7 +63,9 @@ def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
 
 
 def place_of(case: DiskCase, load: Load) -> Box:
-    """The rectangle that a load acts on; for a pressure the one round its hole."""
+    """The rectangle that a load acts on; for a pressure the one round its hole, or the disks."""
+    if load.sides is not None:
+        return case.packing.box
     if load.pressure is not None:
         return case.hole_of(load).box
     if load.position is not None:
@@ -75,7 +77,7 @@ def _holes(case: DiskCase, driven: list[Source], fastest: float, slowest: float)
     """Holes, for the waves of driven sides; other waves reach a column over its side anyway."""
     if not driven:
         return
-    for hole in case.hole:
+    for hole in (each for each in case.hole if not each.is_shape):
         x0, y0, x1, y1 = hole.box
         corners = np.array([[x0, y0], [x0, y1], [x1, y0], [x1, y1]])
         first = min(source.start + float(source.distance(corners).min()) / fastest for source in driven)

@@ -36,7 +36,7 @@ def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) ->
 
     def is_open(x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
         places = np.stack(np.broadcast_arrays(np.atleast_1d(x), np.atleast_1d(y)), axis=1)
-        return np.any([hole.contains(places) for hole in holes], axis=0)
+        return np.any([hole.takes(places) for hole in holes], axis=0)
 
     beside = edge + 0.5 * inwards * diameter
     down = np.arange(top - 0.5 * diameter, bottom, -diameter / FINE)

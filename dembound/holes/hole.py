@@ -20,7 +20,11 @@ WALL = 0.4
 
 
 class Hole(Table, ABC):
-    """An area without particles: particles centred in it, and those it separates from the body, are removed."""
+    """An area without particles: particles centred in it, and those it separates from the body, are removed.
+
+    A hole that keeps what is "inside" is the shape of a sample: the particles outside are removed, and the sides of the
+    scene are those of the sample.
+    """
 
     type: str
     name: FileName = quantity(..., unit="1", help="name of the hole in loads and messages")
@@ -30,9 +34,22 @@ class Hole(Table, ABC):
         help='"before": the body is built with the hole; "after": excavated after the static stage, which then goes on',
     )
 
+    keep: Literal["outside", "inside"] = quantity(
+        "outside", unit="1", help='which particles remain; "inside": the body is a sample of this shape'
+    )
+
+    @property
+    def is_shape(self) -> bool:
+        """Whether it is the shape of a sample."""
+        return self.keep == "inside"
+
+    def takes(self, positions: np.ndarray) -> np.ndarray:
+        """Mask (k,) of positions (k, 2) m where particles are removed."""
+        return self.contains(positions) != self.is_shape
+
     @abstractmethod
     def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Mask (k,) of positions (k, 2) m that lie in the hole."""
+        """Mask (k,) of positions (k, 2) m that lie within its outline."""
 
     @abstractmethod
     def shifted(self, by: tuple[float, float]) -> Self:

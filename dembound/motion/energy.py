@@ -149,6 +149,7 @@ class Ledger(Tracker):
         kinetic, stepping = self._of_motion(before, state)
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
+        load += system.work_before
         outside, damping, friction, crack, law_switch, turning, closing = (float(work) for work in state.work[1])
         damping -= system.counted(u) - self._counted
         shift = system.spring_shift(u)

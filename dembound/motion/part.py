@@ -102,6 +102,7 @@ class System:
     ----------
     steady : (3, n) N and N·m, all steady forces that kernels add, or (3, 0) for none.
     turning : the steady forces that rotate with their sides; None if there are none.
+    work_before : J, to be added to the work of the present loads from the start on, where they have changed.
     refused : requested cheaper laws that cannot be used, each in a line with the reason.
     """
 
@@ -112,6 +113,7 @@ class System:
         self.load = load
         self.steady = np.zeros((3, 0))
         self.turning: Followers | None = None
+        self.work_before = 0.0
 
     @property
     def law_name(self) -> str:
@@ -200,7 +202,7 @@ class System:
 
     def saved_arrays(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
-        saved: dict[str, np.ndarray] = {"load": self.load, "steady": self.steady}
+        saved: dict[str, np.ndarray] = {"load": self.load, "steady": self.steady, "before": np.array(self.work_before)}
         for each in self._remembering:
             saved |= {f"{each.name}/{name}": values for name, values in each.saved_arrays().items()}
         return saved
@@ -208,5 +210,6 @@ class System:
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         self.load, self.steady = saved["load"].copy(), saved["steady"].copy()
+        self.work_before = float(saved["before"])
         for each in self._remembering:
             each.restore(within(saved, each.name))

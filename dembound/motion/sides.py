@@ -82,7 +82,7 @@ class NodeSides:
         self._members: list[tuple[np.ndarray, np.ndarray]] = []
         self._origin: tuple[np.ndarray, np.ndarray] | None = None
         for edge in self._sides.values():
-            self._members.append(self._mean(edge))
+            self._members.append(self._mean(whole.case.side(edge.side).part_of(edge)))
         self._bearers = _bearers(list(self._sides.values()), whole.forces_by_side)
         batches = list(self._batches())
         self._springs = [batch for batch in batches if batch.kind == kinds.SPRING]

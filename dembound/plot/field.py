@@ -146,7 +146,7 @@ def read_disks(file: h5py.File) -> Disks:
         laws=laws_in_words(laws) if len(laws) > 1 else "",
         column=int(file.attrs.get("column", 0)),
         continuum=read_continuum(file),
-        holes=tuple(hole for hole in read_holes(file) if not hole.contains(positions).any()),
+        holes=tuple(hole for hole in read_holes(file) if not hole.takes(positions).any()),
         layers=tuple(map(text_of, file.attrs.get("layer_names", ()))),
         joints=tuple(map(float, file.attrs.get("joints", ()))),
     )

@@ -61,14 +61,15 @@ def _describe_end(planned: Plan, run: Run) -> dict[str, Any] | None:
     if step == planned.steps:
         return None
     saved = 1.0 - step / planned.steps
-    return {"why": "silent", "time": run.time, "planned_steps": planned.steps, "saved": saved}
+    return {"why": planned.scene.case.run.until, "time": run.time, "planned_steps": planned.steps, "saved": saved}
 
 
 def end_in_words(summary: Mapping[str, Any]) -> list[str]:
     """One sentence on a run that ended early; none for a whole run."""
     if (ended := summary["ended"]) is None:
         return []
-    return [f"ended at {ended['time']:.4g} s, all monitors silent: {100.0 * ended['saved']:.0f} % of the steps saved"]
+    why = "all monitors silent" if ended["why"] == "silent" else "the force on the driven sides past its peak"
+    return [f"ended at {ended['time']:.4g} s, {why}: {100.0 * ended['saved']:.0f} % of the steps saved"]
 
 
 def _fields_left_out(planned: Plan) -> list[str]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dembound.boundaries import driven_components
 from dembound.casefile.magnitudes import waves_used
 from dembound.motion.scene import Scene
 from dembound.words import percent
@@ -44,6 +45,8 @@ def still_moving(
 ) -> Iterator[str]:
     """A warning about monitors that still move at the end of the run and would come to rest later.
 
+    A test to failure ends in motion and has none.
+
     duration : of the run, s. file : its open record. pieces : (n,) number of the piece of each node at the end. at_rest
     : m/s, velocity of bodies at rest.
     """
@@ -57,7 +60,7 @@ def still_moving(
     period = max((scene.case.wave[name].dominant_period() for name in waves_used(scene.case)), default=0.0)
     lately = max(LATELY, min(0.5, 0.5 * period / duration))
     moving = {}
-    if max(peaks.values(), default=0.0) <= at_rest:
+    if scene.case.run.is_test or max(peaks.values(), default=0.0) <= at_rest:
         return
     quiet = QUIET * max(*peaks.values(), _mean_velocity(scene, file))
     for name, velocity in histories.items():
@@ -135,6 +138,21 @@ def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:
         f'run.until: is "silent", but the run went on for its whole duration, {run.duration:g} s: the monitors did not '
         f"become silent ({100.0 * run.silent_level:g} % of their peaks), {why}; take a longer run.duration or a higher "
         "run.silent_level"
+    )
+
+
+def never_past_peak(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:
+    """A warning about a run that should have ended past the peak of the forces on driven sides; see `never_silent`."""
+    run, high = scene.case.run, []
+    if run.until != "peak" or ended is not None:
+        return
+    for side, axis in driven_components(scene.case.boundary):
+        force = file[f"boundaries/{side}/force"][:, axis]
+        added = np.abs(force - force[0])
+        high.append(f"{percent(float(added[-1] / added.max()) if added.any() else 0.0)} on {side}")
+    yield (
+        f'run.until: is "peak", but the run took its whole duration, {run.duration:g} s: the forces at its end are '
+        f"{', '.join(high)} of their peaks; take a longer run.duration, faster platens or a higher run.peak_share"
     )
 
 

@@ -27,7 +27,7 @@ from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
 from dembound.results.vtk import write_paraview
-from dembound.results.warnings import never_silent
+from dembound.results.warnings import never_past_peak, never_silent
 from dembound.running.disk_space import bytes_left, space_in_words, space_warnings
 from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
@@ -180,7 +180,8 @@ class _Job:
         summary = summarise(planned, simulation, record, self.clock.seconds)
         summary |= kind.summarise(planned.scene, simulation, beginning, record)
         with open_record(record) as file:
-            loud = list(never_silent(planned.scene, summary["ended"], file))
+            ending = planned.scene, summary["ended"], file
+            loud = [*never_silent(*ending), *never_past_peak(*ending)]
         warnings += _passed_on([*kind.warnings_after(planned.scene, summary, record), *loud], self.progress)
         simulation.forget_trackers()
         resumed = [] if self.found is None else self.found.resumed

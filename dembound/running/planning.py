@@ -15,6 +15,7 @@ from dembound.motion.clock import Clock
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Beginning, Kind, Plan
 from dembound.motion.paths import first_arrivals
+from dembound.motion.peak import Peak, peak_rule
 from dembound.motion.scene import Scene
 from dembound.motion.silence import Silence, monitored, silent_rule
 from dembound.motion.simulation import Simulation
@@ -179,8 +180,13 @@ def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Si
         clock=clock,
         side_stride=steps_between_samples(planned),
     )
-    if scene.case.run.until == "silent":
-        simulation.track(Silence(silent_rule(planned.scene, planned.kind.sources(planned.scene)), planned.time_step))
+    until = scene.case.run.until
+    if until != "duration":
+        sources = planned.kind.sources(planned.scene)
+        if until == "silent":
+            simulation.track(Silence(silent_rule(planned.scene, sources), planned.time_step))
+        else:
+            simulation.track(Peak(peak_rule(planned.scene, sources), planned.scene, planned.time_step))
     return simulation, Ledger(simulation, steps_between_entries(planned), last=planned.steps - 1)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import tomli_w
 
 from dembound.casefile import Case
+from dembound.casefile.run import ENDING_KEYS
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.kinds import load, loads
 from dembound.motion.scene import Scene
@@ -26,7 +27,7 @@ from dembound.results.source import DIGEST, PLACE, recorded_source
 from dembound.running.recorded import case_of, inputs_of, silent_of
 from dembound.waves.file_wave import read_text
 
-SILENCE = ("until", "silent_level", "silent_for")
+ENDING = ("until", *(key for keys in ENDING_KEYS.values() for key in keys))
 """Keys of ``[run]`` that end a run before its duration."""
 
 MOST_KEYS = 5
@@ -239,11 +240,11 @@ def _lasting_any_time(keys: dict[str, Any]) -> dict[str, Any]:
     """The keys of a case without those that determine when its run ends."""
     run = keys.get("run")
     lasting = run if isinstance(run, dict) else {}
-    return keys | {"run": {key: value for key, value in lasting.items() if key not in (*SILENCE, "duration")}}
+    return keys | {"run": {key: value for key, value in lasting.items() if key not in (*ENDING, "duration")}}
 
 
 def _lasting(case: Case, until: float) -> Case:
     """The case with another duration (s), without an earlier end."""
     data = tomllib.loads(case.text)
-    data["run"] = {key: value for key, value in data["run"].items() if key not in SILENCE} | {"duration": until}
+    data["run"] = {key: value for key, value in data["run"].items() if key not in ENDING} | {"duration": until}
     return loads(tomli_w.dumps(data), case.folder, case.name, case.files)

@@ -253,7 +253,8 @@ def _default(value: Any) -> str:
     if value is None or value in ([], {}):
         return "–"
     if isinstance(value, list):
-        return f"`[{', '.join(f'{each:g}' for each in value)}]`"
+        texts = (f'"{each}"' if isinstance(each, str) else f"{each:g}" for each in value)
+        return f"`[{', '.join(texts)}]`"
     text = {True: "true", False: "false"}.get(value) if isinstance(value, bool) else None
     return f"`{text or (f'{value:g}' if isinstance(value, float) else repr(value).replace(chr(39), chr(34)))}`"
 

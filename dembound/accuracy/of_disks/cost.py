@@ -149,12 +149,14 @@ def _hollow(case: DiskCase) -> float:
     area, low, high = 0.0, np.array(case.packing.box[:2]), np.array(case.packing.box[2:])
     for number, hole in enumerate(case.hole):
         start, end = np.maximum(hole.box[:2], low), np.minimum(hole.box[2:], high)
+        if hole.is_shape:
+            start, end = low, high
         if (end <= start).any():
             continue
         along = (np.arange(SAMPLES) + 0.5) / SAMPLES
         grid = np.stack(np.meshgrid(*(start[:, None] + np.outer(end - start, along))), axis=-1).reshape(-1, 2)
-        inside = hole.contains(grid)
+        inside = hole.takes(grid)
         for other in case.hole[:number]:
-            inside &= ~other.contains(grid)
+            inside &= ~other.takes(grid)
         area += float(np.prod(end - start)) * float(inside.mean())
     return area

@@ -52,7 +52,7 @@ def _on_rims(holes: Sequence[Hole], disks: np.ndarray, within: float) -> np.ndar
     beside = (disks[:, None] + within * NINE).reshape(-1, 2)
     found = np.zeros(len(disks), dtype=bool)
     for hole in holes:
-        found |= hole.contains(beside).reshape(-1, len(NINE)).any(axis=1)
+        found |= hole.takes(beside).reshape(-1, len(NINE)).any(axis=1)
     return found
 
 
@@ -98,7 +98,7 @@ def places_of_loads(scene: DiskScene) -> list[LoadPlace]:
         return []
     found: list[LoadPlace] = []
     for load in case.load:
-        if load.wave is None and case.static is not None:
+        if (load.wave is None and case.static is not None) or load.sides is not None:
             continue
         if load.pressure is not None:
             left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)

@@ -10,6 +10,7 @@ from dembound.casefile.bar.run import BarRun
 from dembound.casefile.cross_checks import (
     driving_waves,
     never_estimated,
+    never_past_peak,
     never_silent,
     repeated_names,
     steps_too_long,
@@ -57,6 +58,7 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
         yield from never_silent(tables["run"], tables["monitor"])
+        yield from never_past_peak(tables["run"], tables["boundary"])
         if bar:
             yield from _courant_too_large(bar, tables["run"])
 

@@ -19,13 +19,25 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
     for place, hole in numbered("hole", tables["hole"]):
         if tables["packing"]:
             yield from _outside(place, hole, tables["packing"].box)
+        if hole.is_shape:
+            yield from _shapes(place, hole, tables["boundary"])
         if hole.stage == "after" and not has_static:
             yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
         for key in ("load", "monitor"):
             yield from _places_in_it(place, hole, key, tables[key])
     for place, load in numbered("load", tables["load"]):
-        if load.pressure is not None:
+        if load.hole is not None:
             yield from _no_wall(place, load, tables)
+
+
+def _shapes(place: str, hole: Hole, boundary: Mapping[str, Any]) -> Iterator[str]:
+    """The shape of a sample that is cut later, or beside which the ground goes on."""
+    if hole.stage == "after":
+        yield f'{place}.stage: is "after", but a sample is cut before anything else; leave it out'
+    for side, table in boundary.items():
+        if table and (table.is_periodic or table.is_outside or table.needs_column or table.half_cells):
+            kind = "half_mass" if table.half_cells else f'"{table.type}"'
+            yield f'{place}.keep: is "inside", so the body ends at this shape; boundary.{side} must not be {kind}'
 
 
 def _outside(place: str, hole: Hole, box: Box) -> Iterator[str]:
@@ -39,7 +51,7 @@ def _outside(place: str, hole: Hole, box: Box) -> Iterator[str]:
 def _places_in_it(place: str, hole: Hole, key: str, tables: Any) -> Iterator[str]:
     """Loads or monitors in the hole, where there are no particles."""
     for where, table in numbered(key, tables):
-        if table.position is not None and hole.contains(np.array([table.position]))[0]:
+        if table.position is not None and hole.takes(np.array([table.position]))[0]:
             yield f"{where}.position: lies in {place}; must be where particles remain"
 
 
@@ -55,6 +67,8 @@ def _no_wall(place: str, load: Load, tables: Mapping[str, Any]) -> Iterator[str]
             yield f"{place}.hole: {show(load.hole)} is not a hole of this case; {defined}"
         return
     hole = holes[load.hole]
+    if hole.is_shape:
+        yield f"{place}.hole: {show(hole.name)} is the shape of the sample; a pressure acts in a hole, or on sides"
     if load.on == "outline" and hole.outline is None:
         yield f'{place}.on: "outline" needs edges that do not cross; give hole {hole.name} such, or on = "bonds"'
     if tables["packing"]:

@@ -1,10 +1,11 @@
 """The ``[[load]]`` tables."""
 
-from collections.abc import Iterable
-from typing import Literal
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Literal
 
 from pydantic import model_validator
 
+from dembound.boundaries import normal_axis
 from dembound.table import Box, FileName, Table, quantity
 
 Vector = tuple[float, float]
@@ -17,7 +18,8 @@ class Load(Table):
     """A load on particles: one of `force`, `acceleration` and `pressure`.
 
     A force acts on one particle or on those of a rectangle. An acceleration acts on the same or, without a place, on
-    all particles, like gravity. A pressure acts in a hole.
+    all particles, like gravity. A pressure acts in a hole, or on sides as by a membrane through the centres of their
+    outer particles, which it follows in the run; it ends where a boundary of the run prescribes the motion of the side.
 
     A force is split among the particles of its region in proportion to their area; on the free surface of a continuum
     it is a uniform traction. A pressure pushes the wall of a hole away from it. A wave's values, taken as pure numbers,
@@ -42,9 +44,12 @@ class Load(Table):
         None,
         unit="Pa",
         means="pressure of a load",
-        help="pressure on the wall of a hole, away from it; negative values pull; needs hole",
+        help="pressure on the wall of a hole, away from it, or on sides, inwards; negative values pull",
     )
     hole: str | None = quantity(None, unit="1", help="name of the hole on whose wall a pressure acts")
+    sides: tuple[Literal["left", "right", "bottom", "top"], ...] | None = quantity(
+        None, unit="1", help="sides on which a steady pressure acts, as round a sample", min_length=1
+    )
     on: Literal["outline", "bonds"] = quantity(
         "outline", unit="1", help="where a pressure acts: on the true outline of the hole, or on the bonds that it cuts"
     )
@@ -65,6 +70,8 @@ class Load(Table):
     @property
     def axes(self) -> tuple[int, ...]:
         """Axes along which the load acts: 0 for x, 1 for y."""
+        if self.sides is not None:
+            return tuple(sorted({normal_axis(side) for side in self.sides}))
         if self.pressure is not None:
             return (0, 1)
         return tuple(axis for axis, value in enumerate(self.vector) if value != 0.0)
@@ -96,7 +103,7 @@ class Load(Table):
         """Mistakes in position, region and hole."""
         if self.pressure is not None:
             return [*self._problems_with_hole()]
-        if stray := [key for key in ("hole", "on") if key in self.model_fields_set]:
+        if stray := [key for key in ("hole", "sides", "on") if key in self.model_fields_set]:
             return [f"{key}: is for a pressure" for key in stray]
         if self.position is not None and self.region is not None:
             return ["region: is not allowed together with position"]
@@ -110,8 +117,28 @@ class Load(Table):
     def _problems_with_hole(self) -> list[str]:
         """Mistakes in the place of a pressure."""
         stray = [key for key in ("position", "region") if getattr(self, key) is not None]
-        missing = [] if self.hole is not None else ["hole: is missing; a pressure needs the name of a hole"]
-        return [*missing, *(f"{key}: is not allowed together with pressure; give hole" for key in stray)]
+        found = [f"{key}: is not allowed together with pressure; give hole or sides" for key in stray]
+        if self.hole is None and self.sides is None:
+            return ["hole: is missing; a pressure needs the name of a hole, or sides", *found]
+        if self.sides is not None:
+            beside = [key for key in ("hole", "on") if key in self.model_fields_set]
+            found += [f"{key}: is not allowed together with sides" for key in beside]
+            if self.wave is not None:
+                found.append("wave: is not allowed together with sides, on which a pressure is steady")
+            if len(set(self.sides)) < len(self.sides):
+                found.append("sides: names a side twice")
+        return found
+
+
+def pressed_side_problems(loads: Iterable[tuple[str, Load]], tables: Mapping[str, Any]) -> Iterator[str]:
+    """Pressures on sides that are not the surface of a rectangular body; loads : with their places in the file."""
+    for place, load in loads:
+        for side in load.sides or ():
+            table = tables["boundary"].get(side)
+            if table and (table.is_periodic or table.is_outside or table.needs_column or table.is_mirror):
+                yield f'{place}.sides: names {side}, "{table.type}", where the body goes on; must be a free side'
+        if load.sides and any(hole and hole.is_shape for hole in tables["hole"]):
+            yield f"{place}.sides: is for a rectangular body, and a hole keeps what is inside; must not be together"
 
 
 def gravity(loads: Iterable[Load | None]) -> list[float]:

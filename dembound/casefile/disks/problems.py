@@ -4,10 +4,11 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from dembound.boundaries.boundary import Boundary
+from dembound.boundaries import Boundary, beside_disks
 from dembound.casefile.cross_checks import (
     driving_waves,
     never_estimated,
+    never_past_peak,
     never_silent,
     repeated_names,
     steps_too_long,
@@ -20,7 +21,7 @@ from dembound.casefile.disks.ground import Box, Ground, ground_problems, is_in, 
 from dembound.casefile.disks.hole_problems import hole_problems
 from dembound.casefile.disks.incident import incident_problems
 from dembound.casefile.disks.layer import Layer, layer_problems
-from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.load import Load, pressed_side_problems
 from dembound.casefile.disks.material import STRENGTH_KEYS, Material, with_history
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
@@ -47,6 +48,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     yield from motion_problems(tables)
     for side, table in tables["boundary"].items():
         yield from table.problems(side, tables) if table else ()
+    for side, table in (tables["static"].boundary if tables["static"] else {}).items():
+        yield from beside_disks(f"static.boundary.{side}", side, table, tables)
     if tables["motion"]:
         yield from _loaded_but_held(tables["load"], tables["motion"])
         if tables["material"]:
@@ -57,6 +60,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     for key in ("hole", "load", "monitor"):
         yield from repeated_names(key, tables[key])
     yield from too_many(tables["monitor"])
+    yield from pressed_side_problems(numbered("load", tables["load"]), tables)
     yield from layer_problems(tables)
     ground, packing = tables["ground"], tables["packing"]
     if ground and packing:
@@ -82,6 +86,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
         yield from never_silent(tables["run"], tables["monitor"])
+        yield from never_past_peak(tables["run"], tables["boundary"])
     if tables["output"]:
         yield from never_estimated(tables["output"], tables["monitor"])
 

@@ -7,6 +7,7 @@ import numpy as np
 from dembound.boundaries import SIDES, normal_axis
 from dembound.boundaries.exposed import exposed, outer_row
 from dembound.boundaries.support import Edge
+from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.packings.column import Seam
 from dembound.packings.tiling import Assembly
@@ -26,6 +27,15 @@ def find_edges(assembly: Assembly, periodic: tuple[bool, bool], regular_sides: t
             nodes = exposed(assembly.positions, assembly.radii, side, period=length if periodic[1 - axis] else None)
         edges[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
     return edges
+
+
+def require_held(case: DiskCase, edges: Mapping[str, Edge]) -> None:
+    """Raise CaseError for platens that hold no disk."""
+    static = {} if case.static is None else case.static.boundary
+    for place, tables in (("boundary", case.boundary), ("static.boundary", static)):
+        for side, table in tables.items():
+            if side in edges and len(table.part_of(edges[side]).nodes) == 0:
+                raise CaseError([f"{place}.{side}.within: no disk of this side is centred in it; make it wider"])
 
 
 def edge_without(edge: Edge, kept: np.ndarray) -> Edge:

@@ -351,7 +351,7 @@ def lasting_time(case: DiskCase) -> float:
     """
     starts = [case.run.duration]
     for load in case.load:
-        if load.pressure is not None and _is_in_body(case, case.hole_of(load)):
+        if load.hole is not None and _is_in_body(case, case.hole_of(load)):
             continue
         if load.wave is None and case.static is None:
             starts.append(0.0)

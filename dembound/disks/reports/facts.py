@@ -104,7 +104,10 @@ def _particles(scene: DiskScene) -> str:
 def _hole_facts(case: DiskCase) -> Entries:
     """Shape of every hole, and the stage in which it is made."""
     stages = {"before": "present from the start", "after": "excavated once the body has settled"}
-    yield from ((f"hole {hole.name}", f"{hole.type}, {stages[hole.stage]}") for hole in case.hole)
+    yield from (
+        (f"hole {hole.name}", f"{hole.type}, {'shape of the sample' if hole.is_shape else stages[hole.stage]}")
+        for hole in case.hole
+    )
 
 
 def _packing_facts(scene: DiskScene) -> Entries:
@@ -281,7 +284,8 @@ def _whole_of(load: Load, scene: DiskScene, forces: np.ndarray) -> str:
     whole[np.abs(whole) < BALANCED * all_forces] = 0.0
     left = f", {_force(whole)} in all" if whole.any() else ""
     length = all_forces / abs(load.pressure)
-    return f"{with_unit(load.pressure, 'Pa')} on {length:.3g} m of wall of hole {load.hole}{left},"
+    where = f"wall of hole {load.hole}" if load.sides is None else f"the sides {', '.join(load.sides)}"
+    return f"{with_unit(load.pressure, 'Pa')} on {length:.3g} m of {where}{left},"
 
 
 def _force(whole: np.ndarray) -> str:
@@ -294,8 +298,11 @@ def _side_fact(scene: DiskScene, side: str) -> str:
     facts, alike = describe_side(scene, side), dict[str, list[str]]()
     for each in facts.pop("layers", []):
         alike.setdefault(side_in_words({"type": facts["type"], **each}), []).append(each["layer"])
+    edge = scene.edges[side]
+    held = len(scene.case.side(side).part_of(edge).nodes)
+    some = f", {held} of them held" if held < len(edge.nodes) else ""
     words = [f"{text} beside {' and '.join(names)}" for text, names in alike.items()]
     return (
-        f"{'; '.join(words) if len(words) > 1 else side_in_words(facts)}; {facts['particles']} particles, "
+        f"{'; '.join(words) if len(words) > 1 else side_in_words(facts)}; {facts['particles']} particles{some}, "
         f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.3g}"
     )

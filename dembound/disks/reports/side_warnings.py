@@ -4,7 +4,10 @@ import math
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
-from dembound.boundaries import Motion, normal_axis
+import numpy as np
+
+from dembound.boundaries import Motion, is_far, normal_axis
+from dembound.boundaries.support import Edge
 from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected, too_much
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.frequencies import mean_frequency
@@ -21,7 +24,17 @@ def side_warnings(scene: DiskScene) -> Iterator[str]:
     yield from _take_from_waves(scene)
     yield from _hold_monitors(scene)
     yield from _mirror_otherwise(scene)
+    yield from _hold_round_faces(scene)
 
+
+ROUND = 0.5
+"""How much deeper, in diameters, the outer disks of a held side are than those in its middle, on an average, where its
+face counts as round: at most 0.4 on flat faces of random packings 20 diameters wide, 0.7 to 1.4 on round samples 14 to
+60 wide.
+"""
+
+FEWEST = 8
+"""Number of held disks below which their depths say nothing about the face."""
 
 TAKEN = 0.1
 """Error, over a wave's velocity, by sides along it up to which there is no warning; known to within that."""
@@ -121,6 +134,31 @@ def _hold_monitors(scene: DiskScene) -> Iterator[str]:
         for name, particle in scene.monitors.items():
             if particle in edge.nodes:
                 yield f"monitor.{name}: its disk is on boundary.{side}, which holds it still: its motion is zero"
+
+
+def _hold_round_faces(scene: DiskScene) -> Iterator[str]:
+    """Warnings about flat sides that hold disks of a round sample, which then is too strong."""
+    for side, edge in scene.edges.items() if scene.case.hole else ():
+        table = scene.case.side(side)
+        part = table.part_of(edge)
+        if edge.axis not in table.prescribed(edge.axis) or len(part.nodes) < FEWEST:
+            continue
+        depth, along = depths_of(part), part.positions[:, 1 - edge.axis]
+        away = np.abs(along - 0.5 * (along.min() + along.max()))
+        outer = away > 0.5 * away.max()
+        if depth[outer].mean() - depth[~outer].mean() > ROUND * scene.ground.brick.mean_diameter:
+            yield (
+                f"boundary.{side}: is flat, but holds {len(depth)} disks of a round face, from {along.min():.4g} to "
+                f"{along.max():.4g} m, up to {depth.max():.2g} m below its plane: such a grip makes a sample too "
+                "strong, a Brazilian disk twice; give the width of the jaw, within = [from, to]"
+            )
+
+
+def depths_of(edge: Edge) -> np.ndarray:
+    """Depths (k,) m of the faces of an edge's disks below the outermost of them."""
+    outward = (1.0 if is_far(edge.side) else -1.0) * edge.positions[:, edge.axis] + 0.5 * edge.diameters
+    depth: np.ndarray = outward.max() - outward
+    return depth
 
 
 def _mirror_otherwise(scene: DiskScene) -> Iterator[str]:

@@ -92,6 +92,8 @@ def _empty_holes(scene: DiskScene) -> Iterator[str]:
     brick, (left, bottom, right, top) = scene.ground.brick, scene.case.packing.box
     origin = np.array([left, bottom])
     for number, (place, hole) in enumerate(numbered("hole", scene.case.hole)):
+        if hole.is_shape:
+            continue
         x0, y0, x1, y1 = hole.box
         low, high = np.array([max(x0, left), max(y0, bottom)]), np.array([min(x1, right), min(y1, top)])
         first, last = np.floor((low - origin) / brick.size), np.floor((high - origin) / brick.size)
@@ -103,7 +105,7 @@ def _empty_holes(scene: DiskScene) -> Iterator[str]:
         if len(inside) == 0:
             yield f"{place}: no particle is centred in it, so it removes none"
         for other in scene.case.hole[:number]:
-            if len(inside) and other.contains(inside).all() and (other.stage == "before" or hole.stage == "after"):
+            if len(inside) and other.takes(inside).all() and (other.stage == "before" or hole.stage == "after"):
                 yield f"{place}: lies within hole.{other.name}, so it removes no more particles"
 
 

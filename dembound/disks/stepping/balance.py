@@ -52,6 +52,10 @@ class Balance:
         """Work (J) done up to displacements (3, n), without the work of their rotation, which the kernels count."""
         return self._of_ended + float(np.sum(self.force * (displacement - self.datum)))
 
+    def add_to_loads(self, change: np.ndarray) -> None:
+        """Add forces (3, n) N to the steady ones beside those that rotate."""
+        self.followers.steady[...] += change[:2, self.followers.node]
+
     def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name."""
         kept = {name: getattr(self, f"_{name}") for name in ("steady", "across", *_EVOLVING)}

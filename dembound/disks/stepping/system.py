@@ -98,11 +98,20 @@ class DiskSystem(RecordedDisks):
             super().begin(state)
 
     def apply(self, load: np.ndarray) -> None:
-        """Replace the steady forces and moments (3, n) of a settling body."""
+        """Replace the steady forces and moments (3, n) of loads."""
         if self.steady.shape[1] == 0:
             self.steady = np.zeros_like(load)
         self.steady += load - self.load
         self.load = load
+
+    def follow(self, load: np.ndarray, state: State, step: float) -> None:
+        """Replace the steady loads (3, n) N and N·m of a run from the present step (s) on."""
+        change = load - self.load
+        # the loads of the last step acted until half a step before the present displacements
+        self.work_before -= float(np.sum(change * (state.displacement - 0.5 * step * state.velocity - state.datum)))
+        self.apply(load)
+        if self.balance is not None:
+            self.balance.add_to_loads(change)
 
     def react(self, why: int, steps: int, state: State) -> None:
         """Change the law if contacts are about to leave the elastic range; end the forces on broken-off pieces."""

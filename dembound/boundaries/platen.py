@@ -1,0 +1,65 @@
+"""Sides that hold their particles, all of them or those within a range: walls, grips, platens and jaws of tests."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pydantic import field_validator
+
+from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.edge import Edge
+from dembound.boundaries.sides import axis_of_motion, normal_axis
+from dembound.table import Box, quantity
+
+
+class Holding(Boundary):
+    """A side that prescribes motion, of all its particles or, as a platen or jaw, of those `within` a range."""
+
+    within: tuple[float, float] | None = quantity(
+        None,
+        unit="m",
+        means="place",
+        help="range [x0, x1] of a bottom or top side, [y0, y1] of a left or right one; the side's particles centred "
+        "there are held, others are free; absent: all are held",
+    )
+
+    @field_validator("within")
+    @classmethod
+    def _ascends(cls, within: tuple[float, float] | None) -> tuple[float, float] | None:
+        if within is not None and not within[0] < within[1]:
+            raise ValueError("must have its lower end first, below the other one")
+        return within
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """A range of an end of a bar, or one beside the disks."""
+        yield from super().problems(side, tables)
+        yield from beside_disks(f"boundary.{side}", side, self, tables)
+
+    def part_of(self, edge: Edge) -> Edge:
+        """The particles of an edge that are held."""
+        if self.within is None:
+            return edge
+        along = edge.positions[:, 1 - edge.axis]
+        low, high = self.within
+        return edge.only((low <= along) & (along <= high), high - low)
+
+
+def beside_disks(place: str, side: str, table: Boundary | None, tables: Mapping[str, Any]) -> Iterator[str]:
+    """Mistakes of the range `within` of the table at a place of the case."""
+    if not isinstance(table, Holding) or table.within is None:
+        return
+    low, high = table.within
+    if "bar" in tables:
+        yield f"{place}.within: is for sides of disks; an end of a bar is one node"
+    elif packing := tables.get("packing"):
+        box: Box = packing.box
+        first, last = box[1 - normal_axis(side)], box[3 - normal_axis(side)]
+        if high <= first or low >= last:
+            yield f"{place}.within: is beside the disks, which are from {first:g} to {last:g} m there"
+
+
+def driven_components(boundary: Mapping[str, Boundary | None]) -> Iterator[tuple[str, int]]:
+    """Sides whose motion a wave prescribes, and the axis of this motion."""
+    for side, table in boundary.items():
+        for motion in table.waves if table else ():
+            if table and (axis := axis_of_motion(side, motion)) in table.prescribed(normal_axis(side)):
+                yield side, axis
