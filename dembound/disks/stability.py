@@ -29,6 +29,20 @@ MOST_ROUNDS, CONVERGED = 40, 1e-3
 
 
 def step_limit(scene: DiskScene, damp: float | None = None) -> float:
+    """Largest stable step (s), with Rayleigh damping: that without it (`limit_without_lag`) and shorter.
+
+    Raises RunError when an iteration does not converge.
+    """
+    return _with_lag(scene, limit_without_lag(scene, damp))
+
+
+def lag_cost(scene: DiskScene) -> float:
+    """The step limit over that without Rayleigh damping."""
+    limit = limit_without_lag(scene)
+    return _with_lag(scene, limit) / limit
+
+
+def limit_without_lag(scene: DiskScene, damp: float | None = None) -> float:
     """Largest stable step 2/(ω_max √(1 + damp)) of central differences (s).
 
     damp is the local damping coefficient, None: the material's. At the limit, forces are opposite to velocities at
@@ -46,6 +60,34 @@ def step_limit(scene: DiskScene, damp: float | None = None) -> float:
         largest = max(largest, *map(_loose_eigenvalue, _zones_of(scene.ground))) / (OPENING if opens else 1.0)
     damp = scene.case.material.damp if damp is None else damp
     return float(2.0 / np.sqrt(largest * (1.0 + damp))) if largest > 0.0 else np.inf
+
+
+def _with_lag(scene: DiskScene, limit: float) -> float:
+    """The limit (s) with forces f + β(f − f')/Δt, where f' are those one step earlier; limit : that without them.
+
+    At the limit motions change their sign in every step, so that forces are (1 + 2β/Δt)f: Δt² + 2βΔt = 4/ω². Where β
+    differs between layers, such disks count as lighter, and Δt is found by iteration from that of the largest β, which
+    is too short.
+    """
+    lags = np.array([0.0 if each is None else each.lag for each in scene.ground.mechanisms_by_layer])
+    x = lags.max() / limit
+    step = limit * float(np.sqrt(1.0 + x * x) - x) if lags.any() else limit
+    if lags.min() == lags.max():
+        return step
+    lag = lags[scene.ground.layer_of(scene.positions[:, 1])]
+    pairs = scene.assembly.pairs  # a contact between layers is damped by both
+    own = lag.copy()
+    np.maximum.at(lag, pairs[:, 0], own[pairs[:, 1]])
+    np.maximum.at(lag, pairs[:, 1], own[pairs[:, 0]])
+    for _ in range(MOST_ROUNDS):
+        lighter = 1.0 + 2.0 * lag / step
+        found = largest_eigenvalue(
+            scene.layout, scene.mass / lighter, scene.inertia / lighter, scene.free, scene.moves, filling_forces(scene)
+        )
+        before, step = step, max(step, float(2.0 / np.sqrt(found)))
+        if step <= before * (1.0 + CONVERGED):
+            return step
+    raise RunError("the step limit with Rayleigh damping has not converged; give all layers one quality_factor")
 
 
 def _largest_eigenvalue(scene: DiskScene) -> float:
