@@ -9,6 +9,7 @@ from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
+from dembound.disks.stepping.damped_ground import growing_by_lag
 from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces
@@ -23,6 +24,9 @@ energy grows by orders of magnitude within a thousand steps. Below this limit th
 (`kernels.contacts.CLOSING`) exceeds the gain.
 """
 
+
+Filling = Callable[[np.ndarray, np.ndarray], None]
+"""Fills or changes its second argument (3, slots) with forces at displacements, its first one."""
 
 MOST_ROUNDS, CONVERGED = 40, 1e-3
 """Rounds, and relative change of ω² at which they end, of the step limit with ties, whose dashpots depend on it."""
@@ -66,24 +70,16 @@ def _with_lag(scene: DiskScene, limit: float) -> float:
     """The limit (s) with forces f + β(f − f')/Δt, where f' are those one step earlier; limit : that without them.
 
     At the limit motions change their sign in every step, so that forces are (1 + 2β/Δt)f: Δt² + 2βΔt = 4/ω². Where β
-    differs between layers, such disks count as lighter, and Δt is found by iteration from that of the largest β, which
-    is too short.
+    differs between layers, Δt is found by iteration from that of the largest β, which is too short.
     """
     lags = np.array([0.0 if each is None else each.lag for each in scene.ground.mechanisms_by_layer])
     x = lags.max() / limit
     step = limit * float(np.sqrt(1.0 + x * x) - x) if lags.any() else limit
     if lags.min() == lags.max():
         return step
-    lag = lags[scene.ground.layer_of(scene.positions[:, 1])]
-    pairs = scene.assembly.pairs  # a contact between layers is damped by both
-    own = lag.copy()
-    np.maximum.at(lag, pairs[:, 0], own[pairs[:, 1]])
-    np.maximum.at(lag, pairs[:, 1], own[pairs[:, 0]])
     for _ in range(MOST_ROUNDS):
-        lighter = 1.0 + 2.0 * lag / step
-        found = largest_eigenvalue(
-            scene.layout, scene.mass / lighter, scene.inertia / lighter, scene.free, scene.moves, filling_forces(scene)
-        )
+        fill = filling_forces(scene, growing_by_lag(scene, lags, step))
+        found = largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, scene.moves, fill)
         before, step = step, max(step, float(2.0 / np.sqrt(found)))
         if step <= before * (1.0 + CONVERGED):
             return step
@@ -129,8 +125,8 @@ def fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:
     filling_forces(scene)(u, force)
 
 
-def filling_forces(scene: DiskScene) -> Callable[[np.ndarray, np.ndarray], None]:
-    """`fill_forces` of a scene, to be called often."""
+def filling_forces(scene: DiskScene, change: Filling | None = None) -> Filling:
+    """`fill_forces` of a scene, to be called often; change : of the forces of contacts."""
     supports = scene.supports
     acting = np.flatnonzero(supports.prescribed | (supports.stiffness != 0.0))
     place = supports.component[acting], scene.layout.slot[supports.node[acting]]
@@ -139,6 +135,8 @@ def filling_forces(scene: DiskScene) -> Callable[[np.ndarray, np.ndarray], None]
     def fill(u: np.ndarray, force: np.ndarray) -> None:
         for rows in scene.rows:
             contact_forces(u, rows, force)
+        if change is not None:
+            change(u, force)
         force[place] = np.where(prescribed, 0.0, force[place] - stiffness * u[place])
 
     return fill

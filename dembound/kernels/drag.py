@@ -14,12 +14,12 @@ from dembound.kernels.tables import Drag, NoDrag
 
 @generic
 def shares(drag, i):
-    """s of eight disks from slot i on."""
+    """The share s of eight disks from slot i on."""
 
 
 @generic
 def share_of(drag, i):
-    """s of the disk in slot i."""
+    """The share s of the disk in slot i."""
 
 
 @generic
@@ -42,7 +42,7 @@ def note_velocities(drag, v, slots):
 
 @generic
 def pull_supported(drag, slots, v, u_next, nodes):
-    """Add drag to the forces on those of the supported nodes (k,) that are among its slots, from the first to before the last."""
+    """Add drag to the forces on those of the supported nodes (k,) that are in its slots, the first and the end."""
 
 
 @generic
@@ -126,13 +126,23 @@ def _work_on_supported(drag, slots, v, nodes, step):
 
 
 @njit(**FAST)
+def _nothing_noted(drag, v, slots):
+    pass
+
+
+@njit(**FAST)
+def _no_pull(drag, slots, v, u_next, nodes):
+    pass
+
+
+@njit(**FAST)
 def _no_work(drag, slots, v, nodes, step):
     return 0.0, 0.0
 
 
 for _bundle, _kernels in (
     (Drag, (_shares, _share_of, _with_drag, _changed_power, _note_velocities, _pull_supported, _work_on_supported)),
-    (NoDrag, (_one_each, _one, _as_they_are, _unchanged, None, None, _no_work)),
+    (NoDrag, (_one_each, _one, _as_they_are, _unchanged, _nothing_noted, _no_pull, _no_work)),
 ):
     for _function, _kernel in zip(
         (shares, share_of, with_drag, changed_power, note_velocities, pull_supported, work_on_supported),

@@ -37,7 +37,13 @@ def layers_of(
     assert isinstance(scene.ground, LayeredGround)
     zones = [(low, high, ground) for low, high, _, ground in scene.ground.layers if high > plane]
     return [
-        Layer(min(high, surface) - low, ground.density, speed, relative=(relative or _damped)(ground), heavier=_dragged(ground))
+        Layer(
+            min(high, surface) - low,
+            ground.density,
+            speed,
+            relative=(relative or _damped)(ground),
+            heavier=_dragged(ground),
+        )
         for low, high, ground in reversed(zones)
         for speed in [ground.wave_speeds(1)[0 if motion == "p" else 1]]
     ]

@@ -81,6 +81,6 @@ def damping_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     beyond = [side for side, table in tables["boundary"].items() if table and table.is_outside]
     if tables["damping"].type == "rayleigh" and beyond:
         yield (
-            f'damping.type: is "rayleigh", which the ground beyond boundary.{beyond[0]} cannot have; take sides of type '
+            f'damping.type: is "rayleigh", which ground beyond boundary.{beyond[0]} cannot have; take sides of type '
             '"viscous", "viscoelastic" or "free_field", or damping.type = "quality"'
         )

@@ -220,8 +220,8 @@ def _rayleigh_fact(found: Rayleigh) -> str:
     (low, high), (least, most) = found.band, found.range
     texts, unit = in_one_unit((low, high), "Hz")
     return (
-        f"α = {found.alpha:.3g}/s, β = {with_unit(found.beta, 's')}; Q = {least:.3g} at {texts[0]} and {texts[1]} {unit}, "
-        f"up to {most:.3g} between"
+        f"α = {found.alpha:.3g}/s, β = {with_unit(found.beta, 's')}; Q = {least:.3g} at {texts[0]} and {texts[1]} "
+        f"{unit}, up to {most:.3g} between"
     )
 
 

@@ -5,6 +5,8 @@ A contact between layers of unlike damping has the springs k₁ and k₂ of both
 is lacking, (m₂ − m₁)w₂ for a disk of layer 1, is computed apart.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from dembound.damping.attenuation import Attenuation, factors_of
@@ -13,6 +15,7 @@ from dembound.disks.contacts.layout import Rows
 from dembound.disks.contacts.rows import elastic_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.stepping.memories import DampedTies, DiskMemories
+from dembound.kernels.damped import remember_crossing
 from dembound.kernels.tables import Crossing, Drag, NoDrag
 from dembound.motion.layout import aligned_zeros
 
@@ -62,6 +65,28 @@ def _drag(scene: DiskBody, nodes: slice, supported: np.ndarray, time_step: float
     share[supported] = 1.0
     half[:, slot] = 0.5 * rates * np.stack([scene.mass[nodes], scene.inertia[nodes]])
     return Drag(share, half, np.zeros((3, layout.count)))
+
+
+def growing_by_lag(scene: DiskBody, lags: np.ndarray, time_step: float) -> Callable[[np.ndarray, np.ndarray], None]:
+    """What Rayleigh damping adds to contact forces (3, slots) of motions that change their sign in every step.
+
+    lags : β (layers,) s of all layers. Forces of the second memory only: those of the first one cancel.
+    """
+    _, layer = layers_of(scene, np.arange(scene.disk_count))
+    factor = scene.layout.spread(1.0 + 2.0 / time_step * lags[layer])
+    crossings = [_crossing(scene, nodes, time_step) for nodes in scene.parts.values()]
+    for crossing in crossings:
+        crossing.factors[:, 1, ::2] = 0.0
+        crossing.factors[crossing.target != crossing.owner] = 0.0  # forces across a seam do not act back
+
+    def grow(u: np.ndarray, force: np.ndarray) -> None:
+        force *= factor
+        for crossing in crossings:
+            crossing.memory[...] = 0.0
+            remember_crossing(crossing, u, u)
+            np.subtract.at(force.T, crossing.target, crossing.taken)
+
+    return grow
 
 
 def _crossing(scene: DiskBody, nodes: slice, time_step: float) -> Crossing:
