@@ -41,6 +41,12 @@ SCENES = {
         "boundary": dict.fromkeys(("left", "right"), "periodic") | {"bottom": {"type": "outside", "wave_s": "pulse"}},
     },
     "damped by Q": {"size": ROWS, "boundary": ENDS, "material": {"quality_factor": 10.0}},
+    "Rayleigh damping": {
+        "size": ROWS,
+        "boundary": ENDS,
+        "material": {"quality_factor": 10.0},
+        "damping": {"type": "rayleigh"},
+    },
     "damped by Q, disk by disk, continuum below": {
         "size": (10.0, 10.0),
         "boundary": dict.fromkeys(("left", "right"), "periodic") | {"bottom": {"type": "outside", "wave_s": "pulse"}},
