@@ -49,6 +49,7 @@ _LOCAL: Advice = (
     ("beta_p", "write beta_p and beta_s, factors of ρc"),
     ("", f"[material] has damp, for waves 0; [static] a damp of its own; [bar] attenuation{_MORE}"),
 )
+_RAYLEIGH = 'write [damping] type = "rayleigh" and band, [material] quality_factor = 1/(2ξ); α and β follow from them'
 _STRENGTH: Advice = (
     ("strength", "write strength, Pa"),
     ("pb_ten", 'write pb_ten, Pa, with law = "linearpbond"'),
@@ -132,7 +133,12 @@ NAMES: dict[tuple[str, ...], Advice] = {
         ("alpha_n", "write alpha_n and alpha_s, factors of the springs; beta_p and beta_s, of the dashpots"),
         *_LOCAL,
     ),
-    ("rayleigh", "rayleigh_damping", "beta", "quality_factor", "q_factor", "qkappa", "qmu", "viscosity"): _LOCAL,
+    ("rayleigh", "rayleigh_damping", "rayleigh_alpha", "rayleigh_beta", "xi"): (
+        ("mechanisms", _RAYLEIGH),
+        ("quality_factor", _RAYLEIGH),
+        *_LOCAL,
+    ),
+    ("beta", "quality_factor", "q_factor", "qkappa", "qmu", "viscosity"): _LOCAL,
     ("dp_nratio", "dp_sratio", "dp_mode", "dashpot", "critical_damping", "restitution", "cn", "cs_damp"): (
         ("", _DASHPOTS),
     ),

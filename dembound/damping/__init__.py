@@ -1,1 +1,1 @@
-"""Damping of ground: relaxation mechanisms that make its quality factor nearly constant over a band."""
+"""Damping of ground: relaxation mechanisms that make its quality factor nearly constant over a band, or Rayleigh's."""

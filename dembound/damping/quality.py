@@ -11,11 +11,12 @@ e = exp(−Δt/τ) and g = w (1 − e)/2.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+
+from dembound.damping.attenuation import Attenuation
 
 FIT_POINTS = 60
 """Frequencies at which Q is fitted, denser at the ends of the band, where errors are largest."""
@@ -28,7 +29,7 @@ DIGITS = 6
 
 
 @dataclass(frozen=True)
-class Mechanisms:
+class Mechanisms(Attenuation):
     """Relaxation mechanisms of one material.
 
     Attributes
@@ -52,16 +53,10 @@ class Mechanisms:
         at = _factor(np.array(self.weights), np.array(self.times), np.asarray(self.frequency))
         return float(np.real(at**-0.5) ** 2)
 
-    def quality(self, frequency: np.ndarray | float) -> np.ndarray:
-        """Q (...) at frequencies (...) Hz."""
-        modulus = self.relative_modulus(frequency)
-        return modulus.real / modulus.imag
-
     @property
-    def range(self) -> tuple[float, float]:
-        """Least and largest Q over the band."""
-        found = self.quality(np.geomspace(*self.band, 200))
-        return float(found.min()), float(found.max())
+    def count(self) -> int:
+        """Number of mechanisms."""
+        return len(self.weights)
 
     def per_step(self, time_step: float) -> np.ndarray:
         """Factors e and g (2, K) of the memories for steps of this length (s)."""
@@ -73,16 +68,6 @@ def _factor(weights: np.ndarray, times: np.ndarray, frequency: np.ndarray) -> np
     """m(ω) (...) at frequencies (...) Hz."""
     terms = weights / (1.0 + 2j * math.pi * frequency[..., None] * times)
     return np.asarray(1.0 - terms.sum(axis=-1))
-
-
-def factors_of(layers: Sequence[Mechanisms | None], time_step: float) -> np.ndarray:
-    """Factors e and g (layers, 2, K) of the memories of layers of ground; of undamped ones zero."""
-    count = max((len(each.weights) for each in layers if each is not None), default=0)
-    factors = np.zeros((len(layers), 2, count))
-    for row, each in zip(factors, layers, strict=True):
-        if each is not None:
-            row[:, : len(each.weights)] = each.per_step(time_step)
-    return factors
 
 
 @lru_cache(maxsize=256)

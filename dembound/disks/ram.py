@@ -238,7 +238,8 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
         steady = 24 * (z.disks + z.slots) + 24 * z.disks  # with the velocity at the change of law
     settled = 2 * 24 * z.disks * (case.static is not None)  # datum and balancing forces
     if case.is_damped:  # memories, forces and layers, and forces at rest
-        settled += (24 * case.damping.mechanisms + 25 + 24 * (case.static is not None)) * z.slots
+        drag = 48 * (case.damping.type == "rayleigh")
+        settled += (24 * case.damping.memories + 25 + 24 * (case.static is not None) + drag) * z.slots
     if case.output.stress:
         snapshot = max(snapshot, 24 * z.disks + stress_bytes(z))
     header = 0.0

@@ -9,6 +9,7 @@ from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
+from dembound.disks.stepping.damped_ground import growing_by_lag
 from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces
@@ -24,11 +25,28 @@ energy grows by orders of magnitude within a thousand steps. Below this limit th
 """
 
 
+Filling = Callable[[np.ndarray, np.ndarray], None]
+"""Fills or changes its second argument (3, slots) with forces at displacements, its first one."""
+
 MOST_ROUNDS, CONVERGED = 40, 1e-3
 """Rounds, and relative change of ω² at which they end, of the step limit with ties, whose dashpots depend on it."""
 
 
 def step_limit(scene: DiskScene, damp: float | None = None) -> float:
+    """Largest stable step (s), with Rayleigh damping: that without it (`limit_without_lag`) and shorter.
+
+    Raises RunError when an iteration does not converge.
+    """
+    return _with_lag(scene, limit_without_lag(scene, damp))
+
+
+def lag_cost(scene: DiskScene) -> float:
+    """The step limit over that without Rayleigh damping."""
+    limit = limit_without_lag(scene)
+    return _with_lag(scene, limit) / limit
+
+
+def limit_without_lag(scene: DiskScene, damp: float | None = None) -> float:
     """Largest stable step 2/(ω_max √(1 + damp)) of central differences (s).
 
     damp is the local damping coefficient, None: the material's. At the limit, forces are opposite to velocities at
@@ -46,6 +64,26 @@ def step_limit(scene: DiskScene, damp: float | None = None) -> float:
         largest = max(largest, *map(_loose_eigenvalue, _zones_of(scene.ground))) / (OPENING if opens else 1.0)
     damp = scene.case.material.damp if damp is None else damp
     return float(2.0 / np.sqrt(largest * (1.0 + damp))) if largest > 0.0 else np.inf
+
+
+def _with_lag(scene: DiskScene, limit: float) -> float:
+    """The limit (s) with forces f + β(f − f')/Δt, where f' are those one step earlier; limit : that without them.
+
+    At the limit motions change their sign in every step, so that forces are (1 + 2β/Δt)f: Δt² + 2βΔt = 4/ω². Where β
+    differs between layers, Δt is found by iteration from that of the largest β, which is too short.
+    """
+    lags = np.array([0.0 if each is None else each.lag for each in scene.ground.mechanisms_by_layer])
+    x = lags.max() / limit
+    step = limit * float(np.sqrt(1.0 + x * x) - x) if lags.any() else limit
+    if lags.min() == lags.max():
+        return step
+    for _ in range(MOST_ROUNDS):
+        fill = filling_forces(scene, growing_by_lag(scene, lags, step))
+        found = largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, scene.moves, fill)
+        before, step = step, max(step, float(2.0 / np.sqrt(found)))
+        if step <= before * (1.0 + CONVERGED):
+            return step
+    raise RunError("the step limit with Rayleigh damping has not converged; give all layers one quality_factor")
 
 
 def _largest_eigenvalue(scene: DiskScene) -> float:
@@ -87,8 +125,8 @@ def fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:
     filling_forces(scene)(u, force)
 
 
-def filling_forces(scene: DiskScene) -> Callable[[np.ndarray, np.ndarray], None]:
-    """`fill_forces` of a scene, to be called often."""
+def filling_forces(scene: DiskScene, change: Filling | None = None) -> Filling:
+    """`fill_forces` of a scene, to be called often; change : of the forces of contacts."""
     supports = scene.supports
     acting = np.flatnonzero(supports.prescribed | (supports.stiffness != 0.0))
     place = supports.component[acting], scene.layout.slot[supports.node[acting]]
@@ -97,6 +135,8 @@ def filling_forces(scene: DiskScene) -> Callable[[np.ndarray, np.ndarray], None]
     def fill(u: np.ndarray, force: np.ndarray) -> None:
         for rows in scene.rows:
             contact_forces(u, rows, force)
+        if change is not None:
+            change(u, force)
         force[place] = np.where(prescribed, 0.0, force[place] - stiffness * u[place])
 
     return fill

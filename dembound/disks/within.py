@@ -91,7 +91,7 @@ class Level:
         """Its layers, the last one going on below; or on a half-space with the impedance of the dashpots."""
         layers = list(self.layers)
         if modulus != "as_run":
-            layers = [replace(layer, relative=None) for layer in layers]
+            layers = [replace(layer, relative=None, heavier=None) for layer in layers]
         if on_rock and self.alpha is not None:
             layers.append(Layer(1.0, layers[-1].density, self.alpha * self.speed))
         return Column(layers, "elastic" if modulus == "as_run" else modulus, self.frequency)
@@ -139,6 +139,8 @@ def _layers(scene: DiskScene, motion: Motion, bottom: float, top: float) -> tupl
             layer = Layer(thickness, material.density, speed)
             if mechanisms is not None:
                 layer = replace(layer, quality=table.quality_factor or math.inf, relative=mechanisms.relative_modulus)
+                if mechanisms.drag > 0.0:
+                    layer = replace(layer, heavier=mechanisms.relative_density)
                 frequency = mechanisms.frequency
             found.append(layer)
     return tuple(found), frequency

@@ -40,7 +40,7 @@ class Layer:
     """A layer of a stack: thickness m (of the half-space unused), density kg/m³, speed m/s of its waves, quality Q.
 
     relative : M/ρc² (k,) of a layer with a modulus of its own, from frequencies (k,) Hz, which may be complex; Q then
-    has no effect.
+    has no effect. heavier : density over the given one (k,), likewise; None: 1.
     """
 
     thickness: float
@@ -48,6 +48,7 @@ class Layer:
     speed: float
     quality: float = math.inf
     relative: Callable[[np.ndarray], np.ndarray] | None = None
+    heavier: Callable[[np.ndarray], np.ndarray] | None = None
 
     def modulus(self, omega: np.ndarray, damping: Damping, reference: float) -> np.ndarray:
         """M (k,) Pa at angular frequencies (k,) rad/s, which may be complex; reference : f₀ = ω₀/2π, Hz."""
@@ -61,6 +62,10 @@ class Layer:
         gamma = math.atan(1.0 / self.quality) / math.pi
         power: np.ndarray = (1j * omega / (2.0 * math.pi * reference)) ** (2.0 * gamma)
         return elastic * math.cos(0.5 * math.pi * gamma) ** 2 * power
+
+    def density_at(self, omega: np.ndarray) -> np.ndarray | float:
+        """Density (k,) kg/m³ at angular frequencies (k,) rad/s, which may be complex."""
+        return self.density if self.heavier is None else self.density * self.heavier(omega / (2.0 * math.pi))
 
     def relaxation(self, frequencies: np.ndarray) -> np.ndarray:
         """M over that of fast motion (k,) at frequencies (k,) Hz, of a layer with a modulus of its own; else 1."""
@@ -98,8 +103,9 @@ class Column:
         """
         omega = self._turning(frequencies)
         moduli = [layer.modulus(omega, self.damping, self.reference) for layer in self.layers]
-        impedances = [np.sqrt(layer.density * each) for layer, each in zip(self.layers, moduli, strict=True)]
-        waves = [1j * omega * layer.density / each for layer, each in zip(self.layers, impedances, strict=True)]
+        densities = [layer.density_at(omega) for layer in self.layers]
+        impedances = [np.sqrt(density * each) for density, each in zip(densities, moduli, strict=True)]
+        waves = [1j * omega * density / each for density, each in zip(densities, impedances, strict=True)]
         # returned: B/A at the top of each layer; gained: A at its bottom over A at the top of the next one
         late = 1j * omega * (self.mass or 0.0) / impedances[0]
         returned, gained = [np.zeros_like(late) if self.mass is None else (1.0 - late) / (1.0 + late)], []
@@ -129,7 +135,7 @@ class Column:
     def rising(self, frequencies: np.ndarray, depth: float) -> np.ndarray:
         """The incident wave (k,) at a depth (m) over that at the top of the half-space, continued if this is above."""
         omega, last = self._turning(frequencies), self.layers[-1]
-        turn = 1j * omega * np.sqrt(last.density / last.modulus(omega, self.damping, self.reference))
+        turn = 1j * omega * np.sqrt(last.density_at(omega) / last.modulus(omega, self.damping, self.reference))
         return np.asarray(np.exp(turn * (depth - sum(layer.thickness for layer in self.layers[:-1]))))
 
     def transfer(self, frequencies: np.ndarray, depth: float = 0.0, over: Reference = "incident") -> np.ndarray:

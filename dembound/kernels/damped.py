@@ -9,6 +9,15 @@ from numba import njit
 
 from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import CHUNKS, FAST, U
+from dembound.kernels.drag import (
+    changed_power,
+    note_velocities,
+    pull_supported,
+    share_of,
+    shares,
+    with_drag,
+    work_on_supported,
+)
 from dembound.kernels.elastic import row_force
 from dembound.kernels.elastic_lanes import gathered
 from dembound.kernels.lane_step import INLINED, blocks_of, go_on, kick, next_place, place_of, stray_forces
@@ -94,10 +103,13 @@ def _move_block(memories, i, kinds, forces, place, factors, u, v, body, u_next, 
     fy = (fy - ry) + rest_y
     moment = (moment - rt) + rest_t
     was_x, was_y, was_t = load(v[0], i), load(v[1], i), load(v[2], i)
-    now_x = kick(was_x, fx, body.free[0] * b)
-    now_y = kick(was_y, fy, body.free[1] * b)
-    now_t = kick(was_t, moment, body.free[2] * b_turn)
+    share = shares(memories.drag, i)
+    keep = share + share - 1.0
+    now_x = kick(keep * was_x, fx, body.free[0] * (share * b))
+    now_y = kick(keep * was_y, fy, body.free[1] * (share * b))
+    now_t = kick(keep * was_t, moment, body.free[2] * (share * b_turn))
     before, after = rx * was_x + ry * was_y + rt * was_t, rx * now_x + ry * now_y + rt * now_t
+    before, after = with_drag(memories.drag, i, before, after, (was_x, was_y, was_t), (now_x, now_y, now_t))
     if supported:
         held = at_most(b, 0.0)
         before, after = choose(held, 0.0, before), choose(held, 0.0, after)
@@ -190,10 +202,16 @@ def _move_table(rows, memories, u, v, body, u_next, damped):
 
 
 @njit(**FAST)
-def _work_on_supported(memories, v, nodes):
-    """Power of the forces taken from supported nodes (k,) at velocities v (3, n)."""
+def _slots_of(memories):
+    """The first slot of the memories of a part, and the one after its last."""
     first = LANES * memories.block
-    last = first + memories.memory.shape[1]
+    return first, first + memories.memory.shape[1]
+
+
+@njit(**FAST)
+def _power_on_supported(memories, v, nodes):
+    """Power of the forces taken from supported nodes (k,) at velocities v (3, n)."""
+    first, last = _slots_of(memories)
     power = 0.0
     for s in range(nodes.size):
         i = nodes[s]
@@ -243,10 +261,13 @@ def _take_crossing(memories, v, body, u_next, damped):
             c = U(each)
             r = crossing.taken[t, c]
             if body.mobility[i] > 0.0:
-                change = -r * body.free[c] * (body.inverse_inertia[i] if each == 2 else body.mobility[i])
+                mobility = body.inverse_inertia[i] if each == 2 else body.mobility[i]
+                change = -r * body.free[c] * (mobility * share_of(memories.drag, i))
                 v[c, i] += change
                 u_next[c, i] += body.step * change
-                after += r * v[c, i] + force[c, i] * change
+                earlier, later = changed_power(memories.drag, c, i, v[c, i], change)
+                before += earlier
+                after += r * v[c, i] + force[c, i] * change + later
             else:
                 u_next[c, i] -= r
                 before -= r * v[c, i]
@@ -259,19 +280,23 @@ def _take_crossing(memories, v, body, u_next, damped):
 def move(damped, u, u_next, v, body, nodes):
     """One step of all disks, see law.move."""
     memories = damped.memories
+    note_velocities(memories.drag, v, memories.crossing.target)
+    note_velocities(memories.drag, v, nodes)
     remember_crossing(memories.crossing, u, v)
     move_remembering(damped.links.rows, memories, u, v, body, u_next, damped.links.damped)
     _take_crossing(memories, v, body, u_next, damped.links.damped)
-    memories.held[0] = 0.5 * body.step * _work_on_supported(memories, v, nodes)
+    pull_supported(memories.drag, _slots_of(memories), v, u_next, nodes)
+    memories.held[0] = 0.5 * body.step * _power_on_supported(memories, v, nodes)
 
 
 @njit(**FAST)
 def finish(damped, v, body, nodes, work):
     """Add the energy taken by damping to the ledger."""
     note_damping(damped.links.damped, work)
-    half = damped.memories.held[0]
-    work[1, 1] += half
-    work[0, 1] += half + 0.5 * body.step * _work_on_supported(damped.memories, v, nodes)
+    half, memories = damped.memories.held[0], damped.memories
+    dragged, before = work_on_supported(memories.drag, _slots_of(memories), v, nodes, body.step)
+    work[1, 1] += half + before
+    work[0, 1] += half + 0.5 * body.step * _power_on_supported(memories, v, nodes) + dragged
 
 
 @njit(**FAST)

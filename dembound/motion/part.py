@@ -101,7 +101,8 @@ class System:
     Attributes
     ----------
     steady : (3, n) N and N·m, all steady forces that kernels add, or (3, 0) for none.
-    turning : the steady forces that rotate with their sides; None if there are none.
+    turning : the steady forces that rotate with their sides; None if there are none. drag : (n,) 1/s by which the laws
+    slow all nodes, over their masses, or (0,) if none do.
     work_before : J, to be added to the work of the present loads from the start on, where they have changed.
     refused : requested cheaper laws that cannot be used, each in a line with the reason.
     """
@@ -114,6 +115,7 @@ class System:
         self.steady = np.zeros((3, 0))
         self.turning: Followers | None = None
         self.work_before = 0.0
+        self.drag = np.zeros(0)
 
     @property
     def law_name(self) -> str:

@@ -83,7 +83,7 @@ class Simulation:
         self._u_next = aligned_zeros(3, layout.count)
         self._entered: Kept = {}
         self._damp = scene.damp if damp is None else damp
-        self._supports = NodeSupports(scene, self.system.ties, time_step)
+        self._supports = NodeSupports(scene, self.system.ties, time_step, self.system.drag)
         self.sides = NodeSides(scene, self._supports) if side_stride > 0 else None
         self._side_stride = side_stride
         self.side_samples = Samples.between(0, 0, side_stride, 0)

@@ -17,6 +17,8 @@ class NodeSupports:
     scene : the supported scene.
     ties : ties that act on nodes of the table.
     time_step : Δt in s.
+    drag : (n,) α, 1/s, by which laws slow all nodes, or (0,) if none do. Laws give −αm v⁻, and masses are larger by
+    ½αΔt, which is −½αm(v⁻ + v⁺) in all.
 
     Attributes
     ----------
@@ -26,7 +28,7 @@ class NodeSupports:
     twin : (k,) slots, see kernels.tables.Supports.
     """
 
-    def __init__(self, scene: Scene, ties: tuple[Tie, ...], time_step: float) -> None:
+    def __init__(self, scene: Scene, ties: tuple[Tie, ...], time_step: float, drag: np.ndarray) -> None:
         self._rows: Supports = scene.supports
         self._half_step = 0.5 * time_step
         tied = np.concatenate([np.zeros(0, dtype=np.int64), *(tie.nodes for tie in ties)])
@@ -34,6 +36,8 @@ class NodeSupports:
         self.slots = scene.layout.slot[self.nodes]
         self._at = (np.searchsorted(self.nodes, self._rows.node), self._rows.component)
         self.inertia = np.stack([scene.mass, scene.mass, scene.inertia], axis=1)[self.nodes] / time_step
+        if len(drag) > 0:
+            self.inertia *= 1.0 + 0.5 * time_step * drag[self.nodes, None]
         damping = self._spread(self._rows.damping)
         self.stiffness, self.prescribed = self._spread(self._rows.stiffness), self._spread(self._rows.prescribed)
         self.follow = self._spread(self._rows.follow)

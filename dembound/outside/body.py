@@ -7,7 +7,7 @@ import numba
 import numpy as np
 
 from dembound.boundaries.sides import SIDES
-from dembound.damping.quality import Mechanisms, factors_of
+from dembound.damping.attenuation import Attenuation, factors_of
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.grid import fill_forces
 from dembound.kernels.lanes import LANES
@@ -37,7 +37,7 @@ class GridBody:
 
     mesh: Mesh
     medium: Ground
-    mechanisms: tuple[Mechanisms | None, ...] = ()
+    mechanisms: tuple[Attenuation | None, ...] = ()
     absorption: Absorption = USUAL
     thickness: float = 1.0
     added_mass: np.ndarray | float = 0.0

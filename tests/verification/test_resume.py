@@ -96,6 +96,12 @@ CASES = {
         "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
         "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2},
     },
+    "Rayleigh damping": DISKS
+    | {
+        "material": MATERIAL | {"quality_factor": 10.0},
+        "damping": {"type": "rayleigh"},
+        "boundary": FREE_FIELD | {"bottom": INPUT},
+    },
     "damped by Q in a continuum": DISKS
     | {
         "material": MATERIAL | {"quality_factor": 10.0},
@@ -188,7 +194,7 @@ def differences(one, other) -> list[str]:
     return sorted(name for name in first.keys() | second.keys() if first.get(name) != second.get(name))
 
 
-LATE = ("settled box in the ground", "damped by Q, settled beside a free field")
+LATE = ("settled box in the ground", "damped by Q, settled beside a free field", "Rayleigh damping")
 """Cases whose loops take long to compile."""
 
 FILED = ("law changes, bonds break", "cracks that open")

@@ -41,6 +41,12 @@ SCENES = {
         "boundary": dict.fromkeys(("left", "right"), "periodic") | {"bottom": {"type": "outside", "wave_s": "pulse"}},
     },
     "damped by Q": {"size": ROWS, "boundary": ENDS, "material": {"quality_factor": 10.0}},
+    "Rayleigh damping": {
+        "size": ROWS,
+        "boundary": ENDS,
+        "material": {"quality_factor": 10.0},
+        "damping": {"type": "rayleigh"},
+    },
     "damped by Q, disk by disk, continuum below": {
         "size": (10.0, 10.0),
         "boundary": dict.fromkeys(("left", "right"), "periodic") | {"bottom": {"type": "outside", "wave_s": "pulse"}},
@@ -86,8 +92,8 @@ def scene_of(lab, name: str) -> tuple[DiskScene | GridScene, float]:
         scene = build(lab.window("B", words.pop("box"), hole=True, **words))
     else:
         wave = {"type": "cosine", "amplitude": 1.0, "period": 0.02}
-        layers = {"layer": words.pop("layer")} if "layer" in words else {}
-        scene = build(with_changes(lab.case("B", words.pop("size"), wave=wave, **words), layers))
+        more = {key: words.pop(key) for key in ("layer", "damping") if key in words}
+        scene = build(with_changes(lab.case("B", words.pop("size"), wave=wave, **words), more))
     return scene, choose_step(scene)[0]
 
 

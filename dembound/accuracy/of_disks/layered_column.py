@@ -37,7 +37,13 @@ def layers_of(
     assert isinstance(scene.ground, LayeredGround)
     zones = [(low, high, ground) for low, high, _, ground in scene.ground.layers if high > plane]
     return [
-        Layer(min(high, surface) - low, ground.density, speed, relative=(relative or _damped)(ground))
+        Layer(
+            min(high, surface) - low,
+            ground.density,
+            speed,
+            relative=(relative or _damped)(ground),
+            heavier=_dragged(ground),
+        )
         for low, high, ground in reversed(zones)
         for speed in [ground.wave_speeds(1)[0 if motion == "p" else 1]]
     ]
@@ -88,6 +94,11 @@ def errors_in_layers(
 def _damped(ground: PackedMaterial) -> Relative | None:
     """M/M₀ of damped ground; None for others."""
     return None if ground.mechanisms is None else ground.mechanisms.relative_modulus
+
+
+def _dragged(ground: PackedMaterial) -> Relative | None:
+    """ρ(ω)/ρ of ground with a drag; None for others."""
+    return None if ground.mechanisms is None or ground.mechanisms.drag == 0.0 else ground.mechanisms.relative_density
 
 
 def _relative(delay: Delay, damped: Relative | None, frequencies: np.ndarray) -> np.ndarray:

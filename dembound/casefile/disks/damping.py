@@ -1,7 +1,7 @@
 """The ``[damping]`` table."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import model_validator
 
@@ -15,9 +15,14 @@ class Damping(Table):
     """How `material.quality_factor` damps: Q is nearly constant over a band of frequencies, the same for P and S.
 
     Every disk and node remembers past forces by a few relaxation mechanisms. The stiffness of damped ground grows with
-    the frequency, so that wave speeds hold at one frequency.
+    the frequency, so that wave speeds hold at one frequency. Rayleigh damping has the given Q at two frequencies only.
     """
 
+    type: Literal["quality", "rayleigh"] = quantity(
+        "quality",
+        unit="1",
+        help='"quality": nearly constant Q; "rayleigh": drag αm and βdF/dt, with ξ = 1/(2Q) at both ends of the band',
+    )
     band: tuple[float, float] | None = quantity(
         None,
         unit="Hz",
@@ -43,6 +48,19 @@ class Damping(Table):
             )
         return self
 
+    @model_validator(mode="after")
+    def _only_of_mechanisms(self) -> "Damping":
+        if self.type == "rayleigh":
+            given = [key for key in ("frequency", "mechanisms") if key in self.model_fields_set]
+            if given:
+                raise ValueError("\n".join(f'{key}: is only allowed with type = "quality"' for key in given))
+        return self
+
+    @property
+    def memories(self) -> int:
+        """Number of memories of each force."""
+        return 2 if self.type == "rayleigh" else self.mechanisms
+
 
 def qualities(tables: Mapping[str, Any]) -> set[float | None]:
     """The quality factors of all layers, None for undamped ones; an invalid table is None."""
@@ -57,6 +75,12 @@ def is_damped(tables: Mapping[str, Any]) -> bool:
 
 
 def damping_problems(tables: Mapping[str, Any]) -> Iterator[str]:
-    """A table [damping] that changes nothing."""
+    """A table [damping] that changes nothing, or Rayleigh damping of ground that goes on as a continuum."""
     if tables["damping"].model_fields_set and not is_damped(tables):
         yield "damping: is of no use without material.quality_factor"
+    beyond = [side for side, table in tables["boundary"].items() if table and table.is_outside]
+    if tables["damping"].type == "rayleigh" and beyond:
+        yield (
+            f'damping.type: is "rayleigh", which ground beyond boundary.{beyond[0]} cannot have; take sides of type '
+            '"viscous", "viscoelastic" or "free_field", or damping.type = "quality"'
+        )

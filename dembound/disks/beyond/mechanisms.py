@@ -1,9 +1,11 @@
-"""The relaxation mechanisms of the ground of a case, over the band of its waves."""
+"""The damping of the ground of a case, over the band of its waves."""
 
 import math
 
 from dembound.casefile.disks import DiskCase
-from dembound.damping.quality import Mechanisms, fitted
+from dembound.damping.attenuation import Attenuation
+from dembound.damping.quality import fitted
+from dembound.damping.rayleigh import Rayleigh
 from dembound.disks.beyond.settings import signals_of
 from dembound.outside import sizing
 
@@ -11,12 +13,14 @@ BAND = (0.3, 10.0)
 """Lowest and highest frequency (Hz) of nearly constant Q in a case without waves that have a highest frequency."""
 
 
-def mechanisms_of(case: DiskCase, quality: float | None) -> Mechanisms | None:
-    """The mechanisms of ground of a quality factor, with the settings of the case; None without one."""
+def mechanisms_of(case: DiskCase, quality: float | None) -> Attenuation | None:
+    """The damping of ground of a quality factor, with the settings of the case; None without one."""
     if quality is None:
         return None
     keys = case.damping
     band = keys.band or band_of(case)
+    if keys.type == "rayleigh":
+        return Rayleigh.fitted(quality, band)
     frequency = keys.frequency or float(f"{math.sqrt(band[0] * band[1]):.3g}")
     return fitted(quality, band, frequency, keys.mechanisms)
 

@@ -15,7 +15,7 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
-from dembound.damping.quality import Mechanisms
+from dembound.damping.attenuation import Attenuation
 from dembound.disks.material.free_surface import cut_at, skin_depths
 from dembound.disks.material.homogenise import HomogenisedMaterial, homogenise
 from dembound.errors import CaseError
@@ -55,7 +55,7 @@ class PackedMaterial:
     law: Law
     held: tuple[int, ...] = ()
     given_speeds: tuple[float | None, float | None] = (None, None)
-    mechanisms: Mechanisms | None = None
+    mechanisms: Attenuation | None = None
     _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _continua: dict[tuple[int, ...], HomogenisedMaterial] = field(
@@ -69,7 +69,7 @@ class PackedMaterial:
         return self.law.stiffness(self.moduli, first, second, np.hypot(*self.brick.vectors.T))
 
     @property
-    def mechanisms_by_layer(self) -> tuple[Mechanisms | None, ...]:
+    def mechanisms_by_layer(self) -> tuple[Attenuation | None, ...]:
         """The mechanisms of every layer, from the surface down."""
         return tuple(each.mechanisms for each in self.materials)
 
@@ -246,7 +246,7 @@ class PackedMaterial:
 
 
 def make_packed_material(
-    brick: Brick, material: Material, held: Iterable[str], along: int = 0, mechanisms: Mechanisms | None = None
+    brick: Brick, material: Material, held: Iterable[str], along: int = 0, mechanisms: Attenuation | None = None
 ) -> PackedMaterial:
     """Combine a brick with its material; if match is "assembly", the moduli are scaled to the given wave speed.
 

@@ -13,6 +13,7 @@ from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
 from dembound.damping.quality import Mechanisms
+from dembound.damping.rayleigh import Rayleigh
 from dembound.disks.contacts.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.material.at_rest import StressAtRest
@@ -22,6 +23,7 @@ from dembound.disks.reports.materials import Own, materials_of
 from dembound.disks.reports.summary import describe_layers, describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
+from dembound.disks.stability import lag_cost
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
 BALANCED = 1e-9
@@ -205,8 +207,22 @@ def _damping_facts(scene: DiskScene) -> Entries:
     """Q over its band, the frequency at which wave speeds hold, the unrelaxed stiffness, and what the step costs."""
     names = [f" of {name}" for name in scene.case.layer_names] if scene.ground.is_layered else [""]
     for name, found in zip(names, scene.ground.mechanisms_by_layer, strict=True):
-        if found is not None:
+        if isinstance(found, Mechanisms):
             yield from _quality_facts(name, found)
+        elif isinstance(found, Rayleigh):
+            yield f"Rayleigh damping{name}", _rayleigh_fact(found)
+    if scene.case.is_damped and scene.case.damping.type == "rayleigh":
+        yield "step limit", f"{lag_cost(scene):.3g} times that without damping"
+
+
+def _rayleigh_fact(found: Rayleigh) -> str:
+    """Coefficients of Rayleigh damping, and Q over its band."""
+    (low, high), (least, most) = found.band, found.range
+    texts, unit = in_one_unit((low, high), "Hz")
+    return (
+        f"α = {found.alpha:.3g}/s, β = {with_unit(found.beta, 's')}; Q = {least:.3g} at {texts[0]} and {texts[1]} "
+        f"{unit}, up to {most:.3g} between"
+    )
 
 
 def _quality_facts(name: str, found: Mechanisms) -> Entries:

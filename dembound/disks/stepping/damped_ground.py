@@ -5,18 +5,22 @@ A contact between layers of unlike damping has the springs k₁ and k₂ of both
 is lacking, (m₂ − m₁)w₂ for a disk of layer 1, is computed apart.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
-from dembound.damping.quality import Mechanisms, factors_of
+from dembound.damping.attenuation import Attenuation, factors_of
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.layout import Rows
 from dembound.disks.contacts.rows import elastic_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.stepping.memories import DampedTies, DiskMemories
-from dembound.kernels.tables import Crossing
+from dembound.kernels.damped import remember_crossing
+from dembound.kernels.tables import Crossing, Drag, NoDrag
+from dembound.motion.layout import aligned_zeros
 
 
-def layers_of(scene: DiskBody, nodes: np.ndarray) -> tuple[list[Mechanisms | None], np.ndarray]:
+def layers_of(scene: DiskBody, nodes: np.ndarray) -> tuple[list[Attenuation | None], np.ndarray]:
     """The mechanisms of every layer of the ground, None for undamped ones, and the layer (k,) of some nodes (k,)."""
     ground = scene.ground
     return list(ground.mechanisms_by_layer), ground.layer_of(scene.positions[nodes, 1]).astype(np.uint8)
@@ -39,7 +43,50 @@ def disk_memories(
     if not any(layers):
         return None
     factors, crossing = factors_of(layers, time_step), _crossing(scene, nodes, time_step)
-    return DiskMemories(factors, layer, rows, nodes, scene.layout, supported, crossing)
+    drag = _drag(scene, nodes, supported, time_step)
+    return DiskMemories(factors, layer, rows, nodes, scene.layout, supported, crossing, drag)
+
+
+def drag_rates(scene: DiskBody) -> np.ndarray:
+    """Drag α (n,) 1/s of all nodes of a scene; (0,) if there is none."""
+    layers, layer = layers_of(scene, np.arange(scene.count))
+    rates = np.array([0.0 if each is None else each.drag for each in layers])
+    return rates[layer] if rates.any() else np.zeros(0)
+
+
+def _drag(scene: DiskBody, nodes: slice, supported: np.ndarray, time_step: float) -> Drag | NoDrag:
+    """Drag on the disks of a part; supported : (k,) slots of all supported nodes."""
+    rates, layout = drag_rates(scene)[nodes], scene.layout
+    if len(rates) == 0:
+        return NoDrag()
+    slot, share, half = layout.slot[nodes], aligned_zeros(layout.count), aligned_zeros(2, layout.count)
+    share[:] = 1.0
+    share[slot] = 1.0 / (1.0 + 0.5 * time_step * rates)
+    share[supported] = 1.0
+    half[:, slot] = 0.5 * rates * np.stack([scene.mass[nodes], scene.inertia[nodes]])
+    return Drag(share, half, np.zeros((3, layout.count)))
+
+
+def growing_by_lag(scene: DiskBody, lags: np.ndarray, time_step: float) -> Callable[[np.ndarray, np.ndarray], None]:
+    """What Rayleigh damping adds to contact forces (3, slots) of motions that change their sign in every step.
+
+    lags : β (layers,) s of all layers. Forces of the second memory only: those of the first one cancel.
+    """
+    _, layer = layers_of(scene, np.arange(scene.disk_count))
+    factor = scene.layout.spread(1.0 + 2.0 / time_step * lags[layer])
+    crossings = [_crossing(scene, nodes, time_step) for nodes in scene.parts.values()]
+    for crossing in crossings:
+        crossing.factors[:, 1, ::2] = 0.0
+        crossing.factors[crossing.target != crossing.owner] = 0.0  # forces across a seam do not act back
+
+    def grow(u: np.ndarray, force: np.ndarray) -> None:
+        force *= factor
+        for crossing in crossings:
+            crossing.memory[...] = 0.0
+            remember_crossing(crossing, u, u)
+            np.subtract.at(force.T, crossing.target, crossing.taken)
+
+    return grow
 
 
 def _crossing(scene: DiskBody, nodes: slice, time_step: float) -> Crossing:

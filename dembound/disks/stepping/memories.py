@@ -5,7 +5,7 @@ import numpy as np
 from dembound.disks.contacts.layout import Rows
 from dembound.kernels.damped import remember_crossing
 from dembound.kernels.lanes import LANES
-from dembound.kernels.tables import Crossing, LaneRows, Memories, TieMemories
+from dembound.kernels.tables import Crossing, Drag, LaneRows, Memories, NoDrag, TieMemories
 from dembound.motion.layout import Layout, aligned_zeros
 from dembound.motion.part import Tie
 from dembound.motion.state import Arrays
@@ -18,7 +18,7 @@ class DiskMemories:
     ----------
     factors : (layers, 2, K) see `factors_of`. layer : (m,) number of the layer of each disk. rows : their contacts.
     nodes : their range among the scene's nodes. layout : the slots of these. supported : (k,) ascending slots of all
-    supported nodes. crossing : memories of contacts between layers.
+    supported nodes. crossing : memories of contacts between layers. drag : on the disks.
     """
 
     def __init__(
@@ -30,6 +30,7 @@ class DiskMemories:
         layout: Layout,
         supported: np.ndarray,
         crossing: Crossing,
+        drag: Drag | NoDrag,
     ) -> None:
         slot = layout.slot[nodes]
         block = int(slot.min()) // LANES
@@ -46,7 +47,8 @@ class DiskMemories:
         self._slot = slot - LANES * block
         memory = aligned_zeros(3 * factors.shape[2], LANES * (end - block))
         force = aligned_zeros(3, layout.count)
-        self.arrays = Memories(block, layers, special, factors, memory, np.zeros((3, 0)), force, np.zeros(1), crossing)
+        rest, held = np.zeros((3, 0)), np.zeros(1)
+        self.arrays = Memories(block, layers, special, factors, memory, rest, force, held, crossing, drag)
 
     def rest_at(self, u: np.ndarray, force: np.ndarray) -> None:
         """Remember only differences from contact forces (3, slots) at rest, at displacements u (3, slots)."""

@@ -8,6 +8,7 @@ from dembound.disks.body import DiskBody
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.balance import Balance
 from dembound.disks.stepping.continuum_ties import grids, walls
+from dembound.disks.stepping.damped_ground import drag_rates
 from dembound.disks.stepping.disk_parts import DiskParts
 from dembound.disks.stepping.fields import RecordedDisks
 from dembound.disks.stepping.first_law import balanced, first_law, not_balanced
@@ -59,6 +60,8 @@ class DiskSystem(RecordedDisks):
             ties,
             scene.steady_load if load is None else load,
         )
+        if not settling:
+            self.drag = drag_rates(scene)
         self.forces = RestForces(scene, disks)
         self.balance: Balance | None = None
         self.is_elastic_again = False

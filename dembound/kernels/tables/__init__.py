@@ -2,7 +2,7 @@
 
 from dembound.kernels.tables.bar_layers import BarLayers
 from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
-from dembound.kernels.tables.damping import Crossing, DampedGrid, DampedLinks, Memories, TieMemories
+from dembound.kernels.tables.damping import Crossing, DampedGrid, DampedLinks, Drag, Memories, NoDrag, TieMemories
 from dembound.kernels.tables.grid import ALONG, Absorber, Blocks, Elements, Grid, Shape
 from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
 from dembound.kernels.tables.motion import Body, Followers, Log, Supports
@@ -25,6 +25,7 @@ __all__ = [
     "Crossing",
     "DampedGrid",
     "DampedLinks",
+    "Drag",
     "Elements",
     "Followers",
     "Grid",
@@ -35,6 +36,7 @@ __all__ = [
     "Log",
     "Memories",
     "NeighbourTable",
+    "NoDrag",
     "PairRows",
     "Repeats",
     "Seam",

@@ -30,6 +30,22 @@ class Crossing(NamedTuple):
     power: np.ndarray
 
 
+class NoDrag(NamedTuple):
+    """No drag on the disks of a part."""
+
+
+class Drag(NamedTuple):
+    """Drag αm on the disks of a part, of the mean of the velocities before and after a step.
+
+    share : (slots,) 1/(1 + αΔt/2), 1 for supported disks. half : (2, slots) ½αm N·s/m and ½αI N·m·s. before :
+    (3, slots) work space, velocities before the step of supported disks and of those with contacts between layers.
+    """
+
+    share: np.ndarray
+    half: np.ndarray
+    before: np.ndarray
+
+
 class Memories(NamedTuple):
     """Memories of the contact forces of a part, in blocks of eight slots from number `block` on.
 
@@ -37,7 +53,7 @@ class Memories(NamedTuple):
     uint8 of the scene, 1 for blocks with supported disks or contacts between layers, 2 more for those with disks of
     several layers. memory : (3K, n) N and N·m, component by component. rest : (3, slots) contact forces at rest, which
     nothing remembers, or (3, 0) for none. force (3, slots), held (1,) : work space. crossing : of contacts between
-    layers.
+    layers. drag : NoDrag, or Drag, which is not remembered.
     """
 
     block: int
@@ -49,6 +65,7 @@ class Memories(NamedTuple):
     force: np.ndarray
     held: np.ndarray
     crossing: Crossing
+    drag: NoDrag | Drag
 
 
 class DampedLinks(NamedTuple):
