@@ -36,8 +36,8 @@ acceleration = [1, 0]\nposition = [1, 1]\nregion = [0, 0, 1, 1] | .region: is no
 force = [1, 0]\nregion = [1, 0, 1, 5] | .region: must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1
 force = [1.0]\nposition = [1, 1] | .force: is [1.0], must be a list of 2 values, each a number (N/m)
 pressure = 1e6\nforce = [1, 0]\nhole = "h" | .pressure: is not allowed together with force
-pressure = 1e6 | .hole: is missing; a pressure needs the name of a hole
-pressure = 1e6\nhole = "h"\nposition = [1, 1] | .position: is not allowed together with pressure; give hole
+pressure = 1e6 | .hole: is missing; a pressure needs the name of a hole, or sides
+pressure = 1e6\nhole = "h"\nposition = [1, 1] | .position: is not allowed together with pressure; give hole or sides
 pressure = 0\nhole = "h" | .pressure: is zero, must not be
 force = [1, 0]\nposition = [1, 1]\nhole = "h" | .hole: is for a pressure
 force = [1, 0]\nposition = [1, 1]\non = "bonds" | .on: is for a pressure
