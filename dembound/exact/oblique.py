@@ -46,11 +46,6 @@ class Bed:
         factors: np.ndarray = np.exp(-2j * math.pi * np.outer(frequencies, self.thickness * np.abs(self.slowness)))
         return factors
 
-    @property
-    def first(self) -> float:
-        """Time (s) of the faster waves through it."""
-        return self.thickness * float(self.slowness[:2].min())
-
 
 def amplitudes(
     beds: Sequence[Bed], incident: np.ndarray, frequencies: np.ndarray, mass: float | None = 0.0
@@ -106,17 +101,13 @@ class ObliqueMotion:
         """Times (s) from the incident wave at the top of the half-space to the first motion of the planes above it,
         ascending: from the surface down those of the upper ends of all layers."""
         for bed in beds[-2::-1]:
-            self.ends.insert(0, self.ends[0] + bed.first)
+            self.ends.insert(0, self.ends[0] + bed.thickness * float(bed.slowness[:2].min()))
         self._beds, self._incident, self._mass = beds, incident, mass
         self._histories = Histories(velocity, begin, until)
 
     def largest(self, layer: int) -> np.ndarray:
         """Largest amplitudes (4,) of the waves of a layer."""
         return np.asarray(np.abs(self._amplitudes()[layer]).max(axis=0))
-
-    def history(self, layer: int, wave: int) -> "History":
-        """The history of one of the four waves of a layer."""
-        return History(self, layer, wave)
 
     def at(self, of: Literal["displacement", "velocity"], layer: int, wave: int, times: np.ndarray) -> np.ndarray:
         """The history of a wave at times (any shape) s after the first motion of the plane at which it begins.
@@ -138,13 +129,12 @@ class ObliqueMotion:
 
         return self._histories.kept((layer, wave, derivatives), find)
 
-    def _amplitudes(self) -> list[np.ndarray]:
-        """The amplitudes (k, 4) of all layers in the window."""
-        found = self._histories.kept(
-            "amplitudes",
-            lambda: np.array(amplitudes(self._beds, self._incident, self._histories.window.frequencies, self._mass)),
+    def _amplitudes(self) -> np.ndarray:
+        """The amplitudes (l, k, 4) of all layers in the window."""
+        frequencies = self._histories.window.frequencies
+        return self._histories.kept(
+            "amplitudes", lambda: np.array(amplitudes(self._beds, self._incident, frequencies, self._mass))
         )
-        return list(found)
 
 
 @dataclass(frozen=True)

@@ -277,16 +277,15 @@ def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -
         layers = [zone.material for zone in reversed(ground.layers)]
     if table is None or (len(layers) == 1 and (table.angle != 0.0 or ground.mechanisms is None)):
         return ground_waves(case, ground, outside)
-    found: LayeredWaves | ObliqueLayers
+    found: LayeredWaves | ObliqueLayers | None
     wave, grain, media = case.wave[table.wave], ground.brick.mean_diameter, [homogeneous(each) for each in layers]
     if table.angle != 0.0:
-        incident, until = incident_in(case, media[-1]), case.run.duration
-        last = until - float(incident.delays(outside.body.mesh.positions).min())
-        span = wave.begin(), max(last, until)
-        oblique = oblique_in_layers(media, case.joints, outside.free_surface, incident, wave, span, grain)
-        if oblique is None:
+        incident = incident_in(case, media[-1])
+        early = min(float(incident.delays(outside.body.mesh.positions).min()), 0.0)
+        span = wave.begin(), case.run.duration - early
+        found = oblique_in_layers(media, case.joints, outside.free_surface, incident, wave, span, grain)
+        if found is None:
             raise CaseError([_beyond(case, media)])
-        found = oblique
     else:
         found = rising_in_layers(
             media,

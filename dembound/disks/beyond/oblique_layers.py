@@ -5,15 +5,16 @@ Their histories follow from the P and SV waves of all layers (exact/oblique.py).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from dembound.boundaries.support import Incident
 from dembound.disks.beyond.ground_waves import GroundWaves, NearPlaces, layer_at
-from dembound.exact.oblique import Bed, ObliqueMotion
+from dembound.exact.oblique import Bed, History, ObliqueMotion
 from dembound.outside.medium import Medium
 from dembound.outside.plane_waves import NO_WAVE, ElasticPlaneWave, traction_of, waves_with
 
@@ -95,9 +96,7 @@ class NearObliqueLayers:
 
     def velocities(self, behind: float) -> np.ndarray:
         """Matrix (count, count) 1/s from the amplitudes to the velocities, `behind` (s) earlier."""
-        found = np.zeros((self.count, self.count))
-        for layer, columns in self._columns.items():
-            found[columns, columns] = self.layers[layer].velocities(behind)
+        found: np.ndarray = block_diag(*(near.velocities(behind) for near in self.layers.values()))
         return found
 
     def strained(self, places: np.ndarray, values: np.ndarray, heights: np.ndarray | None = None) -> np.ndarray:
@@ -105,23 +104,17 @@ class NearObliqueLayers:
 
         heights : (d,) m in the layers whose gradients these are, by default the places', which may be across a joint.
         """
-        return self._joined(places, values, places[:, 1] if heights is None else heights, NearPlaces.strained)
+        return self._joined("strained", places, values, places[:, 1] if heights is None else heights)
 
     def motion(self, places: np.ndarray, corrector: np.ndarray) -> np.ndarray:
         """Motion (3, d, count) of disks at places (d, 2) m with correctors (3, 4, d), per unit of amplitudes."""
-        return self._joined(places, corrector, places[:, 1], NearPlaces.motion)
+        return self._joined("motion", places, corrector, places[:, 1])
 
-    def _joined(
-        self,
-        places: np.ndarray,
-        values: np.ndarray,
-        heights: np.ndarray,
-        of: Callable[[NearPlaces, np.ndarray, np.ndarray], np.ndarray],
-    ) -> np.ndarray:
+    def _joined(self, of: str, places: np.ndarray, values: np.ndarray, heights: np.ndarray) -> np.ndarray:
         """Each layer's part (3, d, count) at places (d, 2) m with values (3, 4, d) and heights (d,) m in the layers."""
         found = np.zeros((3, len(places), self.count))
         for layer, own in self.ground.parts(heights):
-            found[:, own, self._columns[layer]] = of(self.layers[layer], places[own], values[:, :, own])
+            found[:, own, self._columns[layer]] = getattr(self.layers[layer], of)(places[own], values[:, :, own])
         return found
 
     @property
@@ -129,6 +122,13 @@ class NearObliqueLayers:
         """The amplitudes of each layer."""
         ends = np.cumsum([0, *(near.count for near in self.layers.values())]).tolist()
         return {layer: slice(*each) for layer, each in zip(self.layers, pairwise(ends), strict=True)}
+
+
+def bed_of(medium: Medium, waves: Sequence[ElasticPlaneWave], thickness: float) -> Bed:
+    """A layer of a medium with its four plane waves of unit amplitude; thickness : m."""
+    motion = np.array([wave.motion for wave in waves]).T
+    traction = np.array([traction_of(medium, *wave.slowness) @ wave.motion for wave in waves]).T
+    return Bed(thickness, np.array([wave.slowness[1] for wave in waves]), motion, traction)
 
 
 def oblique_in_layers(
@@ -153,15 +153,8 @@ def oblique_in_layers(
     each = [[*up[::-1], *down[::-1]] for up, down in filter(None, found)]
     if len(each) < len(media):
         return None
-    beds = [
-        Bed(
-            thickness,
-            np.array([wave.slowness[1] for wave in waves]),
-            np.array([wave.motion for wave in waves]).T,
-            np.array([traction_of(medium, *wave.slowness) @ wave.motion for wave in waves]).T,
-        )
-        for medium, waves, thickness in zip(media, each, [*(-np.diff(ends)).tolist(), 0.0], strict=True)
-    ]
+    thick = [*(-np.diff(ends)).tolist(), 0.0]
+    beds = [bed_of(*own) for own in zip(media, each, thick, strict=True)]
     rising = np.linalg.solve(beds[-1].motion[:, :2], incident.motion)
     begin = incident.delay + incident.slowness[1] * ends[-1]  # at x = 0, where the wave enters the layers
     moving = ObliqueMotion(beds, rising, mass, signal.velocity, *span)
@@ -174,6 +167,6 @@ def oblique_in_layers(
             if moving.largest(number)[wave] > NO_WAVE:
                 plane = number + (wave < 2)
                 late = begin + moving.ends[plane] - waves[wave].slowness[1] * ends[plane]
-                own.append((waves[wave].shifted(late), moving.history(number, wave)))
+                own.append((waves[wave].shifted(late), History(moving, number, wave)))
         layers.append(GroundWaves(medium, tuple(wave for wave, _ in own), tuple(signal for _, signal in own), grain))
     return ObliqueLayers(tuple(layers), tuple(joints))

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from ground_motions import GENERAL
 
+from dembound.disks.beyond.oblique_layers import bed_of
 from dembound.exact.column import Column, Layer
 from dembound.exact.oblique import Bed, amplitudes
 from dembound.outside.medium import Medium
-from dembound.outside.plane_waves import incident_wave, reflected_waves, traction_of, waves_with
+from dembound.outside.plane_waves import incident_wave, reflected_waves, waves_with
 
 FREQUENCIES = np.array([0.3, 1.7, 4.1, 9.0])
 MEDIA = (Medium.isotropic(1800.0, 400.0, 200.0), GENERAL, Medium.isotropic(2300.0, 1400.0, 700.0))
@@ -15,10 +16,7 @@ THICKNESSES = (30.0, 40.0, 1.0)
 
 
 def bed(medium: Medium, sx: float, thickness: float) -> Bed:
-    waves = [wave for way in waves_with(medium, sx) for wave in way]
-    motion = np.array([wave.motion for wave in waves]).T
-    traction = np.array([traction_of(medium, *wave.slowness) @ wave.motion for wave in waves]).T
-    return Bed(thickness, np.array([wave.slowness[1] for wave in waves]), motion, traction)
+    return bed_of(medium, [wave for way in waves_with(medium, sx) for wave in way], thickness)
 
 
 def flux(each: Bed, amplitude: np.ndarray) -> np.ndarray:

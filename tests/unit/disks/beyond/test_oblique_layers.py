@@ -80,10 +80,3 @@ def test_motion_does_not_jump_at_a_joint_and_late_times_continue_it() -> None:
     above, below = (waves.motion("velocity", times, np.array([(3.0, y)]))[:, 0, :2] for y in (12.0, rock))
     assert np.abs(above).max() > 0.3
     np.testing.assert_allclose(above, below, atol=1e-4)
-
-
-def test_beyond_the_critical_angle_of_a_layer_there_is_no_such_motion() -> None:
-    """S waves at 25° in soft rock, below a stiff layer in which P waves then run flat."""
-    stiff = Medium.isotropic(2300.0, 1400.0, 700.0)
-    assert layers([SOFT, stiff, SOFT], [20.0, 8.0], angle=-10.0) is not None
-    assert layers([SOFT, stiff, SOFT], [20.0, 8.0], angle=-11.0) is None
