@@ -113,6 +113,8 @@ class _Reader:
     def read(self, data: Mapping[str, Any]) -> dict[str, Any]:
         """The fields of a case, None for invalid ones; collects all problems."""
         schema = self.schema
+        data, lacking = schema.completed(data)
+        self.problems += lacking
         tables = {"title": self._valid("title", data.get("title", ""), TITLE)}
         for key, kind in schema.tables.items():
             tables[key] = self._valid(key, data.get(key, {}), kind)

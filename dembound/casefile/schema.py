@@ -31,6 +31,7 @@ class Schema:
     lists : those that may occur any number of times.
     problems : finds mistakes between tables, from the tables and the file's data. optional : those that may be absent.
     staged : those that may be absent and have their own sides: the table, and the type of its boundary.SIDE.
+    completed : the tables of a file with keys that follow from other tables, and what these lack for that.
     """
 
     case: type[Case]
@@ -44,6 +45,7 @@ class Schema:
     sides: tuple[str, ...] = SIDES
     optional: Mapping[str, TypeAdapter[Any]] = field(default_factory=dict)
     staged: Mapping[str, tuple[TypeAdapter[Any], TypeAdapter[Any]]] = field(default_factory=dict)
+    completed: Callable[[Tables], tuple[Tables, list[str]]] = lambda data: (data, [])
 
     @property
     def keys(self) -> list[str]:

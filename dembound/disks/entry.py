@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import NamedTuple
 
@@ -23,6 +23,7 @@ import numpy as np
 
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import FREE
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.material.homogenise import Network
 from dembound.disks.reflection.bricks import end_scene
@@ -125,8 +126,11 @@ def side_ends(scene: DiskScene, side: str) -> dict[Motion, tuple[float, float]]:
 
 
 def mass_begins(scene: DiskScene, side: str) -> float:
-    """Depth m (m) of a side."""
-    return _Strip.of(scene.case, side).mass_begins
+    """Depth m (m) of a side; of one of type "outside" that of the free surface in which its ground ends."""
+    case = scene.case
+    if case.side(side).is_outside:
+        case = replace(case, boundary={**case.boundary, side: FREE})
+    return _Strip.of(case, side).mass_begins
 
 
 def depths_held(scene: DiskScene, side: str) -> dict[Motion, float]:

@@ -12,7 +12,7 @@ from dembound.boundaries.support import Edge
 from dembound.disks.beyond.cut_bonds import CutBonds
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.forces import PIECE, Piece
-from dembound.disks.material.at_rest import gradients_of_stresses
+from dembound.disks.material.at_rest import StressAtRest, gradients_of_stresses, rest_forces
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.packings.cut import CutContacts, cut_contacts
@@ -79,11 +79,24 @@ def forces_at_rest(scene: DiskBody) -> np.ndarray:
         for number in np.unique(layer):
             own = layer == number
             ground = scene.ground.at(float(heights[own][0]))
-            per_stress = _per_stress(ground, CutBonds.of(ground, ends.only(own), body.positions))
-            each[:, own] = part[own] * np.einsum("cts,st->ct", per_stress, at_rest.at(heights[own]))
+            bonds = CutBonds.of(ground, ends.only(own), body.positions)
+            each[:, own] = part[own] * _at_rest(ground, at_rest, ends.only(own), bonds, heights[own])
         for component in range(3):
             np.add.at(force[component], nodes.start + ends.node, each[component])
     return force
+
+
+def _at_rest(
+    ground: PackedMaterial, at_rest: StressAtRest, ends: CutContacts, bonds: CutBonds, heights: np.ndarray
+) -> np.ndarray:
+    """Forces and moments (3, e) of contact ends at heights (e,) m on their disks, in ground of one material."""
+    if not at_rest.slides:
+        pulled: np.ndarray = np.einsum("cts,st->ct", _per_stress(ground, bonds), at_rest.at(heights))
+        return pulled
+    pull, shear, bending, _ = rest_forces(ground, at_rest, ends.contact_type, heights)
+    bending = np.where(ends.is_second, -bending, bending)
+    (nx, ny), arm = bonds.normal, bonds.arm
+    return np.stack([pull * nx - shear * ny, pull * ny + shear * nx, bending + arm * shear])
 
 
 def _among(edge: Edge, nodes: slice) -> Edge:
@@ -116,8 +129,13 @@ def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:
     (first, second), zero = brick.pairs.T.astype(np.int64), np.zeros(whole, dtype=np.int64)
     none = np.zeros((whole, 2), dtype=np.int64)
     each = CutContacts(zero, np.arange(whole), zero > 0, second, none, none, zero)
-    per_stress, as_built = _through(scene, body, each)
-    force = (per_stress @ stress + as_built)[:2]
+    if scene.at_rest is not None and scene.at_rest.slides:
+        ground = scene.ground.at(float(body.positions[0, 1]))
+        bonds = CutBonds.of(ground, each, body.positions)
+        force = _at_rest(ground, scene.at_rest, each, bonds, np.full(whole, body.positions[0, 1]))[:2]
+    else:
+        per_stress, as_built = _through(scene, body, each)
+        force = (per_stress @ stress + as_built)[:2]
     force = np.concatenate([force, 0.5 * force], axis=1)  # of half cells
     vectors = np.concatenate([brick.vectors, brick.vectors])
     for begin in range(0, len(body.pairs), PIECE):

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from dembound.errors import CaseError
@@ -44,16 +45,23 @@ FEWEST = 16
 FAINT: dict[str, Any] = {"linewidth": 0.5, "alpha": 0.3, "zorder": 1.8}
 """Line style of spectra that are not smoothed."""
 
+NOT_SMOOTHED = ", not smoothed"
+"""End of the names of lines that are not smoothed."""
+
 LEGEND_OF_FAINT: dict[str, Any] = {"linewidth": 0.5, "color": REFERENCE, "label": "thin: not smoothed"}
 """Line in the legend for the unsmoothed spectra of all runs."""
 
 
 class Curve(NamedTuple):
-    """A line: places (k,) along the axis, and values (k,); faint : values before smoothing, or None."""
+    """A line: places (k,) along the axis, and values (k,); faint : places and values before smoothing, or None.
+
+    is_listed : whether these are in tables too, with their crest named in the picture, as smoothing lowers it.
+    """
 
     along: np.ndarray
     values: np.ndarray
     faint: tuple[np.ndarray, np.ndarray] | None = None
+    is_listed: bool = False
 
 
 CurveOf = Callable[[Histories, str, int], Curve | None]
@@ -111,7 +119,8 @@ def plot_transfer(
 ) -> Figure:
     """Amplitudes of transfer functions to the monitors, a panel each, from another monitor or their free-field twins.
 
-    They are blank at frequencies at which the input has no energy (`Transfer`).
+    Smoothed ones, over thin unsmoothed ones, whose crests are named. They are blank at frequencies at which the input
+    has no energy (`Transfer`).
 
     Parameters
     ----------
@@ -137,7 +146,7 @@ def plot_transfer(
             return None
         output, given = run[name], run[source]
         found = transfer_function(output.values[:, column], given.values[:, column], _time_step(name, output))
-        return Curve(found.centre, found.amplitude, (found.frequency, np.abs(found.ratio)))
+        return Curve(found.centre, found.amplitude, (found.frequency[1:], np.abs(found.ratio[1:])), is_listed=True)
 
     below = "their free-field twins" if reference is None else reference
     return _figure(
@@ -202,7 +211,7 @@ def _figure(
         for row, name in zip(panels, shown, strict=True):
             for panel, column in zip(row, columns, strict=True):
                 _draw(panel, curve, run, name, column, run_name, line_style(index))
-    if any(line.get_gid() is None for panel in panels.flat for line in panel.lines):
+    if any(_is_faint(line) for panel in panels.flat for line in panel.lines):
         panels.flat[-1].plot([], [], **LEGEND_OF_FAINT)
     on_logarithmic_axes(panels)
     for row, name in zip(panels, shown, strict=True):
@@ -231,21 +240,43 @@ def _draw(
 
 def draw_curve(panel: Axes, line: Curve, name: str, label: str, style: dict[str, Any]) -> None:
     """Draw a smoothed spectrum over a thin one that is not; the line has the name, and the label in a legend."""
-    if line.faint is not None:
-        panel.plot(*line.faint, color=style["color"], **FAINT)
     panel.plot(line.along, line.values, label=label, gid=name, **style)
+    if line.faint is not None:
+        (faint,) = panel.plot(*line.faint, color=style["color"], **FAINT)
+        if line.is_listed:
+            faint.set(gid=f"{name}{NOT_SMOOTHED}", label=f"_{label}")
+            _name_crest(panel, *line.faint)
+
+
+def _name_crest(panel: Axes, along: np.ndarray, values: np.ndarray) -> None:
+    """Name the largest of some values, and where it is."""
+    if (shown := along[np.isfinite(values)]).size > 0:
+        at = int(np.nanargmax(values))
+        words = f"{values[at]:.3g} at {along[at]:.3g} Hz{NOT_SMOOTHED}"
+        right = np.log(along[at] / shown[0]) > 0.5 * np.log(shown[-1] / shown[0])
+        panel.annotate(
+            words, (along[at], values[at]), xytext=(-4 if right else 4, 0), textcoords="offset points", fontsize=7,
+            ha="right" if right else "left", va="center", color=REFERENCE,
+        )  # fmt: skip
+
+
+def _is_faint(line: Line2D) -> bool:
+    """Whether a line is of values before smoothing."""
+    return line.get_gid() is None or str(line.get_gid()).endswith(NOT_SMOOTHED)
 
 
 def on_logarithmic_axes(panels: np.ndarray) -> None:
     """Make all axes logarithmic, from the lowest to the highest value of named lines, or down to `DECADES` of it.
 
-    Raises CaseError if all lines are zero or blank.
+    Lines that are not smoothed count for the highest value alone. Raises CaseError if all lines are zero or blank.
     """
-    lines = [line.get_ydata() for panel in panels.flat for line in panel.lines if line.get_gid()]
-    values = np.concatenate([np.zeros(0), *lines])
+    lines = [line for panel in panels.flat for line in panel.lines if line.get_gid()]
+    values = np.concatenate([np.zeros(0), *(line.get_ydata() for line in lines if not _is_faint(line))])
     values = values[values > 0.0]  # False for nan
     if len(values) == 0:
         raise CaseError(["RESULTS: nothing moves at these monitors, or the input has no energy: there is no spectrum"])
+    crests = [np.nanmax(each, initial=0.0) for line in lines if len(each := np.asarray(line.get_ydata())) > 0]
+    values = np.append(values, max(crests))
     for panel in panels.flat:
         panel.set_xscale("log")
         panel.set_yscale("log")

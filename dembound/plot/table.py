@@ -64,13 +64,15 @@ def _of(line: Line2D, lines: Sequence[Line2D]) -> str:
     if len(lines) == 1:
         return ""
     is_only_one = [each.get_label() for each in lines].count(line.get_label()) == 1
+    is_only_one &= not str(line.get_label()).startswith("_")
     return f" of {line.get_label()}" if is_only_one else f" of {', '.join(filter(None, _name_and_run(line)))}"
 
 
 def _name_and_run(line: Line2D) -> tuple[str, str]:
     """A line's name, and its run: empty for matplotlib's label for none, or the name again."""
     name, label = str(line.get_gid()), str(line.get_label())
-    return name, "" if label.startswith(("_", name)) else label
+    label = "" if label.startswith("_child") else label.removeprefix("_")  # "_" keeps it out of legends
+    return name, "" if label.startswith(name) else label
 
 
 def _lines(figure: Figure) -> Iterator[tuple[Axes, Line2D]]:

@@ -29,16 +29,19 @@ class Snapshots(Tracker):
     ----------
     recorder : writes the file.
     number : of snapshots in `steps`, evenly spaced, the last one at the end; a longer run continues at this spacing.
-    steps : of the run as it was begun.
+    steps : of the run as it was begun. at_rest : whether a static stage precedes it, whose state is written first, at
+    step 0, besides these.
     """
 
     name = "snapshots"
 
-    def __init__(self, recorder: Recorder, number: int, steps: int) -> None:
+    def __init__(self, recorder: Recorder, number: int, steps: int, *, at_rest: bool = False) -> None:
         self.recorder = recorder
         self._number, self._steps = min(number, steps), steps
         self._last = -1
         self._after(-1)
+        if at_rest and number > 0:
+            self.due = 0
 
     def _after(self, step: int) -> None:
         """Set the first step after this one: the first k·steps/number, rounded down, above it."""

@@ -32,6 +32,7 @@ def results_bytes(planned: Plan) -> dict[str, float]:
     row = len(scene.monitors) * (MOTION + 8 * (scene.record_width > 6))
     entry = 8 * (len(fields(Entry)) + len(SideEntry._fields) * len(scene.edges))
     snapshots = min(case.output.snapshots, planned.regular_steps) * planned.steps / planned.regular_steps
+    snapshots += bool(snapshots and kind.stage_names(scene))
     copies = 2 if case.run.checkpoint > 0.0 else 0
     settled = len(kind.stage_names(scene)) if copies and kind.stages_from(case) is None else 0
     return {

@@ -203,7 +203,8 @@ class _Job:
                 if planned.regular_steps != steps:
                     recorder.note({"regular_steps": planned.regular_steps})
                 checkpoints = self._checkpoints(planned, partial, None, recorder)
-                snapshots = Snapshots(recorder, case.output.snapshots, planned.regular_steps)
+                at_rest = bool(beginning.stages)
+                snapshots = Snapshots(recorder, case.output.snapshots, planned.regular_steps, at_rest=at_rest)
                 simulation.track(Histories(recorder), ledger, snapshots, Reports(self.progress, steps))
                 simulation.track(*planned.kind.trackers(simulation), checkpoints)
                 if found is not None and counts is not None:

@@ -7,6 +7,7 @@ beyond the sides. Under weight with K0 they are scaled by height, which leaves e
 import numpy as np
 import pytest
 
+from dembound.disks.reports.load_warnings import load_warnings
 from dembound.disks.rest.settled import Settled
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
@@ -58,6 +59,30 @@ def test_a_stress_is_there_from_the_start(lab, name: str, law: str) -> None:
     assert found.uniformity.deviation < 1e-12
     np.testing.assert_allclose(found.stress, STRESS, rtol=1e-12)
     assert speed(lab, scene, found) < 1e-9
+
+
+@pytest.mark.parametrize("name", SIDES)
+@pytest.mark.parametrize("geometry", ["updated", "reference"])
+def test_contacts_that_slide_under_a_stress_begin_with_what_they_bear(lab, name: str, geometry: str) -> None:
+    """Random disks, of whose contacts half slide: the stress is that of their endless packing, and nothing moves."""
+    material = STRONG | {"fric": 0.3, "geometry": geometry}
+    scene = ground(lab, "B", silent(name), material, hole=name == "continuum", static={"stress": [-5e6, -9e6, 2e6]})
+    found = settle(scene)
+    whole = found.before or found
+    assert np.abs(whole.start.displacement).max() < 1e-15
+    assert whole.uniformity.beyond < 1e-12
+    slip = whole.start.contacts["body"].of("slip")
+    assert 0.3 < np.count_nonzero(slip) / len(slip) < 0.6
+    assert speed(lab, scene, found) < 1e-9
+
+
+def test_friction_alone_may_not_bear_a_stress(lab) -> None:
+    """A lattice without bonds bears shear up to its friction."""
+    for shear, borne in ((0.2e6, True), (0.4e6, False)):
+        material = {"law": "linearpbond", "fric": 0.3, "contact_share": 1.0}
+        scene = ground(lab, "A", silent("wrapped"), material, static={"stress": [-1e6, -1e6, shear]})
+        assert scene.at_rest.is_borne == borne
+        assert [line for line in load_warnings(scene) if line.startswith("static.stress")] == [] or not borne
 
 
 @pytest.mark.parametrize("name", ["column", "continuum"])

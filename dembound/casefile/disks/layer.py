@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError, model_validator
 
 from dembound.casefile.disks.material import MODULI_KEYS, STIFFNESS_KEYS, WAVE_SPEED_KEYS, Material
-from dembound.casefile.messages import numbered, show
+from dembound.casefile.messages import numbered, places, show
 from dembound.packings import Packing
 from dembound.packings.base import TYPED
 from dembound.table import Box, FileName, Table, quantity
@@ -29,7 +29,8 @@ class Layer(Table):
     """A horizontal layer of the ground, from the surface down in the order of the file.
 
     A key that is absent is as in [material], which gives all that has no key here. Of `p_wave_speed`, `s_wave_speed`,
-    `emod` and `pb_emod` a layer that gives one takes none from [material].
+    `emod` and `pb_emod` a layer that gives one takes none from [material], which needs none, nor a density, if every
+    layer has its own.
     """
 
     name: FileName | None = quantity(None, unit="1", help="name in results; absent: its number, from 1 at the surface")
@@ -77,6 +78,29 @@ class Layer(Table):
         if not own.keys().isdisjoint(MODULI_KEYS):
             gone |= {*WAVE_SPEED_KEYS}
         return Material(**{key: value for key, value in material.given().items() if key not in gone} | own)
+
+
+def completed_by_layers(tables: Mapping[str, Any]) -> tuple[Mapping[str, Any], list[str]]:
+    """The tables of a file, in which [material] need not give a density or stiffness that every layer gives.
+
+    [material] then has those of the lowest layer, which no layer takes from it. Returns also a line for each layer that
+    lacks what neither gives.
+    """
+    layers, material = tables.get("layer"), tables.get("material", {})
+    if not isinstance(layers, list) or not isinstance(material, Mapping):
+        return tables, []
+    own = [layer if isinstance(layer, Mapping) else {} for layer in layers]
+    added, lacking = dict[str, Any](), list[str]()
+    for keys, words in ((("density",), ""), (STIFFNESS_KEYS, "; give it p_wave_speed, s_wave_speed or moduli")):
+        giving = [{key: layer[key] for key in keys if key in layer} for layer in own]
+        if any(giving) and not any(key in material for key in keys):
+            added |= next(given for given in reversed(giving) if given)
+            lacking += [
+                f"{place}.{keys[0]}: is missing in the layer and in [material]{words}"
+                for place, given in zip(places("layer", layers), giving, strict=True)
+                if not given
+            ]
+    return {**tables, "material": {**material, **added}}, lacking
 
 
 def bottoms(layers: Sequence[Layer], surface: float) -> list[float]:

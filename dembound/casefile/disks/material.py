@@ -32,7 +32,9 @@ class Material(Table):
     are for these laws and for `output.load_factor`.
     """
 
-    density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
+    density: float = quantity(
+        ..., unit="kg/m³", help="bulk density: mass over scene area; absent: every [[layer]] has its own", gt=0.0
+    )
     p_wave_speed: float | None = quantity(
         None, unit="m/s", means="wave speed", help="P-wave speed from which the moduli follow", gt=0.0
     )

@@ -46,8 +46,8 @@ def not_level(side: str, table: Boundary, tables: Mapping[str, Any]) -> Iterator
     sides = tables["boundary"]
     if side != "bottom":
         yield f"its side to be the bottom, not {side}"
-    elif not (top := sides.get("top") or Free()).is_free or top.is_artificial:
-        yield "a free surface at the top"
+    elif not (top := sides.get("top") or Free()).is_outside and (not top.is_free or top.is_artificial):
+        yield "a free surface at the top"  # of the ground, where disks end below it
     if table.dashpots_alone() != table:
         yield f"boundary.{side} without springs"
     if tables["hole"]:

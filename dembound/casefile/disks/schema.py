@@ -6,7 +6,7 @@ from dembound.casefile.chart import Chart
 from dembound.casefile.disks.damping import Damping
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
-from dembound.casefile.disks.layer import Layer
+from dembound.casefile.disks.layer import Layer, completed_by_layers
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.model import DiskCase
@@ -50,4 +50,5 @@ SCHEMA = Schema(
         "monitor": TypeAdapter(Monitor),
     },
     problems=problems_between,
+    completed=completed_by_layers,
 )

@@ -123,7 +123,8 @@ def plain_contacts(
 
     slot : (n,) in which kernels hold the assembly's particles. at_rest : stress that they begin with; None: none.
     """
-    constants, kind = stressed(ground, brick_constants(ground, gaps_close=False, locked_in=0.0), assembly, at_rest)
+    plain = brick_constants(ground, gaps_close=False, locked_in=0.0)
+    constants, kind, _ = stressed(ground, plain, assembly, at_rest)
     first, second = slot[assembly.pairs.T].astype(np.uint32, order="C")
     nothing = np.zeros(0)
     return Contacts(

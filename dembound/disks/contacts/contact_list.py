@@ -94,14 +94,15 @@ class ContactList(PairList):
         constants = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
         if layers is not None:
             constants = np.column_stack([constants, *self.limits[:4]])
-        self.bonds, self.kind = stressed(ground, constants, assembly, at_rest)
+        self.bonds, self.kind, self._begun_slip = stressed(ground, constants, assembly, at_rest)
         first, second = assembly.pairs.T.astype(np.int64)
         pairs = Pairs(first, second, self.images(first, second, self.bonds[self.kind, :2]), self.kind)
         bonded = bonds_of(self.bonds, self.kind)
         zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
         self.own_types = len(self.bonds)
         self._constants = self.bonds
-        self._list(pairs, ContactHistory(bonded, zero, zero, none, np.full(len(first), -1)))
+        slip = self._begun_slip[self.kind]
+        self._list(pairs, ContactHistory(bonded, zero, slip, none, np.full(len(first), -1)))
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         self.arms = np.zeros(self.layout.count)
         self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
@@ -117,8 +118,15 @@ class ContactList(PairList):
             self._list(pairs, ContactHistory(*(self.of(name) for name in _HISTORY)))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
-        """Set the pairs to the state of the elastic law at displacements (3, n), with zero slip or the kept slip."""
+        """Set the pairs to the state of the elastic law at displacements (3, n).
+
+        Their slip is that under the stress at rest, or the kept one.
+        """
         kernel.start_from_displacements(self.spread(displacement), self.arrays, self.keeps_slip)
+        if self._begun_slip.any() and not self.keeps_slip:
+            kind, slip = self.arrays.contact_type, self.arrays.slip
+            own = np.flatnonzero((kind < self.own_types) & (slip == 0.0))  # others are open
+            slip[own] = self._begun_slip[kind[own]]
 
     def use_elastic_law_with(self, slip: np.ndarray) -> None:
         """Keep a slip (places of `arrays`), see `elastic_again.settled_slip`, under the elastic law."""

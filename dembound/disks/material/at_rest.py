@@ -3,12 +3,13 @@
 In an endless packing under a uniform stress every copy of a contact has the same force, known from the homogenisation.
 Contacts that begin with these forces, scaled by the stress at their height, are at rest in a body, in its free-field
 column and across the sides of both, without any displacement: a stress that no displacement could reach, as a column
-that is periodic sideways cannot be strained along x.
+that is periodic sideways cannot be strained along x. Under a history-dependent law contacts that would exceed their
+friction or be pulled begin with what they bear, and with the slip that belongs to it (sliding.py).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from dembound.casefile.disks.load import gravity
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.sliding import springs_of, strains_of, strains_with_slip, within_friction
 from dembound.packings.tiling import Assembly
 
 
@@ -28,13 +30,18 @@ class StressAtRest:
     ----------
     uniform : (3,) xx, yy, xy in Pa, tension positive, at all heights.
     tops : (l,) m, the upper ends of layers from the surface down. growth : (l,) Pa/m, by which σ_yy grows per metre of
-    depth in each, negative under weight; k0 : (l,) the stress along x over that along y due to weight.
+    depth in each, negative under weight; k0 : (l,) the stress along x over that along y due to weight. low : m, height
+    down to which there are contacts.
+    slides : whether contacts slide or open under it. is_borne : whether the packing can bear it so.
     """
 
     uniform: np.ndarray
     tops: np.ndarray
     growth: np.ndarray
     k0: np.ndarray
+    low: float
+    slides: bool = False
+    is_borne: bool = True
 
     @property
     def is_uniform(self) -> bool:
@@ -46,9 +53,20 @@ class StressAtRest:
         thick = np.append(-np.diff(self.tops), np.inf)
         within = np.clip(self.tops[:, None] - heights, 0.0, thick[:, None])
         vertical = self.growth @ within
-        ratio = self.k0[np.maximum(np.searchsorted(-self.tops, -heights, side="right") - 1, 0)]
+        ratio = self.k0[self.layer_of(heights)]
         stress: np.ndarray = self.uniform[:, None] + np.stack([ratio * vertical, vertical, np.zeros_like(vertical)])
         return stress
+
+    def layer_of(self, heights: np.ndarray) -> np.ndarray:
+        """Number of the layer, from the surface, at heights (k,) m; the first above the surface."""
+        return np.maximum(np.searchsorted(-self.tops, -heights, side="right") - 1, 0)
+
+    def ends(self, layer: int) -> tuple[np.ndarray, np.ndarray]:
+        """The upper and the lower end (2,) m of a layer, and the stresses (2, 3) Pa in it there."""
+        bottom = self.tops[layer + 1] if layer + 1 < len(self.tops) else min(self.low, self.tops[layer] - 1.0)
+        heights = np.array([self.tops[layer], bottom])
+        vertical = self.at(heights)[1] - self.uniform[1]
+        return heights, self.uniform + np.outer(vertical, [self.k0[layer], 1.0, 0.0])
 
 
 def stress_at_rest(case: DiskCase, ground: PackedMaterial) -> StressAtRest | None:
@@ -67,12 +85,28 @@ def stress_at_rest(case: DiskCase, ground: PackedMaterial) -> StressAtRest | Non
         each = zip(ground.layers, own, strict=True)
         layers = [(zone.high, zone.material.density, static.k0 if k0 is None else k0) for zone, k0 in each][::-1]
     tops, densities, ratios = zip(*layers, strict=True)
-    return StressAtRest(
+    at_rest = StressAtRest(
         uniform=np.array(static.stress or (0.0, 0.0, 0.0)),
         tops=np.minimum(tops, surface),
         growth=down * np.array(densities),
         k0=np.array([ratio or 0.0 for ratio in ratios]),
+        low=case.box[3] - case.column_rows[1] * float(ground.brick.size[1]),
     )
+    return _with_sliding(ground, at_rest) if ground.law.has_history else at_rest
+
+
+def _with_sliding(ground: PackedMaterial, at_rest: StressAtRest) -> StressAtRest:
+    """A stress at rest, with whether contacts slide under it, and whether the packing bears it."""
+    zones = (
+        [(each.material, each.layer) for each in ground.zones] if isinstance(ground, LayeredGround) else [(ground, 0)]
+    )
+    under = [(material, stress) for material, layer in zones for stress in at_rest.ends(layer)[1]]
+    if all(
+        within_friction(each.contact_constants, each.moduli.fric, pair_forces(each) @ stress) for each, stress in under
+    ):
+        return at_rest
+    is_borne = all(each.sliding_forces(stress) is not None for each, stress in under)
+    return replace(at_rest, slides=is_borne, is_borne=is_borne)
 
 
 def gradients_of_stresses(tensor: np.ndarray) -> np.ndarray:
@@ -93,16 +127,41 @@ def pair_forces(ground: PackedMaterial) -> np.ndarray:
     return forces.reshape(3, -1, 3)
 
 
+def rest_forces(ground: PackedMaterial, at_rest: StressAtRest, kind: np.ndarray, heights: np.ndarray) -> np.ndarray:
+    """Normal, shear and bending forces of the brick's contacts with their bonds, and shear forces of contacts, (4, k).
+
+    Where some slide: of types (k,) at heights (k,) m in ground of one material. Within a layer forces change with
+    height as the stress does, so they stay in balance and within friction.
+    """
+    found, layer = np.empty((4, len(kind))), at_rest.layer_of(heights)
+    for number in np.unique(layer).tolist():
+        own = layer == number
+        (top, bottom), stresses = at_rest.ends(number)
+        one, other = (_sliding(ground, stress)[:, kind[own]] for stress in stresses)
+        found[:, own] = one + np.clip((top - heights[own]) / (top - bottom), 0.0, None) * (other - one)
+    return found
+
+
+def _sliding(ground: PackedMaterial, stress: np.ndarray) -> np.ndarray:
+    """Forces (4, b) under a stress, see `rest_forces`: beside a joint the elastic ones if friction cannot bear it."""
+    found = ground.sliding_forces(stress)
+    if found is not None:
+        return found
+    contacts, bonds = springs_of(ground.contact_constants)
+    forces = pair_forces(ground) @ stress
+    return np.vstack([forces, contacts[1] * strains_of(forces, contacts + bonds)[1]])
+
+
 def stressed(
     ground: PackedMaterial, constants: np.ndarray, assembly: Assembly, at_rest: StressAtRest | None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Constants of contacts that begin under a stress at rest, and the row of each contact (b,) of an assembly.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Constants of contacts that begin under a stress at rest, the row of each contact (b,), and the slip of each row.
 
     constants : (2b, 15) of the brick's contacts, of each pairing of zones in a layered ground. Where the stress depends
-    on height, each row of bricks has its own.
+    on height, each row of bricks has its own. Slip in m.
     """
     if at_rest is None:
-        return constants, assembly.contact_type
+        return constants, assembly.contact_type, np.zeros(len(constants))
     brick = ground.brick
     middle = brick.positions[brick.pairs[:, 0], 1] + 0.5 * brick.vectors[:, 1]
     kind, types = assembly.contact_type.astype(np.int64), 2 * len(middle)
@@ -110,20 +169,21 @@ def stressed(
     base = assembly.positions[first, 1] - brick.positions[assembly.brick_particle[first], 1]
     row = np.zeros(len(kind), np.int64) if at_rest.is_uniform else row.reshape(-1)[assembly.pairs[:, 0]]
     used, variant = np.unique(row * len(ground.pairings) + kind // types, return_inverse=True)
-    by_zone = [pair_forces(each.material) for each in ground.zones] if isinstance(ground, LayeredGround) else []
-    found = np.empty((len(used), types, constants.shape[1]))
-    for own, (number, pairing) in zip(found, zip(*np.divmod(used, len(ground.pairings)), strict=True), strict=True):
+    zones = [each.material for each in ground.zones] if isinstance(ground, LayeredGround) else [ground]
+    linear = [] if at_rest.slides else [pair_forces(each) for each in zones]
+    found, slips = np.empty((len(used), types, constants.shape[1])), np.zeros((len(used), 2, len(middle)))
+    for own, slip, (number, pairing) in zip(
+        found, slips, zip(*np.divmod(used, len(ground.pairings)), strict=True), strict=True
+    ):
         own[:] = constants[pairing * types : (pairing + 1) * types]
-        between = [by_zone[zone] for zone in ground.pairings[pairing]] if by_zone else [pair_forces(ground)]
-        forces = np.einsum("kbs,sb->bk", np.mean(between, axis=0), at_rest.at(base[number] + middle))
-        springs = _springs(own[: len(middle)])
-        strains = np.divide(forces, springs, out=np.zeros_like(forces), where=springs > 0.0)
-        own[:, 12:15] = np.concatenate([strains, strains])
-    return found.reshape(-1, constants.shape[1]), kind % types + types * variant.reshape(-1)
-
-
-def _springs(constants: np.ndarray) -> np.ndarray:
-    """Stiffnesses (b, 3) of contact and bond together against stretch, shear and rotation."""
-    closed = constants[:, 3] >= constants[:, 2]
-    normal, shear = (np.where(closed, constants[:, k], 0.0) + constants[:, k + 2] for k in (5, 6))
-    return np.column_stack([normal, shear, constants[:, 9]])
+        heights, between = base[number] + middle, ground.pairings[pairing]
+        contacts, bonds = springs_of(own[: len(middle)])
+        if at_rest.slides:
+            every = np.arange(len(middle))
+            forces = np.mean([rest_forces(zones[zone], at_rest, every, heights) for zone in between], axis=0)
+            strains, slip[:] = strains_with_slip(forces, contacts, bonds)
+        else:
+            forces = np.einsum("kbs,sb->bk", np.mean([linear[zone] for zone in between], axis=0), at_rest.at(heights))
+            strains = strains_of(forces.T, contacts + bonds)
+        own[:, 12:15] = np.concatenate([strains.T, strains.T])
+    return found.reshape(-1, constants.shape[1]), kind % types + types * variant.reshape(-1), slips.reshape(-1)

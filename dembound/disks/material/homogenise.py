@@ -101,7 +101,7 @@ class Network(NamedTuple):
         from scipy.sparse.linalg import splu
 
         motion = np.zeros((3 * self.disks, elongations.shape[1]))
-        free = _free_columns(self.disks, held)
+        free = free_columns(self.disks, held)
         if len(free) == 0:
             return motion
         k = diags(self.springs)
@@ -150,7 +150,7 @@ def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> Hom
     return HomogenisedMaterial(tensor, corrector)
 
 
-def _free_columns(count: int, held: tuple[int, ...]) -> np.ndarray:
+def free_columns(count: int, held: tuple[int, ...]) -> np.ndarray:
     """Unknowns of the periodic problem: no held components, and one disk fixed against rigid motion."""
     free = np.ones((3, count), dtype=bool)
     free[list(held)] = False

@@ -17,7 +17,8 @@ from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
 from dembound.damping.attenuation import Attenuation
 from dembound.disks.material.free_surface import cut_at, skin_depths
-from dembound.disks.material.homogenise import HomogenisedMaterial, homogenise
+from dembound.disks.material.homogenise import HomogenisedMaterial, Network, homogenise
+from dembound.disks.material.sliding import sliding_forces
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
@@ -29,6 +30,9 @@ LARGEST_OVERLAP = 0.1
 
 NO_STIFFNESS = 1e-9
 """Stiffness over the largest one below which no wave runs: rounding in homogenisation leaves some 1e-13."""
+
+DIGITS = 12
+"""Digits of a stress over its largest component by which the forces under it are kept."""
 
 AXES = {"x": 0, "y": 1, "rotation": 2}
 
@@ -58,6 +62,9 @@ class PackedMaterial:
     mechanisms: Attenuation | None = None
     _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _resting: dict[tuple[float, ...], np.ndarray | None] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
     _continua: dict[tuple[int, ...], HomogenisedMaterial] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
@@ -67,6 +74,12 @@ class PackedMaterial:
         """Constants of the brick's contacts."""
         first, second = self.brick.radii[self.brick.pairs].T
         return self.law.stiffness(self.moduli, first, second, np.hypot(*self.brick.vectors.T))
+
+    @cached_property
+    def contact_constants(self) -> np.ndarray:
+        """Constants (b, 15) of the brick's contacts as built, see `pair_constants`."""
+        first, second = self.brick.radii[self.brick.pairs].T
+        return self.pair_constants((first, second), self.brick.vectors, gaps_close=False)
 
     @property
     def mechanisms_by_layer(self) -> tuple[Attenuation | None, ...]:
@@ -224,6 +237,18 @@ class PackedMaterial:
         if held not in self._continua:
             self._continua[held] = homogenise(self.brick, self.stiffness, held)
         return self._continua[held]
+
+    def sliding_forces(self, stress: np.ndarray) -> np.ndarray | None:
+        """Forces (4, b) of the brick's contacts under a stress (3,) Pa at which some slide, see `sliding_forces`."""
+        largest = float(np.abs(stress).max())
+        way = tuple((stress / largest).round(DIGITS).tolist()) if largest > 0.0 else (0.0, 0.0, 0.0)
+        if way not in self._resting:
+            brick, held = self.brick, tuple(component for component in self.held if component == 2)
+            network, area = Network.of_brick(brick, self.stiffness), float(np.prod(brick.size))
+            found = sliding_forces(network, self.contact_constants, self.moduli.fric, np.array(way), held, area)
+            self._resting[way] = found
+        kept = self._resting[way]
+        return None if kept is None else largest * kept
 
     def wave_speeds(self, axis: int) -> tuple[float, float]:
         """c_p and c_s (m/s) of plane waves along x (axis 0) or y (1) in the scene, held motions included.

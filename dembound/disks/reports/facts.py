@@ -141,17 +141,26 @@ def _layer_facts(scene: DiskScene, layers: Sequence[Mapping[str, Any]]) -> Entri
     """
     used = waves_used(scene.case)
     highest = max((wave.highest_frequency() for name, wave in scene.case.wave.items() if name in used), default=0.0)
-    diameter = scene.ground.brick.mean_diameter
+    diameter, bottom = scene.ground.brick.mean_diameter, scene.case.side("bottom")
+    goes_on = bottom.is_outside or (bool(bottom.factors) and getattr(bottom, "rock", None) is None)
     for layer, below in zip(layers, [*layers[1:], None], strict=True):
         speeds = {"c_p": layer["p_wave_speed"], "c_s": layer["s_wave_speed"]}
         runs = [speed for speed in speeds.values() if speed is not None]
-        parts = [f"y = {layer['top']:.6g} to {layer['bottom']:.6g} m", with_unit(layer["density"], "kg/m³")]
+        parts = [_heights_of(layer, below is None and goes_on), with_unit(layer["density"], "kg/m³")]
         parts += [f"{sign} = {with_unit(speed, 'm/s')}" for sign, speed in speeds.items() if speed is not None]
         if runs and 0.0 < highest < math.inf:
             parts.append(f"{_particles_per(min(runs) / highest / diameter)} wavelength at {with_unit(highest, 'Hz')}")
         yield f"layer {layer['name']}", ", ".join(parts)
         if below is not None:
             yield f"joint {layer['name']}/{below['name']}", _joint_fact(layer)
+
+
+def _heights_of(layer: Mapping[str, Any], goes_on: bool) -> str:
+    """The heights of a layer, and whether it goes on below."""
+    top, bottom = layer["top"], layer["bottom"]
+    if goes_on and bottom >= top:
+        return f"below y = {top:.6g} m"
+    return f"y = {top:.6g} to {bottom:.6g} m{' and on below' if goes_on else ''}"
 
 
 def _joint_fact(layer: Mapping[str, Any]) -> str:

@@ -21,6 +21,7 @@ def load_warnings(scene: DiskScene) -> Iterator[str]:
     """Warnings about loads, one line each."""
     yield from _twice(scene.case.load)
     yield from _hung(scene)
+    yield from _not_borne(scene)
     for load in scene.case.load:
         if load.force is None:
             continue
@@ -51,6 +52,17 @@ def _hung(scene: DiskScene) -> Iterator[str]:
                 f"the static stage, and static.boundary.{held} holds it: it hangs, all in tension; give "
                 f"static.boundary.{towards} where it is to rest on it"
             )
+
+
+def _not_borne(scene: DiskScene) -> Iterator[str]:
+    """A warning about a stress at rest that contacts cannot bear by friction."""
+    if scene.at_rest is not None and not scene.at_rest.is_borne:
+        key = "static.stress" if scene.case.static is not None and scene.case.static.k0 is None else "static.k0"
+        yield (
+            f"{key}: contacts and bonds of the packing cannot bear the stress at rest without sliding further and "
+            "further; the static stage loses a part of it, or does not end: give more friction (fric), bonds, or a "
+            "smaller difference of the principal stresses"
+        )
 
 
 def _at_side(scene: DiskScene, load: Load, edge: Edge, forces: np.ndarray, on_side: np.ndarray) -> Iterator[str]:

@@ -106,13 +106,16 @@ def describe_packing(scene: DiskScene) -> dict[str, Any]:
 def describe_layers(scene: DiskScene) -> list[dict[str, Any]]:
     """The layers from the surface down: heights (m), density, moduli (Pa), and speeds along y (m/s, null where held).
 
+    The lowest ends with the ground's box, or where it begins if that is below.
+
     `joint` : of the joint below, null without one: the effective heights of mass, and of stiffness for P and S waves,
     before they are corrected, in m above the plane; null where the layers do not differ.
     """
     ground, case = scene.ground, scene.case
     if not isinstance(ground, LayeredGround):
         return []
-    heights, joints = (case.box[3], *case.joints, case.box[1]), [*reversed(ground.joints), None]
+    heights = (case.box[3], *case.joints, min(case.box[1], case.joints[-1]))
+    joints = [*reversed(ground.joints), None]
     found = []
     for number, (name, material, joint) in enumerate(zip(case.layer_names, ground.materials, joints, strict=True)):
         p_speed, s_speed = (None if np.isnan(speed) else speed for speed in material.wave_speeds(1))

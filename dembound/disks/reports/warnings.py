@@ -67,6 +67,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_empty_holes(scene),
         *_holes_at_periodic_sides(scene),
         *_holes_between_forces(scene),
+        *_excavated_stiffly(scene),
         *_of_each_layer(scene, _unlike_strengths),
         *_steady_without_static(scene),
         *_of_each_layer(scene, _locked_in),
@@ -150,6 +151,17 @@ def _holes_between_forces(scene: DiskScene) -> Iterator[str]:
                 f'about {percent(more)} too far; take "outside" sides, a larger body, or hold left and right in '
                 "[static.boundary]"
             )
+
+
+def _excavated_stiffly(scene: DiskScene) -> Iterator[str]:
+    """Holes excavated from damped ground, whose springs are stiffer than its wave speeds say."""
+    stiffer = max((each.unrelaxed for each in scene.ground.mechanisms_by_layer if each is not None), default=1.0)
+    if scene.before is not None and stiffer > 1.0:
+        yield (
+            f"static: holes are excavated from damped ground with its unrelaxed stiffness, {stiffer:.4g} times that of "
+            f"the wave speeds, so that it moves {percent(1.0 - 1.0 / stiffer)} less; for its settlement settle the "
+            "ground without quality_factor"
+        )
 
 
 def _steady_without_static(scene: DiskScene) -> Iterator[str]:

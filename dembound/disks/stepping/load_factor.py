@@ -89,7 +89,7 @@ class LoadFactor(Every):
             plain = np.column_stack([plain, *limits[:4]])
         self._pairs = []
         for part in system.disks.parts:
-            constants, kind = stressed(scene.ground, plain, part.assembly, scene.at_rest)
+            constants, kind, _ = stressed(scene.ground, plain, part.assembly, scene.at_rest)
             pairs = part.pairs._replace(
                 constants=np.ascontiguousarray(constants[:, :12]),
                 began=began_of(constants),

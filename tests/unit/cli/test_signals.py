@@ -4,7 +4,7 @@
 def test_a_picture_and_its_table_are_written(dembound, small_run, spalled_run, tmp_path):
     for options, head in (
         (("--show", "fourier", "--quantity", "acceleration", "--component", "both"), "frequency (Hz),"),
-        (("--show", "transfer", "--reference", "front"), "frequency (Hz),"),
+        (("--show", "transfer", "--reference", "front"), "frequency (Hz) of small,"),
         (("--show", "response", "--component", "x"), "period (s),"),
         (("--show", "section"), "time (ms),"),
         (("--show", "hodograph", "--monitor", "front"), "velocity along x (m/s),"),

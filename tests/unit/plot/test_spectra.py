@@ -66,7 +66,7 @@ def test_fourier_spectra_are_those_of_the_histories(known_run):
 def test_both_components_are_named_beside_their_panels_and_in_the_table(known_run, draw, what):
     figure = draw([known_run], "both", monitors=["back"])
     assert [panel.get_ylabel() for panel in figure.axes] == ["along x", "along y"]
-    heads = [head for head, _ in columns_of(figure) if head.startswith("back, ")]
+    heads = [head for head, _ in columns_of(figure) if head.startswith("back, small")]
     assert heads == [f"back, small: {what}, along {axis}" for axis in "xy"]
 
 
@@ -75,6 +75,9 @@ def test_transfer_functions_are_ratios_to_a_monitor_or_a_twin(known_run):
     values = lines_of(panel)["back"].get_ydata()
     assert np.isnan(values).any()
     np.testing.assert_allclose(values[~np.isnan(values)], 0.5, rtol=1e-6)
+    assert panel.texts[0].get_text().startswith("0.5 at ")
+    heads = [head.split(": ")[0] for head, _ in columns_of(panel.figure) if head.startswith("back, ")]
+    assert heads == ["back, small", "back, not smoothed, small"]
     (panel,) = plot_transfer([known_run], component="y").axes  # to the twin, as it has one
     values = lines_of(panel)["back"].get_ydata()
     np.testing.assert_allclose(values[~np.isnan(values)], 2.0, rtol=1e-6)

@@ -74,6 +74,19 @@ def test_each_mistake_has_one_line_at_its_place(old: str, new: str, line: str) -
     assert found.startswith(line)
 
 
+def test_the_material_needs_nothing_that_every_layer_gives() -> None:
+    bare = BODY.replace("density = 2500.0\n", "").replace("p_wave_speed = 1000.0\n", "")
+    full = SOIL.replace("density = 2000.0\n", "").replace("kratio = 2.0", "p_wave_speed = 800.0")
+    full = full.replace("[[layer]]", "[[layer]]\ndensity = 1900.0")
+    assert [each.density for each in loads(bare + full).materials] == [1900.0] * 3
+    assert problems_of(bare + full.replace("p_wave_speed = 800.0", "")) == [
+        "layer[2].p_wave_speed: is missing in the layer and in [material]; give it p_wave_speed, s_wave_speed or moduli"
+    ]
+    assert problems_of(bare + full.replace("density = 1900.0\n", "", 1)) == [
+        "layer[1, clay].density: is missing in the layer and in [material]"
+    ]
+
+
 def test_what_layers_do_not_go_with_is_refused() -> None:
     sides = "".join(f'[boundary.{side}]\ntype = "periodic"\n' for side in ("bottom", "top"))
     (line,) = problems_of(BODY + SOIL + sides)

@@ -62,6 +62,9 @@ def test_each_layer_has_its_heights_speeds_and_disks_in_a_wavelength() -> None:
     assert 10.0 < float(above) < 30.0
     assert describe_layers(scene)[0]["joint"]["s"] == pytest.approx(1e-3 * float(above), rel=0.01)
     assert [layer["bottom"] for layer in describe_layers(scene)] == [-5.0, -11.0, -20.0]
+    assert facts["layer rock"].startswith("y = -11 to -20 m and on below, ")
+    above = build(soil(boundary__bottom={"type": "fixed"}, wave={}))
+    assert dict(disk_facts(above))["layer rock"].startswith("y = -11 to -20 m, ")
 
 
 def test_waves_start_in_the_lowest_layer_and_are_as_fast_as_in_the_fastest() -> None:
