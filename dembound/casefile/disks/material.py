@@ -4,6 +4,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
+from dembound.casefile.disks.scatter import Scatter
 from dembound.casefile.types import LAWS, LawName
 from dembound.table import Table, quantity
 
@@ -13,6 +14,9 @@ STIFFNESS_KEYS = ("p_wave_speed", "s_wave_speed", *MODULI_KEYS)
 """Keys from which the moduli follow."""
 
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
+BOND_KEYS = (*STRENGTH_KEYS, "pb_fa", "pb_scatter")
+"""Keys of the strengths of bonds, for history-dependent laws and load factors only."""
+
 HISTORY_KEYS = ("locked_in", "geometry", "elastic_start")
 """Keys for history-dependent laws only."""
 
@@ -28,8 +32,8 @@ class Material(Table):
     A `p_wave_speed` is made stiffness by Z eqs 9-11; an `s_wave_speed` alone scales it so that S waves have that speed.
     With the law "elastic" contacts neither open nor slip, and bonds do not break. "linearpbond" is PFC's: linear
     contacts without tension and with Coulomb friction, and parallel bonds that break for good. Only history-dependent
-    laws have `locked_in` (which needs a static stage), `geometry` and `elastic_start`; `pb_ten`, `pb_coh` and `pb_fa`
-    are for these laws and for `output.load_factor`.
+    laws have `locked_in` (which needs a static stage), `geometry` and `elastic_start`; `pb_ten`, `pb_coh`, `pb_fa` and
+    `pb_scatter` are for these laws and for `output.load_factor`.
     """
 
     density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
@@ -104,6 +108,11 @@ class Material(Table):
     )
     pb_fa: float = quantity(
         0.0, unit="degrees", means="friction angle", help="friction angle of the bonds; needs pb_coh", ge=0.0, lt=90.0
+    )
+    pb_scatter: Scatter | None = quantity(
+        None,
+        unit="1",
+        help="scatter of both strengths from bond to bond, a table; absent: none",
     )
     locked_in: float | None = quantity(
         None,
@@ -186,6 +195,8 @@ class Material(Table):
         problems = []
         if "pb_fa" in self.model_fields_set and self.pb_coh is None:
             problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
+        if self.pb_scatter is not None and self.pb_ten is None and self.pb_coh is None:
+            problems.append("pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh")
         no_bonds = "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
         if no_bonds:
             given = [key for key in STRENGTH_KEYS if getattr(self, key) is not None]

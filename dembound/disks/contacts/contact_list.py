@@ -14,6 +14,7 @@ from dembound.disks.contacts.row_plan import RowPlan
 from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import brick_constants, limits_of, shared_constants
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.scatter import BondFactors
 from dembound.kernels import contacts as kernel
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS
@@ -56,6 +57,7 @@ class ContactList(PairList):
     layers : in layered ground the limits of each type of contact in columns, see `limits_between`, and the friction
         (m,) of each particle, for those that meet later.
     at_rest : the stress with which contacts begin; None: without forces.
+    factors : of the strengths of bonds; None: without scatter.
 
     Attributes
     ----------
@@ -63,7 +65,6 @@ class ContactList(PairList):
 
     limits : strengths and friction; in layered ground columns of the rows of constants.
     kind : (b,) types of the contacts as built, rows of `bonds`.
-    own_types : number of the types of the brick's contacts, which come before those of near pairs.
     skin : m, gap up to which the list is complete.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
@@ -81,9 +82,10 @@ class ContactList(PairList):
         plan: tuple[RowPlan, int] | None = None,
         layers: tuple[Limits, np.ndarray] | None = None,
         at_rest: StressAtRest | None = None,
+        factors: BondFactors | None = None,
     ) -> None:
         super().__init__(assembly, periods, begin, layout)
-        self.ground = ground
+        self.ground, self.factors = ground, factors
         self.limits = limits_of(material) if layers is None else layers[0]
         self._friction = None if layers is None else layers[1]
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure

@@ -184,6 +184,8 @@ def _strength_facts(own: Own) -> Entries:
         )
         pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
         bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
+        if material.pb_scatter is not None:
+            bonds += f", each times a factor of its own, {material.pb_scatter.in_words}"
     yield f"strength{name}", f"{bonds}; contacts slip at {material.fric:g} of their normal force"
     if ground.moduli.emod > 0.0:
         yield (

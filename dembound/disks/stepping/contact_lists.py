@@ -7,6 +7,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
 from dembound.disks.material.constants import ground_limits
 from dembound.disks.material.layered import LayeredGround
+from dembound.disks.material.scatter import bond_factors
 from dembound.kernels.tables import LaneRows, Limits
 from dembound.packings.tiling import Assembly
 
@@ -36,6 +37,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         _row_plan(scene, name, part),
         _layers(scene, part),
         scene.at_rest,
+        bond_factors(scene.case, scene.ground, part, alike=name == "column"),
     )
 
 
