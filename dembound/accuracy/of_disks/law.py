@@ -135,7 +135,7 @@ def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
 
 def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
     """Whether the law is history-dependent, with limits that are known for disks of other sizes."""
-    if not LAWS[case.material.law].has_history or not case.material.elastic_start:
+    if not LAWS[case.material.law].has_history or not case.material.begins_elastic:
         return False
     if case.material.pb_scatter is not None:
         return False

@@ -3,6 +3,7 @@
 import numpy as np
 
 from dembound.disks.contacts.arrays import ContactHistory, Pairs, in_places
+from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.neighbours import cells_of, pair_keys
 from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.material.scatter import BondFactors
@@ -33,12 +34,16 @@ class PairList:
     cells : of the particles there.
     bonds : (p, 15) constants of the contacts of the brick; (p, 19) with the limits of each, see `ContactList.limits`.
     own_types : number of the types of the brick's contacts, which come before those of near pairs. factors : of the
-    strengths of bonds; None: without scatter.
+    strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none. With dashpots, viscosity
+    (places, 2) and drag (places, 2), see `kernels.tables.Dashed`.
     """
 
     limits: Limits
     own_types: int
     factors: BondFactors | None
+    dashpots: Dashpots | None
+    viscosity: np.ndarray
+    drag: np.ndarray
     bonds: np.ndarray
     _constants: np.ndarray
 
@@ -114,6 +119,9 @@ class PairList:
         self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image
         if self.factors is not None:
             self.limits = self.limits._replace(factor=self._factors(self.factors))
+        if self.dashpots is not None:
+            self.viscosity = self.dashpots.at(self.arrays)
+            self.drag = placed.drag if len(placed.drag) > 0 else np.zeros_like(self.viscosity)
         if self._plan is not None:
             assert placed.strays is not None
             self.rows, self.strays = self._plan.rows(placed.in_rows, self.bonds), placed.strays

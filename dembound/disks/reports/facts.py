@@ -22,6 +22,7 @@ from dembound.disks.reports.materials import Own, materials_of
 from dembound.disks.reports.summary import describe_layers, describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
+from dembound.disks.stability import dashpot_share
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
 BALANCED = 1e-9
@@ -88,7 +89,7 @@ def _monitor_facts(scene: DiskScene) -> Entries:
 def _tension_facts(scene: DiskScene) -> Entries:
     """Waves that would open contacts, for a run in which the law then changes."""
     law = scene.case.material.law
-    if scene.has_history and scene.case.material.elastic_start:
+    if scene.has_history and scene.case.material.begins_elastic:
         for name, stress in strong_waves(scene).items():
             yield f"stress of {name}", f"ρcv = {stress}; in tension contacts open, and the law changes to {law}"
 
@@ -162,14 +163,17 @@ def _joint_fact(layer: Mapping[str, Any]) -> str:
 
 
 def _law_facts(scene: DiskScene) -> Entries:
-    """The law, and the limits of contacts and bonds."""
+    """The law, dashpots with what they cost, and the limits of contacts and bonds."""
     material = scene.case.material
     if not scene.has_history:
         linear = "" if scene.ground.law.is_linear else "not linear; "
         yield "law", f"{material.law}: {linear}contacts neither open nor slip, bonds do not break"
         return
-    start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
+    start = ", elastic until a contact opens, slips or closes or a bond yields" if material.begins_elastic else ""
     yield "law", f"{material.law}{start}"
+    if material.has_dashpots:
+        ratios = f"{material.dp_nratio:g} normal, {material.dp_sratio:g} shear of the critical damping of two disks"
+        yield "dashpots", f"{ratios}, at closed contacts; the step is {dashpot_share(scene):.2f} times as long"
     for own in materials_of(scene):
         yield from _strength_facts(own)
 

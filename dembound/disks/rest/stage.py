@@ -113,7 +113,7 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     static, start = scene.case.static, starting()
     assert static is not None
     body = StaticScene(scene, static)
-    step = SAFETY * step_limit(body.scene, damp=static.damp)
+    step = SAFETY * step_limit(body.scene, damp=static.damp, dashpots=False)
     none = np.zeros((3, body.scene.count))
     datum = none
     if start is not None:

@@ -4,6 +4,7 @@ import numpy as np
 
 from dembound.disks.body import DiskBody, differs_by_level
 from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
 from dembound.disks.material.constants import ground_limits
 from dembound.disks.material.layered import LayeredGround
@@ -38,6 +39,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         _layers(scene, part),
         scene.at_rest,
         bond_factors(scene.case, scene.ground, part, alike=name == "column"),
+        Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
     )
 
 
