@@ -189,7 +189,7 @@ class Material(Table):
             none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"
             problems += [f"{key}: is of contacts, but {none} leaves them no stiffness" for key in given]
         elif self.dp_sratio > 0.0 and self.fric == 0.0:
-            problems.append("dp_sratio: needs fric > 0, as contacts without friction carry no shear")
+            problems.append("dp_sratio: is of the shear of contacts, but fric = 0 leaves them none")
         return problems
 
     def _problems_with_speed(self) -> list[str]:

@@ -237,7 +237,7 @@ class ContactList(PairList):
         self._constants = other._constants
         self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
         pairs = Pairs(first[left], second[left], other.image[left], other.of("contact_type")[left])
-        self._list(pairs, ContactHistory(*(other.of(name)[left] for name in ContactHistory._fields)))
+        self._list(pairs, ContactHistory(*(other.of(name)[left] for name in (*_HISTORY, "place"))))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
         """Copy the history of each pair's twin from a settled free-field column, at displacements (3, n).
