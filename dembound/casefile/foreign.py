@@ -139,7 +139,8 @@ NAMES: dict[tuple[str, ...], Advice] = {
         *_LOCAL,
     ),
     ("beta", "quality_factor", "q_factor", "qkappa", "qmu", "viscosity"): _LOCAL,
-    ("dp_nratio", "dp_sratio", "dp_mode", "dashpot", "critical_damping", "restitution", "cn", "cs_damp"): (
+    ("dp_mode", "dashpot", "critical_damping", "restitution", "cn", "cs_damp"): (
+        ("dp_nratio", 'write dp_nratio and dp_sratio, shares of critical damping, with law = "linearpbond"'),
         ("", _DASHPOTS),
     ),
     ("c_n", "c_s_dashpot", "impedance"): (("beta_p", "write beta_p and beta_s, factors of ρc, or leave them out"),),

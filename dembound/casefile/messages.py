@@ -70,11 +70,25 @@ def _described(
     for detail in details:
         by_key.setdefault(str(detail["loc"][0]) if detail["loc"] else "", []).append(detail)
     for key, about in by_key.items():
+        inner = _table_at(keys.get(key, {}), shared)
+        if inner and isinstance(raw.get(key), Mapping):
+            for detail in about:
+                detail["loc"] = detail["loc"][1:]
+            yield from _described(about, f"{path}.{key}", raw[key], inner, shared)
+            continue
         row = shared.get(keys.get(key, {}).get("items", {}).get("$ref", "").rsplit("/", 1)[-1])
         if row and isinstance(raw.get(key), list) and all(len(detail["loc"]) > 1 for detail in about):
             yield from _in_rows(f"{path}.{key}", about, raw[key], row, shared)
         else:
             yield from _lines(path, key, about, raw, keys, others)
+
+
+def _table_at(schema: Mapping[str, Any], shared: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """The schema of the table that is the value of a key of this schema, which may be optional; None for others."""
+    for each in (schema, *schema.get("anyOf", ())):
+        if found := shared.get(each.get("$ref", "").rsplit("/", 1)[-1]):
+            return found if "properties" in found else None
+    return None
 
 
 def _in_rows(

@@ -136,7 +136,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def not_estimated(self, case: DiskCase) -> list[str]:
         """Work that the estimated time leaves out: a law that replaces the elastic one later."""
-        if LAWS[case.material.law].has_history and case.material.elastic_start:
+        if LAWS[case.material.law].has_history and case.material.begins_elastic:
             return [f"the additional time of {case.material.law} once it begins"]
         return []
 

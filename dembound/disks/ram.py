@@ -151,7 +151,7 @@ def run_bytes(case: DiskCase, scenes: Sequence[SceneSizes], before: SceneSizes |
     stages["export"] = export_bytes(case, whole)
     stages["run"] = built + _run_bytes(case, whole, stepped)
     if case.static is not None:
-        kept = 0.0 if before is None else pairs_bytes(before)  # from which the excavated body begins
+        kept = 0.0 if before is None else pairs_bytes(case, before)  # from which the excavated body begins
         stages["settle"] = built + kept + _settling_bytes(case, before or whole)
     elif _has_history(case):
         stages["list"] = built + listing_bytes(stepped)
@@ -174,14 +174,19 @@ def building_bytes(z: SceneSizes) -> float:
     return 24 * z.disks + 66 * z.contacts
 
 
-def pairs_bytes(z: SceneSizes) -> float:
+def pairs_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Bytes of the list of pairs with a history.
 
     For q places 38 bytes of numbers, types and states, and forces (4, q); per pair its place, image and two ends (18
-    p); per slot the ends, arms and origin (28 s); cells (8 n); in rows also the places of disks (24 n).
+    p); per slot the ends, arms and origin (28 s); cells (8 n); in rows also the places of disks (24 n). Factors of
+    strengths take 8 q and tiles (16 n), dashpots 32 q with masses (8 s).
     """
     pairs, places = _pairs(z)
     rows = 24 * z.disks if z.in_rows else 0.0
+    if case.material.pb_scatter is not None:
+        rows += 8 * places + 16 * z.disks
+    if case.material.has_dashpots:
+        rows += 32 * places + 8 * z.slots
     return (38 + 32) * places + 18 * pairs + 28 * z.slots + 8 * z.disks + rows
 
 
@@ -233,7 +238,7 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
         pairs = 13 * z.contacts  # for the strain energy
         steady = 24 * (z.disks + z.slots) * bool(case.load)
     else:
-        pairs = pairs_bytes(z)
+        pairs = pairs_bytes(case, z)
         snapshot += 34 * _pairs(z)[0]  # forces, to count contacts
         steady = 24 * (z.disks + z.slots) + 24 * z.disks  # with the velocity at the change of law
     settled = 2 * 24 * z.disks * (case.static is not None)  # datum and balancing forces
@@ -254,7 +259,7 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
 def _settling_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Bytes of a static stage: masses of its own, pairs under any law, and at its end loads, forces and stresses."""
     loads = 24 * (3 * z.disks + z.slots)  # those of the case and of the stage, also in slots, and those of contacts
-    moving = motion_bytes(z.slots) + pairs_bytes(z) + loads + stress_bytes(z)
+    moving = motion_bytes(z.slots) + pairs_bytes(case, z) + loads + stress_bytes(z)
     return 24 * z.disks + max(listing_bytes(z), moving + record_bytes(0, 256, 6, z.supported))
 
 

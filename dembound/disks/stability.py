@@ -1,11 +1,14 @@
 """The largest stable time step, from the largest eigenfrequency of the scene."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.disks.beyond.surroundings import Surroundings
+from dembound.disks.contacts.dashpots import brick_dashpots, viscosity
+from dembound.disks.contacts.rows import contact_rows
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
@@ -14,6 +17,7 @@ from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces
 from dembound.motion.eigenvalue import largest_eigenvalue
+from dembound.motion.layout import Layout
 
 OPENING = 0.75 / CLOSING
 """Largest ω² over 4/Δt² where contacts open and close: sin²(π/3), for first pushes multiplied by CLOSING.
@@ -32,21 +36,7 @@ MOST_ROUNDS, CONVERGED = 40, 1e-3
 """Rounds, and relative change of ω² at which they end, of the step limit with ties, whose dashpots depend on it."""
 
 
-def step_limit(scene: DiskScene, damp: float | None = None) -> float:
-    """Largest stable step (s), with Rayleigh damping: that without it (`limit_without_lag`) and shorter.
-
-    Raises RunError when an iteration does not converge.
-    """
-    return _with_lag(scene, limit_without_lag(scene, damp))
-
-
-def lag_cost(scene: DiskScene) -> float:
-    """The step limit over that without Rayleigh damping."""
-    limit = limit_without_lag(scene)
-    return _with_lag(scene, limit) / limit
-
-
-def limit_without_lag(scene: DiskScene, damp: float | None = None) -> float:
+def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = True) -> float:
     """Largest stable step 2/(ω_max √(1 + damp)) of central differences (s).
 
     damp is the local damping coefficient, None: the material's. At the limit, forces are opposite to velocities at
@@ -56,14 +46,52 @@ def limit_without_lag(scene: DiskScene, damp: float | None = None) -> float:
     centred dashpots do not change it. Under a history-dependent law the limit also holds for loose disks, and ω_max² is
     multiplied by 1.4 where contacts may open (`OPENING`).
 
+    Dashpots C of contacts are half a step behind: in place of K stands K + 2C/Δt, whose largest eigenvalue is at most
+    the sum of those of both. Rayleigh damping shortens it too, see `_with_lag`. viscous : whether these two act.
+
     Raises RunError when the iteration for the eigenvalue does not converge.
     """
-    largest = _largest_eigenvalue(scene)
+    bounds = [(_largest_eigenvalue(scene), 0.0)]
     if scene.has_history:
+        zones, dashed = _zones_of(scene.ground), viscous and scene.case.material.has_dashpots
         opens = any(layer.moduli.emod > 0.0 for layer in scene.ground.materials)
-        largest = max(largest, *map(_loose_eigenvalue, _zones_of(scene.ground))) / (OPENING if opens else 1.0)
-    damp = scene.case.material.damp if damp is None else damp
-    return float(2.0 / np.sqrt(largest * (1.0 + damp))) if largest > 0.0 else np.inf
+        if dashed:
+            bounds = [(bounds[0][0], _largest_viscosity(scene))]
+        bounds += [(_loose_eigenvalue(zone), _loose_viscosity(scene, zone) if dashed else 0.0) for zone in zones]
+        bounds = [(largest / (OPENING if opens else 1.0), slows) for largest, slows in bounds]
+    damp = 1.0 + (scene.case.material.damp if damp is None else damp)
+    limit = min(_step_of(largest * damp, slows * damp) for largest, slows in bounds)
+    return _with_lag(scene, limit) if viscous else limit
+
+
+def _step_of(largest: float, slows: float) -> float:
+    """The step Δt (s) at which Δt² largest + 2 Δt slows is 4: largest eigenvalues of M⁻¹K (1/s²) and M⁻¹C (1/s)."""
+    if slows == 0.0:
+        return float(2.0 / np.sqrt(largest)) if largest > 0.0 else np.inf
+    return float(4.0 / (slows + np.sqrt(slows**2 + 4.0 * largest)))
+
+
+def viscous_share(scene: DiskScene) -> float:
+    """Step limit of a scene over the one that it would have without Rayleigh damping and dashpots of contacts."""
+    return step_limit(scene) / step_limit(scene, viscous=False)
+
+
+def _largest_viscosity(scene: DiskScene) -> float:
+    """The largest eigenvalue of M⁻¹C (1/s) of the dashpots of all contacts, closed as they are built."""
+    material, count = scene.case.material, scene.disk_count
+    tables = [
+        contact_rows(
+            scene.assembly.part(disks), scene.ground, disks.start, partial(brick_dashpots, scene.ground, material)
+        )
+        for disks in scene.parts.values()
+    ]
+
+    def fill(u: np.ndarray, force: np.ndarray) -> None:
+        for rows in tables:
+            contact_forces(u, rows, force)
+
+    moves = np.ones((3, count), dtype=bool)
+    return largest_eigenvalue(Layout.plain(count), scene.mass[:count], scene.inertia[:count], scene.free, moves, fill)
 
 
 def _with_lag(scene: DiskScene, limit: float) -> float:
@@ -156,6 +184,18 @@ def _loose_eigenvalue(ground: PackedMaterial) -> float:
     moduli = ground.moduli
     shear = moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
     return (6.0 * moduli.emod + 24.0 * shear) / float(ground.mass.min())
+
+
+def _loose_viscosity(scene: DiskScene, ground: PackedMaterial) -> float:
+    """The largest eigenvalue of M⁻¹C (1/s) of the hexagonal lattice of the smallest disks, see `_loose_eigenvalue`.
+
+    With dashpots c_n and c_s it is 24c_s/m, when all disks rotate in the same way, or (6c_n + 2c_s)/m.
+    """
+    material, moduli, mass = scene.case.material, ground.moduli, float(ground.mass.min())
+    shear = moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
+    springs, ratios = np.array([moduli.emod, shear]), np.array([material.dp_nratio, material.dp_sratio])
+    normal, sheared = viscosity(ratios, springs, mass, mass).tolist()
+    return max(24.0 * sheared, 6.0 * normal + 2.0 * sheared) / mass
 
 
 def _rounded_down(step: float) -> float:

@@ -17,6 +17,8 @@ DRIVE = 18.0
 DISK = {(True, False): 7.0, (False, False): 27.0, (True, True): 20.0, (False, True): 55.0}
 """Nanoseconds of a step of a disk (benchmarks/rates.py), in rows of copies or one by one, with a history or without."""
 
+DASHPOTS = 30.0
+"""Nanoseconds of a step of a disk by dashpots of its contacts, which are computed one by one."""
 
 DAMPED = 7.0
 """Nanoseconds of a step of a disk by three mechanisms of damping."""
@@ -25,6 +27,7 @@ DAMPED = 7.0
 def of_disk(scene: DiskScene) -> float:
     """Nanoseconds of a step per disk of a scene."""
     damped = DAMPED if scene.ground.is_damped else 0.0
+    damped += DASHPOTS if scene.case.material.has_dashpots else 0.0
     return DISK[scene.slots is not None and not scene.slots.is_plain, scene.has_history] + damped
 
 

@@ -7,7 +7,7 @@ from dembound.kernels.apart import apart, in_chunks
 from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum, largest
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
-from dembound.kernels.limits import limit_of
+from dembound.kernels.limits import factor_of, limit_of
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
 
 TURN = 0.01
@@ -36,7 +36,7 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
     constants, began, state, slip = contacts.constants, contacts.began, contacts.state, contacts.slip
     friction, tension, cohesion = limits.friction, limits.tension, limits.cohesion
-    tan_fa, geometry = limits.tan_fa, limits.geometry
+    tan_fa, geometry, factor = limits.tan_fa, limits.geometry, limits.factor
     b = first.size
     for chunk in range(begin, end):
         room = np.inf
@@ -67,9 +67,9 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
                 turned = bending * abs(u[U(2), j] - u[U(2), i] + began_with(began, k, U(2)))
                 normal = constants[k, U(7)] * per_area
                 sheared = constants[k, U(8)] * per_area
-                room = min(room, (limit_of(tension, k) - stress - turned) / (2.0 * normal))
+                room = min(room, (factor_of(factor, c) * limit_of(tension, k) - stress - turned) / (2.0 * normal))
                 pressed = limit_of(tan_fa, k)
-                strength = limit_of(cohesion, k) - stress * pressed - sheared * abs(shear)
+                strength = factor_of(factor, c) * limit_of(cohesion, k) - stress * pressed - sheared * abs(shear)
                 room = min(room, strength / (sheared + normal * pressed))
         closest[chunk] = -room
 

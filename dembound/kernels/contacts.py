@@ -20,7 +20,7 @@ from numba import njit
 from dembound.kernels.apart import apart, in_chunks
 from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
-from dembound.kernels.limits import limit_of
+from dembound.kernels.limits import factor_of, limit_of
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
@@ -46,12 +46,13 @@ arcsin(½ωΔt) per step: 2e-6 for waves of 1000 steps a period. A chain of cont
 
 
 @njit(**FAST, inline="always")
-def _bond_state(Fn, Fs, M, per_area, per_section, limits, k):
-    """State of an intact bond under its force and moment; per_area 1/A, per_section R/I; k its type."""
+def _bond_state(c, Fn, Fs, M, per_area, per_section, limits, k):
+    """State of the intact bond of pair c under its force and moment; per_area 1/A, per_section R/I; k its type."""
+    factor = factor_of(limits.factor, c)
     stress = Fn * per_area
-    if stress + abs(M) * per_section >= limit_of(limits.tension, k):
+    if stress + abs(M) * per_section >= factor * limit_of(limits.tension, k):
         after = TENSION
-    elif abs(Fs) * per_area >= limit_of(limits.cohesion, k) - stress * limit_of(limits.tan_fa, k):
+    elif abs(Fs) * per_area >= factor * limit_of(limits.cohesion, k) - stress * limit_of(limits.tan_fa, k):
         after = SHEAR
     else:
         after = INTACT
@@ -121,7 +122,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
         Fn = constants[k, U(7)] * stretch
         Fs = constants[k, U(8)] * shear
         M = constants[k, U(9)] * turn
-        state[c] = _bond_state(Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits, k)
+        state[c] = _bond_state(c, Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits, k)
         if state[c] == INTACT:
             pull += Fn
             S += Fs

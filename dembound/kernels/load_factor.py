@@ -6,23 +6,28 @@ from numba import njit
 from dembound.kernels.apart import in_chunks
 from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, U
+from dembound.kernels.limits import factor_of
 from dembound.kernels.pair_strain import pair, reference_strain
+
+BONDS = 3
+"""Number of the limits of contacts, after which those of bonds follow."""
 
 
 @njit(**FAST)
-def least_factors(u, rest, contacts, slopes, allowed, least, where):
+def least_factors(u, rest, contacts, slopes, allowed, strength, least, where):
     """Find in each chunk of pairs the least factor f at which a pair reaches a limit with rest + f·(u − rest).
 
     A limit of a pair with stretch e, shear s and turn θ is a·e + b·s + c·θ = d: slopes (p, m, 3) has a, b, c of the m
-    limits of each type of contact, allowed (p, m) their d, infinite for none. u, rest : (3, slots) displacements.
-    least (chunks,) receives the factor, infinite for none, and where (chunks, 2) the pair and its limit.
+    limits of each type of contact, allowed (p, m) their d, infinite for none; strength : 1.0, or factors (b,) of d in
+    the limits of bonds, from number `BONDS` on. u, rest : (3, slots) displacements. least (chunks,) receives the
+    factor, infinite for none, and where (chunks, 2) the pair and its limit.
     """
-    _least_factors(u, rest, contacts, slopes, allowed, least, where)
+    _least_factors(u, rest, contacts, slopes, allowed, strength, least, where)
 
 
 @in_chunks
 @njit(**FAST)
-def _least_factors(begin, end, u, rest, contacts, slopes, allowed, least, where):
+def _least_factors(begin, end, u, rest, contacts, slopes, allowed, strength, least, where):
     first, second, contact_type, constants = contacts.first, contacts.second, contacts.contact_type, contacts.constants
     began = contacts.began
     b = first.size
@@ -49,7 +54,10 @@ def _least_factors(begin, end, u, rest, contacts, slopes, allowed, least, where)
                 grows = to_stretch * stretch + to_shear * shear + to_turn * turn
                 if grows > 0.0:
                     still = to_stretch * still_stretch + to_shear * still_shear + to_turn * still_turn
-                    factor = (allowed[k, m] - still) / grows
+                    most = allowed[k, m]
+                    if number >= BONDS:
+                        most *= factor_of(strength, c)
+                    factor = (most - still) / grows
                     if factor < lowest:
                         lowest = factor
                         which = p

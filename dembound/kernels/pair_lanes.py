@@ -27,7 +27,7 @@ from dembound.kernels.lanes import (
     where_equal,
     with_sign,
 )
-from dembound.kernels.limits import limit_of
+from dembound.kernels.limits import factors_of, limit_of
 
 _ALL = np.uint8(2**LANES - 1)
 _INTACT = np.uint8(INTACT)
@@ -105,14 +105,15 @@ def _closing_work(stiffness, before, now, had_closed, push):
 
 
 @njit(**INLINED)
-def _bond(k, q, stretch, shear, bent, whole, limits, kind):
-    """Normal and shear force and moment of bonds of a type, and the bits of those that would break."""
+def _bond(k, q, c, stretch, shear, bent, whole, limits, kind):
+    """Normal and shear force and moment of bonds of a type from place c on, and the bits of those that would break."""
     normal = k[q, U(7)] * stretch
     sheared = k[q, U(8)] * shear
     moment = k[q, U(9)] * bent
     stress = normal * k[q, U(10)]
-    torn = at_most(limit_of(limits.tension, kind), stress + magnitude(moment) * k[q, U(11)])
-    strength = limit_of(limits.cohesion, kind) - stress * limit_of(limits.tan_fa, kind)
+    factor = factors_of(limits.factor, c)
+    torn = at_most(factor * limit_of(limits.tension, kind), stress + magnitude(moment) * k[q, U(11)])
+    strength = factor * limit_of(limits.cohesion, kind) - stress * limit_of(limits.tan_fa, kind)
     cut = at_most(strength, magnitude(sheared) * k[q, U(10)])
     breaks = byte_of(torn) | byte_of(cut)
     return choose(whole, normal, 0.0), choose(whole, sheared, 0.0), choose(whole, moment, 0.0), breaks
@@ -149,7 +150,7 @@ def _act(
     intact = byte_of(whole) & exists
     pull, side, moment = nothing, nothing, nothing
     if intact != 0:
-        pull, side, moment, breaks = _bond(k, q, stretch, shear, bent, whole, limits, kind)
+        pull, side, moment, breaks = _bond(k, q, c, stretch, shear, bent, whole, limits, kind)
         if (breaks & intact) != 0:
             _push_one_by_one(block, exists, u, v, step, number, contacts, limits, lost)
             return

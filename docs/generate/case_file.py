@@ -27,6 +27,7 @@ from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.reduce import Reduce
+from dembound.casefile.disks.scatter import Scatter
 from dembound.casefile.disks.static import Static
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
@@ -71,6 +72,12 @@ DISKS = (
     Part("`[packing]`", packings.TYPES, packings.Packing),
     Part("`[ground]`", (Ground,), guide="tasks/absorb_waves"),
     Part("`[material]`", (Material,), guide="tasks/cracks"),
+    Part(
+        "`[material.pb_scatter]`",
+        (Scatter,),
+        more='In the line of its key: `pb_scatter = {type = "weibull", shape = 5.0}`.',
+        guide="tasks/cracks",
+    ),
     Part("`[[layer]]`", (Layer,)),
     Part("`[damping]`", (Damping,), guide="tasks/damping"),
     Part("`[motion]`", (Motion,)),

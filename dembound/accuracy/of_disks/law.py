@@ -29,7 +29,7 @@ from dembound.accuracy.of_disks.pair import ratios
 from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.material import HISTORY_KEYS, STRENGTH_KEYS
+from dembound.casefile.disks.material import BOND_KEYS, HISTORY_KEYS
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
@@ -111,7 +111,7 @@ def elastic_twin(
     given = {key: value for key, value in case.material.given().items() if key not in HISTORY_KEYS}
     law = {"law": LAWS[case.material.law].linear}
     strong = {"material": given | law, "output.load_factor": True}
-    weak = {key: value for key, value in given.items() if key not in (*STRENGTH_KEYS, "pb_fa")} | law
+    weak = {key: value for key, value in given.items() if key not in BOND_KEYS} | law
     try:
         watched = with_changes(case, strong)
         twins = [with_changes(case, {"material": weak} | change) for change in _without_stage(case)]
@@ -135,7 +135,9 @@ def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
 
 def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
     """Whether the law is history-dependent, with limits that are known for disks of other sizes."""
-    if not LAWS[case.material.law].has_history or not case.material.elastic_start:
+    if not LAWS[case.material.law].has_history or not case.material.begins_elastic:
+        return False
+    if case.material.pb_scatter is not None:
         return False
     pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
     return is_square_lattice(scene.ground) and not (case.static is not None and (case.hole or pushed))

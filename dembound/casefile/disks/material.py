@@ -4,6 +4,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
+from dembound.casefile.disks.scatter import Scatter
 from dembound.casefile.types import LAWS, LawName
 from dembound.table import Table, quantity
 
@@ -13,7 +14,11 @@ STIFFNESS_KEYS = ("p_wave_speed", "s_wave_speed", *MODULI_KEYS)
 """Keys from which the moduli follow."""
 
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
-HISTORY_KEYS = ("locked_in", "geometry", "elastic_start")
+BOND_KEYS = (*STRENGTH_KEYS, "pb_fa", "pb_scatter")
+"""Keys of the strengths of bonds, for history-dependent laws and load factors only."""
+
+DASHPOT_KEYS = ("dp_nratio", "dp_sratio")
+HISTORY_KEYS = ("locked_in", "geometry", "elastic_start", *DASHPOT_KEYS)
 """Keys for history-dependent laws only."""
 
 
@@ -28,8 +33,9 @@ class Material(Table):
     A `p_wave_speed` is made stiffness by Z eqs 9-11; an `s_wave_speed` alone scales it so that S waves have that speed.
     With the law "elastic" contacts neither open nor slip, and bonds do not break. "linearpbond" is PFC's: linear
     contacts without tension and with Coulomb friction, and parallel bonds that break for good. Only history-dependent
-    laws have `locked_in` (which needs a static stage), `geometry` and `elastic_start`; `pb_ten`, `pb_coh` and `pb_fa`
-    are for these laws and for `output.load_factor`.
+    laws have `locked_in` (which needs a static stage), `geometry`, `elastic_start`, and the dashpots `dp_nratio` and
+    `dp_sratio`, c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂); `pb_ten`, `pb_coh`, `pb_fa` and
+    `pb_scatter` are for these laws and for `output.load_factor`.
     """
 
     density: float = quantity(
@@ -81,6 +87,22 @@ class Material(Table):
     damp: float = quantity(
         0.0, unit="1", means="local damping", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0
     )
+    dp_nratio: float = quantity(
+        0.0,
+        unit="1",
+        means="share",
+        help="normal dashpot of closed contacts over the critical one of two disks; it does not pull (PFC's dp_mode 1)",
+        ge=0.0,
+        le=1.0,
+    )
+    dp_sratio: float = quantity(
+        0.0,
+        unit="1",
+        means="share",
+        help="shear dashpot of closed contacts over the critical one; needs fric",
+        ge=0.0,
+        le=1.0,
+    )
     quality_factor: float | None = quantity(
         None,
         unit="1",
@@ -107,6 +129,11 @@ class Material(Table):
     pb_fa: float = quantity(
         0.0, unit="degrees", means="friction angle", help="friction angle of the bonds; needs pb_coh", ge=0.0, lt=90.0
     )
+    pb_scatter: Scatter | None = quantity(
+        None,
+        unit="1",
+        help="scatter of both strengths from bond to bond, a table; absent: none",
+    )
     locked_in: float | None = quantity(
         None,
         unit="Pa",
@@ -131,6 +158,8 @@ class Material(Table):
         problems += self._problems_with_strength()
         if not LAWS[self.law].has_history:
             problems += self._problems_without_history()
+        if self.has_dashpots:
+            problems += self._problems_with_dashpots()
         if self.quality_factor is not None:
             problems += self._problems_with_quality()
         if problems:
@@ -141,6 +170,29 @@ class Material(Table):
     def by_s_waves(self) -> bool:
         """Whether the moduli follow from the S-wave speed alone."""
         return all(getattr(self, key) is None for key in ("p_wave_speed", *MODULI_KEYS))
+
+    @property
+    def has_dashpots(self) -> bool:
+        """Whether contacts have dashpots."""
+        return max(self.dp_nratio, self.dp_sratio) > 0.0
+
+    @property
+    def begins_elastic(self) -> bool:
+        """Whether the elastic law serves first in place of a history-dependent one; it has no dashpots."""
+        return self.elastic_start and not self.has_dashpots
+
+    def _problems_with_dashpots(self) -> list[str]:
+        """What dashpots of contacts do not go with."""
+        problems = []
+        given = [key for key in DASHPOT_KEYS if getattr(self, key) > 0.0]
+        if self.elastic_start and "elastic_start" in self.model_fields_set:
+            problems.append(f"elastic_start: is true, but dashpots ({given[0]}) act from the start; leave it out")
+        if self.emod == 0.0 or self.contact_share == 0.0:
+            none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"
+            problems += [f"{key}: is of contacts, but {none} leaves them no stiffness" for key in given]
+        elif self.dp_sratio > 0.0 and self.fric == 0.0:
+            problems.append("dp_sratio: is of the shear of contacts, but fric = 0 leaves them none")
+        return problems
 
     def _problems_with_speed(self) -> list[str]:
         """Mistakes of a material given by its P-wave speed."""
@@ -188,6 +240,8 @@ class Material(Table):
         problems = []
         if "pb_fa" in self.model_fields_set and self.pb_coh is None:
             problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
+        if self.pb_scatter is not None and self.pb_ten is None and self.pb_coh is None:
+            problems.append("pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh")
         no_bonds = "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
         if no_bonds:
             given = [key for key in STRENGTH_KEYS if getattr(self, key) is not None]

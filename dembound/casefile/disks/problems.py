@@ -22,7 +22,7 @@ from dembound.casefile.disks.hole_problems import hole_problems
 from dembound.casefile.disks.incident import incident_problems
 from dembound.casefile.disks.layer import Layer, layer_problems
 from dembound.casefile.disks.load import Load, pressed_side_problems
-from dembound.casefile.disks.material import STRENGTH_KEYS, Material, with_history
+from dembound.casefile.disks.material import BOND_KEYS, Material, with_history
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.motions_of_waves import motion_problems
@@ -109,7 +109,7 @@ def _nothing_to_pack_with(place: str, table: Material | Layer | None, packing: P
 
 def _no_strength(place: str, table: Material | Layer) -> Iterator[str]:
     """Strengths without effect."""
-    for key in (*STRENGTH_KEYS, "pb_fa"):
+    for key in BOND_KEYS:
         if key in table.model_fields_set:
             yield f"{place}.{key}: is only allowed with law = {with_history()} or output.load_factor"
 

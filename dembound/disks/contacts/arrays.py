@@ -31,7 +31,10 @@ class Pairs:
 
 
 class ContactHistory(NamedTuple):
-    """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds."""
+    """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds.
+
+    drag (b, 2), see `Dashed`; None without dashpots, or before they have acted.
+    """
 
     state: np.ndarray
     shear: np.ndarray
@@ -39,13 +42,14 @@ class ContactHistory(NamedTuple):
     closed: np.ndarray
     cracked: np.ndarray
     place: np.ndarray | None = None
+    drag: np.ndarray | None = None
 
 
 class Placed(NamedTuple):
     """Pairs in their places.
 
     arrays, live, image : see `ContactList`. in_rows : (k,) places of pairs in rows of copies, ascending. strays : the
-    contact ends of all other pairs, see `PairList`; None without rows.
+    contact ends of all other pairs, see `PairList`; None without rows. drag : (places, 2) N, or (0, 2).
     """
 
     arrays: Contacts
@@ -53,6 +57,7 @@ class Placed(NamedTuple):
     image: np.ndarray
     in_rows: np.ndarray
     strays: tuple[np.ndarray, np.ndarray, np.ndarray] | None
+    drag: np.ndarray
 
 
 def in_places(
@@ -105,7 +110,8 @@ def in_places(
         end=end[np.lexsort((end, owner))],
     )
     strays = None if plan is None else _ends_apart(owner, end, 2 * places)
-    return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays)
+    drag = np.zeros((0, 2)) if history.drag is None else placed(history.drag[order])
+    return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays, drag)
 
 
 def _ends_apart(owner: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.contacts.arrays import ContactHistory, Pairs, bonds_of
+from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.forces import acting
 from dembound.disks.contacts.neighbours import near_pairs, pair_keys
 from dembound.disks.contacts.pair_list import NO_LIMITS, PairList
@@ -14,6 +15,7 @@ from dembound.disks.contacts.row_plan import RowPlan
 from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import brick_constants, limits_of, shared_constants
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.scatter import BondFactors
 from dembound.kernels import contacts as kernel
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS
@@ -56,6 +58,7 @@ class ContactList(PairList):
     layers : in layered ground the limits of each type of contact in columns, see `limits_between`, and the friction
         (m,) of each particle, for those that meet later.
     at_rest : the stress with which contacts begin; None: without forces.
+    factors : of the strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
 
     Attributes
     ----------
@@ -63,7 +66,6 @@ class ContactList(PairList):
 
     limits : strengths and friction; in layered ground columns of the rows of constants.
     kind : (b,) types of the contacts as built, rows of `bonds`.
-    own_types : number of the types of the brick's contacts, which come before those of near pairs.
     skin : m, gap up to which the list is complete.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
@@ -81,9 +83,11 @@ class ContactList(PairList):
         plan: tuple[RowPlan, int] | None = None,
         layers: tuple[Limits, np.ndarray] | None = None,
         at_rest: StressAtRest | None = None,
+        factors: BondFactors | None = None,
+        dashpots: Dashpots | None = None,
     ) -> None:
         super().__init__(assembly, periods, begin, layout)
-        self.ground = ground
+        self.ground, self.factors, self.dashpots = ground, factors, dashpots
         self.limits = limits_of(material) if layers is None else layers[0]
         self._friction = None if layers is None else layers[1]
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
@@ -186,9 +190,14 @@ class ContactList(PairList):
             np.concatenate([self.of("slip")[kept], np.zeros(len(met.first))]),
             np.concatenate([self.of("closed")[kept], np.zeros(len(met.first), dtype=np.uint8)]),
             np.concatenate([self.of("cracked")[kept], np.full(len(met.first), -1)]),
+            drag=self._drag_of(kept, len(met.first)),
         )
         self._list(pairs, history)
         self._set_origin(displacement[:2, self.nodes])
+
+    def _drag_of(self, kept: np.ndarray, more: int) -> np.ndarray | None:
+        """Last forces of the dashpots of the pairs kept (b,) bool, and of more pairs without any; None: no dashpots."""
+        return None if self.dashpots is None else np.vstack([self.drag[self.live][kept], np.zeros((more, 2))])
 
     def _remaining(self, moved: np.ndarray) -> np.ndarray:
         """Which pairs (b,) bool remain listed when particles have moved (m, 2) m: intact, near or held ones."""
@@ -236,7 +245,7 @@ class ContactList(PairList):
         self._constants = other._constants
         self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
         pairs = Pairs(first[left], second[left], other.image[left], other.of("contact_type")[left])
-        self._list(pairs, ContactHistory(*(other.of(name)[left] for name in ContactHistory._fields)))
+        self._list(pairs, ContactHistory(*(other.of(name)[left] for name in (*_HISTORY, "place"))))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
         """Copy the history of each pair's twin from a settled free-field column, at displacements (3, n).
@@ -290,6 +299,8 @@ class ContactList(PairList):
         self.note_cracks()
         saved = {name: self.of(name) for name in _KEPT} | {"force": self.force}
         saved |= {"image": self.image, "constants": self._constants, "origin": self.origin}
+        if self.dashpots is not None:
+            saved["drag"] = self.drag[self.live]
         saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
         return saved | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
@@ -302,6 +313,6 @@ class ContactList(PairList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
-        self._list(pairs, ContactHistory(*(saved[name] for name in _HISTORY)))
+        self._list(pairs, ContactHistory(**{name: saved[name] for name in _HISTORY}, drag=saved.get("drag")))
         self.arrays.force[:, self.live] = saved["force"].T
         self._cracks = [Cracks(*(saved[f"crack_{field.name}"] for field in fields(Cracks)))]

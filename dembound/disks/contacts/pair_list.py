@@ -3,8 +3,10 @@
 import numpy as np
 
 from dembound.disks.contacts.arrays import ContactHistory, Pairs, in_places
+from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.neighbours import cells_of, pair_keys
 from dembound.disks.contacts.pair_rows import PairPlan
+from dembound.disks.material.scatter import BondFactors
 from dembound.kernels.limits import in_columns
 from dembound.kernels.tables import Limits, PairRows
 from dembound.motion.layout import Layout, aligned_zeros
@@ -31,9 +33,17 @@ class PairList:
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     cells : of the particles there.
     bonds : (p, 15) constants of the contacts of the brick; (p, 19) with the limits of each, see `ContactList.limits`.
+    own_types : number of the types of the brick's contacts, which come before those of near pairs. factors : of the
+    strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none. With dashpots, viscosity
+    (places, 2) and drag (places, 2), see `kernels.tables.Dashed`.
     """
 
     limits: Limits
+    own_types: int
+    factors: BondFactors | None
+    dashpots: Dashpots | None
+    viscosity: np.ndarray
+    drag: np.ndarray
     bonds: np.ndarray
     _constants: np.ndarray
 
@@ -107,7 +117,21 @@ class PairList:
             self.limits = in_columns(columns, self.limits.geometry)
         placed = in_places(pairs, history, self._slot, constants, self._plan)
         self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image
+        if self.factors is not None:
+            self.limits = self.limits._replace(factor=self._factors(self.factors))
+        if self.dashpots is not None:
+            self.viscosity = self.dashpots.at(self.arrays)
+            self.drag = placed.drag if len(placed.drag) > 0 else np.zeros_like(self.viscosity)
         if self._plan is not None:
             assert placed.strays is not None
             self.rows, self.strays = self._plan.rows(placed.in_rows, self.bonds), placed.strays
             self.extra = aligned_zeros(3, self.layout.count)
+
+    def _factors(self, factors: BondFactors) -> np.ndarray:
+        """Factors of the strengths of the bonds in all places of `arrays`, 1 where there is none."""
+        bonded = np.flatnonzero(self.arrays.contact_type < self.own_types)
+        found = aligned_zeros(len(self.arrays.contact_type))
+        found[:] = 1.0
+        first = self.layout.node[self.arrays.first[bonded]] - self.nodes.start
+        found[bonded] = factors.at(first, self.arrays.contact_type[bonded])
+        return found

@@ -1,5 +1,7 @@
 """The contacts of the elastic law for its kernel: a row per particle, with a table of constants of the brick."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from dembound.disks.material.packed_material import PackedMaterial
@@ -8,16 +10,21 @@ from dembound.laws import Stiffness
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
 
+Springs = Callable[[tuple[int, int]], Stiffness]
+"""Constants of the brick's contacts between two zones, see `PackedMaterial.stiffness_of`."""
 
-def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> NeighbourTable:
+
+def contact_rows(
+    assembly: Assembly, ground: PackedMaterial, begin: int = 0, springs: Springs | None = None
+) -> NeighbourTable:
     """Sort the contacts into one row per particle, with a table of the constants of the brick's contacts.
 
-    begin : number of the assembly's first particle in the scene.
+    begin : number of the assembly's first particle in the scene. springs : in place of those of the ground.
 
     The rows of the table are in the order in which the particles use them, so that a loop over particles reads the
     table in order as well, and it stays in the cache of the core.
     """
-    constants, row_of = elastic_constants(ground)
+    constants, row_of = elastic_constants(ground, springs)
     i, j = assembly.pairs.T
     owner = np.concatenate([i, j])
     neighbour = np.concatenate([j, i])
@@ -30,15 +37,15 @@ def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> 
     )
 
 
-def elastic_constants(ground: PackedMaterial) -> tuple[np.ndarray, np.ndarray]:
+def elastic_constants(ground: PackedMaterial, springs: Springs | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Constants (4b, 6), and the row in them of contact k for its first (2k) and second disk (2k + 1).
 
     Contacts from number b on are those of the brick with half their stiffness, for sides of half cells; those of other
     pairings of zones follow in a layered ground.
     """
-    found, rows = [], []
+    found, rows, springs = [], [], springs or ground.stiffness_of
     for number, pairing in enumerate(ground.pairings):
-        constants, row_of = _constants_of(ground.brick, ground.stiffness_of(pairing))
+        constants, row_of = _constants_of(ground.brick, springs(pairing))
         found.append(constants)
         rows.append(row_of + number * len(row_of))
     return np.vstack(found), np.concatenate(rows)

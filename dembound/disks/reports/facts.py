@@ -23,7 +23,7 @@ from dembound.disks.reports.materials import Own, materials_of
 from dembound.disks.reports.summary import describe_layers, describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
-from dembound.disks.stability import lag_cost
+from dembound.disks.stability import viscous_share
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
 BALANCED = 1e-9
@@ -90,7 +90,7 @@ def _monitor_facts(scene: DiskScene) -> Entries:
 def _tension_facts(scene: DiskScene) -> Entries:
     """Waves that would open contacts, for a run in which the law then changes."""
     law = scene.case.material.law
-    if scene.has_history and scene.case.material.elastic_start:
+    if scene.has_history and scene.case.material.begins_elastic:
         for name, stress in strong_waves(scene).items():
             yield f"stress of {name}", f"ρcv = {stress}; in tension contacts open, and the law changes to {law}"
 
@@ -173,14 +173,17 @@ def _joint_fact(layer: Mapping[str, Any]) -> str:
 
 
 def _law_facts(scene: DiskScene) -> Entries:
-    """The law, and the limits of contacts and bonds."""
+    """The law, dashpots with what they cost, and the limits of contacts and bonds."""
     material = scene.case.material
     if not scene.has_history:
         linear = "" if scene.ground.law.is_linear else "not linear; "
         yield "law", f"{material.law}: {linear}contacts neither open nor slip, bonds do not break"
         return
-    start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
+    start = ", elastic until a contact opens, slips or closes or a bond yields" if material.begins_elastic else ""
     yield "law", f"{material.law}{start}"
+    if material.has_dashpots:
+        ratios = f"{material.dp_nratio:g} normal, {material.dp_sratio:g} shear of the critical damping of two disks"
+        yield "dashpots", f"{ratios}, at closed contacts; the step is {viscous_share(scene):.2f} times as long"
     for own in materials_of(scene):
         yield from _strength_facts(own)
 
@@ -195,6 +198,8 @@ def _strength_facts(own: Own) -> Entries:
         )
         pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
         bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
+        if material.pb_scatter is not None:
+            bonds += f", each times a factor of its own, {material.pb_scatter.in_words}"
     yield f"strength{name}", f"{bonds}; contacts slip at {material.fric:g} of their normal force"
     if ground.moduli.emod > 0.0:
         yield (
@@ -221,7 +226,7 @@ def _damping_facts(scene: DiskScene) -> Entries:
         elif isinstance(found, Rayleigh):
             yield f"Rayleigh damping{name}", _rayleigh_fact(found)
     if scene.case.is_damped and scene.case.damping.type == "rayleigh":
-        yield "step limit", f"{lag_cost(scene):.3g} times that without damping"
+        yield "step limit", f"{viscous_share(scene):.3g} times that without damping"
 
 
 def _rayleigh_fact(found: Rayleigh) -> str:

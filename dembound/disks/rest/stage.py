@@ -17,7 +17,7 @@ from dembound.disks.rest.settled import Settled, among
 from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.rest.until_at_rest import UntilAtRest
 from dembound.disks.scene import DiskScene, column_alone
-from dembound.disks.stability import limit_without_lag
+from dembound.disks.stability import step_limit
 from dembound.disks.stepping.contact_lists import contact_lists
 from dembound.disks.stepping.start import Start
 from dembound.disks.stepping.system import DiskSystem
@@ -113,7 +113,7 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     static, start = scene.case.static, starting()
     assert static is not None
     body = StaticScene(scene, static)
-    step = SAFETY * limit_without_lag(body.scene, damp=static.damp)
+    step = SAFETY * step_limit(body.scene, damp=static.damp, viscous=False)
     none = np.zeros((3, body.scene.count))
     datum = none
     if start is not None:

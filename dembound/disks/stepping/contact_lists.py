@@ -4,9 +4,11 @@ import numpy as np
 
 from dembound.disks.body import DiskBody, differs_by_level
 from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
 from dembound.disks.material.constants import ground_limits
 from dembound.disks.material.layered import LayeredGround
+from dembound.disks.material.scatter import bond_factors
 from dembound.kernels.tables import LaneRows, Limits
 from dembound.packings.tiling import Assembly
 
@@ -36,6 +38,8 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         _row_plan(scene, name, part),
         _layers(scene, part),
         scene.at_rest,
+        bond_factors(scene.case, scene.ground, part, alike=name == "column"),
+        Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
     )
 
 

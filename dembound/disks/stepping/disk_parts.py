@@ -22,7 +22,7 @@ class DiskParts:
     ----------
     scene : the scene. start : gives the contacts if the scene's law has a history; None: contacts as built.
     watches : whether the loop returns before a contact leaves the elastic law. time_step : s, for which damped ground
-    remembers forces; None: damping is left out, as in a static stage.
+    remembers forces; None: damping and dashpots are left out, as in a static stage.
 
     Attributes
     ----------
@@ -46,6 +46,7 @@ class DiskParts:
         )  # fmt: skip
         for part in self.parts:
             part.watches = watches
+            part.dashes = time_step is not None
         self.contacts = {part.name: part.contacts for part in self.parts if part.contacts is not None}
         self.seams = () if scene.seam is None else (FreeFieldSeam(scene.seam, self.parts[0]),)
         self.damped_ties = None if time_step is None else ties_remembering(scene, tied_nodes(scene), time_step)

@@ -50,7 +50,7 @@ def first_law(scene: DiskBody, disks: DiskParts, start: Start | None, datum: np.
     built_in = case.material.locked_in is not None or case.begins_stressed
     through = bool(disks.seams) and built_in and not settling
     slides = scene.at_rest is not None and scene.at_rest.slides
-    at_once = through or slides or not (settling or case.material.elastic_start)
+    at_once = through or slides or not (settling or case.material.begins_elastic)
     return FirstLaw(goes_on or (scene.has_history and at_once), goes_on, is_elastic_again, refused)
 
 

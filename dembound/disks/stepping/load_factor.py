@@ -14,6 +14,7 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import brick_constants, ground_limits, strength_of
+from dembound.disks.material.scatter import bond_factors
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.began import began_of
 from dembound.kernels.common import CHUNKS
@@ -96,7 +97,9 @@ class LoadFactor(Every):
                 contact_type=kind.astype(np.uint32),
             )
             own = in_columns(constants[:, 15:], limits.geometry) if scene.ground.is_layered else limits
-            self._pairs.append((pairs, limit_lines(pairs.constants, own)))
+            bonds = bond_factors(scene.case, scene.ground, part.assembly, alike=part.name == "column")
+            strength = 1.0 if bonds is None else bonds.at(part.assembly.pairs[:, 0], part.assembly.contact_type)
+            self._pairs.append((pairs, (*limit_lines(pairs.constants, own), strength)))
         self._least, self._where = np.empty(CHUNKS), np.empty((CHUNKS, 2), dtype=np.int64)
         self._rest = np.zeros((3, 0))
         self.factor = np.inf

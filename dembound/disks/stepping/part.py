@@ -12,7 +12,7 @@ from dembound.disks.contacts.rows import elastic_constants
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.stepping.memories import DiskMemories
-from dembound.kernels import bonded, bonded_lanes, damped, elastic, elastic_lanes  # noqa: F401  # they register their laws
+from dembound.kernels import bonded, bonded_lanes, damped, dashpots, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import REFERENCE, SLID
@@ -20,6 +20,7 @@ from dembound.kernels.tables import (
     Bonded,
     Contacts,
     DampedLinks,
+    Dashed,
     LaneBonded,
     LaneRows,
     Links,
@@ -54,7 +55,7 @@ class DiskPart(Part):
     ----------
     uses_history : whether the history-dependent law is in use; before, a linear law replaces it. watches : whether the
     loop returns before a contact leaves the linear law. stops_at_breaks : whether it returns after a step in which a
-    bond of this part broke.
+    bond of this part broke. dashes : whether dashpots of contacts act, where the material has some.
     """
 
     def __init__(
@@ -77,8 +78,9 @@ class DiskPart(Part):
         self.uses_history = False
         self.watches = True
         self.stops_at_breaks = False
+        self.dashes = True
         self.rows = rows
-        self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
+        self._fastest, self._taken, self._way = np.zeros(CHUNKS), np.zeros(CHUNKS), np.zeros(2)
         self._damped, (self._lost, self._also_lost) = np.zeros((CHUNKS, 2)), np.zeros((2, CHUNKS, 4))
 
     @property
@@ -96,7 +98,16 @@ class DiskPart(Part):
         listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.cells)
         if not self.uses_history:
             return WatchedLinks(links, *listed, contacts.arms, self._way, contacts.keeps_slip)
-        law = Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
+        law = self._bonded(
+            contacts, Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
+        )
+        if contacts.dashpots is None or not self.dashes:
+            return law
+        geometry = contacts.limits.geometry
+        return Dashed(law, contacts.arrays, geometry, contacts.viscosity, contacts.drag, self._taken)
+
+    def _bonded(self, contacts: ContactList, law: Bonded) -> Bonded | LaneBonded:
+        """The history-dependent law, in rows of copies if the pairs are."""
         if contacts.rows is None:
             return law
         assert isinstance(self.rows, LaneRows)

@@ -4,7 +4,7 @@ from dembound.kernels.tables.bar_layers import BarLayers
 from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
 from dembound.kernels.tables.damping import Crossing, DampedGrid, DampedLinks, Drag, Memories, NoDrag, TieMemories
 from dembound.kernels.tables.grid import ALONG, Absorber, Blocks, Elements, Grid, Shape
-from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
+from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, Dashed, LaneBonded, Links, WatchedLinks
 from dembound.kernels.tables.motion import Body, Followers, Log, Supports
 from dembound.kernels.tables.sides import NO_SIDES, Sides
 from dembound.kernels.tables.softening import Softening
@@ -25,6 +25,7 @@ __all__ = [
     "Crossing",
     "DampedGrid",
     "DampedLinks",
+    "Dashed",
     "Drag",
     "Elements",
     "Followers",

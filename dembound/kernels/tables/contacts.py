@@ -88,7 +88,9 @@ class Limits(NamedTuple):
     """Friction of contacts and strength of bonds: numbers, or columns (p,) by row of constants (limits.limit_of).
 
     friction, tan_fa : pure numbers; tension, cohesion : Pa; geometry : one of those in kernels/contacts.py. Kernels for
-    columns are compiled separately, so all four are numbers or all are columns.
+    columns are compiled separately, so all four are numbers or all are columns. factor : 1.0, or (b,) by which the
+    strengths of each pair's bond, tension and cohesion, are multiplied (limits.factor_of), which is compiled separately
+    too.
     """
 
     friction: float | np.ndarray
@@ -96,6 +98,7 @@ class Limits(NamedTuple):
     cohesion: float | np.ndarray
     tan_fa: float | np.ndarray
     geometry: int
+    factor: float | np.ndarray = 1.0
 
 
 class PairRows(NamedTuple):

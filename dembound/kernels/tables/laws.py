@@ -75,6 +75,21 @@ class LaneBonded(NamedTuple):
     also_lost: np.ndarray
 
 
+class Dashed(NamedTuple):
+    """The history-dependent law with dashpots at closed contacts, see kernels/dashpots.py.
+
+    contacts, geometry : of the law. viscosity : (b, 2) N·s/m of normal and shear dashpots, by places of the contacts;
+    drag : (b, 2) N, their last forces, pushing and along the shear. taken (chunks,) : work space.
+    """
+
+    law: Bonded | LaneBonded
+    contacts: Contacts
+    geometry: int
+    viscosity: np.ndarray
+    drag: np.ndarray
+    taken: np.ndarray
+
+
 class BarContacts(NamedTuple):
     """Contacts between ranges of a bar, see kernels.bar_contacts.
 

@@ -10,7 +10,7 @@ import tomli_w
 
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.material import STRENGTH_KEYS
+from dembound.casefile.disks.material import BOND_KEYS
 from dembound.casefile.model import as_kind
 from dembound.casefile.toml import parsed
 from dembound.casefile.types import LAWS
@@ -189,7 +189,7 @@ def _of_runs(base: DiskCase, longer: float) -> DiskCase:
     data["run"]["duration"] += longer
     data["output"].pop("load_factor")
     for table in (data["material"], *data.get("layer", ())):
-        for key in (*STRENGTH_KEYS, "pb_fa"):
+        for key in BOND_KEYS:
             table.pop(key, None)
     return _of_disks(loads(tomli_w.dumps(data), base.folder, base.name, base.files))
 

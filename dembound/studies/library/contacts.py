@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.disks.material.constants import brick_constants, ground_limits, strength_of
+from dembound.disks.material.scatter import bond_factors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.load_factor import limit_in_words, limit_lines
 from dembound.errors import CaseError
@@ -95,11 +96,15 @@ def _contacts(library: Library, scene: DiskScene, pair: str) -> Iterator[Watched
         raise CaseError([f"--load-factor: the disks of {names[0]} and {names[1]} have neither contact nor bond"])
     constants = brick_constants(scene.ground, gaps_close=True, locked_in=0.0)
     limits = ground_limits(scene.ground, library.case.materials, strength_of)
+    bonds = bond_factors(library.case, scene.ground, scene.assembly)
     numbers = library.monitors.index(names[0]), library.monitors.index(names[1])
     for place in np.flatnonzero(forward | backward):
         order = numbers if forward[place] else numbers[::-1]
         kind = scene.assembly.contact_type[place]
         own = in_columns(np.array(limits[:4]).T[[kind]], limits.geometry) if scene.ground.is_layered else limits
+        if bonds is not None:
+            factor = float(bonds.at(pairs[[place], 0], kind)[0])
+            own = own._replace(tension=factor * own.tension, cohesion=factor * own.cohesion)
         contact = WatchedContact(pair, order, constants[kind], own, np.zeros(3))
         yield contact._replace(settled=_settled(library, contact, pairs[place]))
 

@@ -36,7 +36,7 @@ material | stress | [static] has stress = [sxx, syy, sxy]
 material | E | write p_wave_speed, which with density gives the moduli
 material | Poisson | there is none for disks: it follows from kratio and pb_kratio
 bar | poisson | there is none: a bar moves along its axis only
-material | dp_nratio | there is none: sides of type viscous absorb
+material | restitution | write dp_nratio and dp_sratio, shares of critical damping, with law
 material | damping | write damp, which is for bringing bodies to rest: for waves leave it 0
 static | damping | write damp
 bar | damping | write attenuation, 1/m

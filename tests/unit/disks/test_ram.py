@@ -61,10 +61,14 @@ def test_a_scene_is_the_sum_of_its_arrays(bar, monkeypatch, in_rows) -> None:
     assert scene_bytes(scene.case, scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    "more", [{}, {"pb_ten": 1e6, "pb_scatter": {"type": "weibull", "shape": 5.0}, "dp_nratio": 0.1}]
+)
 @pytest.mark.parametrize("in_rows", [True, False])
-def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows) -> None:
+def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows, more) -> None:
     monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
-    scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}, "material.law": "linearpbond"}))
+    material = {f"material.{key}": value for key, value in {"law": "linearpbond", **more}.items()}
+    scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}, **material}))
     (pairs,) = contact_lists(scene).values()
     kept, stored = (
         pairs.arrays,
@@ -75,9 +79,11 @@ def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows) -> None:
     if in_rows:
         plan = pairs._plan.plan
         arrays += [plan.row, plan.column, plan.lane]
+    if more:
+        arrays += [pairs.limits.factor, pairs.factors.tile, pairs.viscosity, pairs.drag, pairs.dashpots.mass]
 
     # numbers of listed pairs differ between bricks
-    assert pairs_bytes(scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=0.04)
+    assert pairs_bytes(scene.case, scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=0.04)
 
 
 def test_what_is_recorded_counts(bar) -> None:

@@ -21,6 +21,7 @@ SPEED = {"p_wave_speed": 1e3}
         STIFFNESS | {"law": "linearpbond", "pb_ten": 1e6, "pb_coh": 2e6, "pb_fa": 30.0},
         STIFFNESS | {"law": "linearpbond", "locked_in": 5e6, "geometry": "reference", "elastic_start": False},
         STIFFNESS | {"law": "linearpbond", "pb_emod": 0.0},
+        STIFFNESS | {"law": "linearpbond", "fric": 0.5, "dp_nratio": 0.2, "dp_sratio": 0.2, "elastic_start": False},
     ],
 )
 def test_complete_stiffness_and_bonds_are_accepted(keys: dict[str, float]) -> None:
@@ -48,6 +49,17 @@ BONDED = {"law": "linearpbond", **STIFFNESS}
         (STIFFNESS | {"locked_in": 1.0}, ['locked_in: is only allowed with law = "linearpbond"']),
         (STIFFNESS | {"geometry": "updated"}, ['geometry: is only allowed with law = "linearpbond"']),
         (STIFFNESS | {"elastic_start": True}, ['elastic_start: is only allowed with law = "linearpbond"']),
+        (STIFFNESS | {"dp_nratio": 0.2}, ['dp_nratio: is only allowed with law = "linearpbond"']),
+        (BONDED | {"dp_nratio": 0.2, "elastic_start": True}, ["elastic_start: is true, but dashpots (dp_nratio) act"]),
+        (BONDED | {"dp_sratio": 0.2}, ["dp_sratio: is of the shear of contacts, but fric = 0 leaves them none"]),
+        (
+            BONDED | {"emod": 0.0, "dp_nratio": 0.2},
+            ["dp_nratio: is of contacts, but emod = 0 leaves them no stiffness"],
+        ),
+        (
+            BONDED | {"pb_scatter": {"type": "weibull", "shape": 5.0}},
+            ["pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh"],
+        ),
         (BONDED | {"pb_fa": 30.0}, ["pb_fa: is only allowed together with pb_coh"]),
         (BONDED | {"pb_emod": 0.0, "pb_ten": 1.0}, ["pb_ten: is the strength of bonds, but pb_emod = 0 leaves none"]),
         (

@@ -1,0 +1,55 @@
+"""Dashpots of contacts: viscosities from PFC's ratios, which are shares of the critical damping of two disks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.casefile.disks.material import Material
+from dembound.disks.material.layered import LayeredGround
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels.tables import Contacts
+from dembound.laws import Stiffness
+
+
+@dataclass(frozen=True, eq=False)
+class Dashpots:
+    """The dashpots of a part's contacts: normal and shear ratio, and the mass (m,) kg of its disks by slot."""
+
+    normal: float
+    shear: float
+    mass: np.ndarray
+
+    @classmethod
+    def of(cls, material: Material, mass: np.ndarray) -> "Dashpots | None":
+        """The dashpots of a material; None if it has none."""
+        return cls(material.dp_nratio, material.dp_sratio, mass) if material.has_dashpots else None
+
+    def at(self, contacts: Contacts) -> np.ndarray:
+        """Viscosities (b, 2) N·s/m in all places of contacts, 0 where there is none."""
+        one, other = self.mass[contacts.first], self.mass[contacts.second]
+        springs = contacts.constants[contacts.contact_type, 5:7]
+        ratios = np.array([self.normal, self.shear])
+        return np.ascontiguousarray(viscosity(ratios, springs, one[:, None], other[:, None]))
+
+
+def viscosity(
+    ratio: float | np.ndarray, spring: np.ndarray, one: float | np.ndarray, other: float | np.ndarray
+) -> np.ndarray:
+    """2β√(m_c k) in N·s/m with m_c = m₁m₂/(m₁ + m₂), of contacts of stiffness k (N/m) between masses (kg)."""
+    found: np.ndarray = 2.0 * ratio * np.sqrt(one * other / (one + other) * spring)
+    return found
+
+
+def brick_dashpots(ground: PackedMaterial, material: Material, pairing: tuple[int, int]) -> Stiffness:
+    """Viscosities of the brick's contacts between two zones, in N·s/m, in place of stiffnesses; all are closed."""
+    brick = ground.brick
+    first, second = brick.pairs.T
+    own = [ground.zones[zone].material for zone in pairing] if isinstance(ground, LayeredGround) else [ground, ground]
+    radii = brick.radii[first], brick.radii[second]
+    constants = ground.pair_constants(radii, brick.vectors, pairing, gaps_close=False)
+    masses = own[0].mass[first], own[1].mass[second]
+    normal, shear = (
+        viscosity(ratio, constants[:, k], *masses) for ratio, k in ((material.dp_nratio, 5), (material.dp_sratio, 6))
+    )
+    arm = 0.5 * constants[:, 2] + constants[:, 4]
+    return Stiffness(normal, shear, np.zeros_like(normal), arm, constants[:, 2] - arm)
