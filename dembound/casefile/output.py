@@ -33,7 +33,7 @@ class Output(Table):
         1,
         unit="1",
         means="count",
-        help="number of whole-scene snapshots, evenly spaced, the last at the end; one more at rest if [static] ran; 0: none",
+        help="number of whole-scene snapshots, evenly spaced, the last at the end; [static] adds one at rest; 0: none",
         ge=0,
         le=MOST_SNAPSHOTS,
     )
