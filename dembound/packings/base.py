@@ -27,9 +27,9 @@ MOST_IN_BRICK = 1_000_000
 # Confining stress over contact modulus if the case gives none: 4.5 contacts per disk, and eight times the stress ρcv of
 # a wave of 0.5 m/s at 1000 m/s.
 PRESSURE = 8e-3
-# Below, a frictionless packing is nearly unstable and does not come to rest; above, overlaps reach a tenth of the
-# diameter and are no longer contacts.
-PRESSURES = (5e-4, 0.1)
+# Below, overlaps are 1e-5 of the diameter and the packing is as loose as frictionless disks can be; above, overlaps
+# reach a tenth of the diameter and are no longer contacts.
+PRESSURES = (1e-5, 0.1)
 
 SIZE = "size of a particle"
 """Meaning of keys that are sizes of disks."""
@@ -219,7 +219,7 @@ class DensePacking(Packing):
     def recipe(self, contact_modulus: float) -> Recipe:
         """All parameters of the brick, for disks of contact modulus E_c (Pa).
 
-        Raises CaseError when the confining stress is outside 5e-4 … 0.1 of the contact modulus.
+        Raises CaseError when the confining stress is outside 1e-5 … 0.1 of the contact modulus.
         """
         low, high = PRESSURES
         pressure = PRESSURE if self.confining_stress is None else self.confining_stress / contact_modulus
