@@ -124,15 +124,16 @@ class Bed:
                 continue
             places = np.concatenate([vectors[first], -vectors[second]])
             centre, radius = widest_circle(places, self.radii[around])
-            hopeless[disk] = radius >= largest
+            hopeless[disk] = max(radius, self.radii[disk]) >= largest
             self.positions[disk] += centre
             self.radii[disk] = min(radius + usual, largest)
         self.positions, self.radii = wrap(self.positions[~hopeless], self.box), self.radii[~hopeless]
 
-    def compress(self, pressure: float, tolerance: float) -> None:
+    def compress(self, pressure: float, tolerance: float, *, hasten: bool = False) -> None:
         """Scale all core radii by one factor until the relaxed bed is under `pressure` (over E_c).
 
-        A secant search on the logarithm of the factor. Raises PackingError when it does not converge.
+        A secant search on the logarithm of the factor. hasten : whether steps double while disks hardly touch. Raises
+        PackingError when it does not converge.
         """
         faint = 0.1 * pressure * 2.0 * float(self.radii.mean())
         slope, reached, step = STIFFNESS, math.nan, 0.0
@@ -143,7 +144,9 @@ class Bed:
                 return
             if abs(step) > 0.0 and before > 0.0:  # limit the slope, which jumps when disks rearrange
                 slope = min(max((reached - before) / step, 0.5 * STIFFNESS), 4.0 * STIFFNESS)
-            step = (pressure - reached) / slope
+            last, step = step, (pressure - reached) / slope
+            if hasten and reached < 0.5 * pressure and before < 0.5 * pressure:
+                step = max(step, 2.0 * last)
             self.radii[self.held :] *= math.exp(step)
         raise PackingError(
             f"the packing did not converge to its confining stress: {reached / pressure:.5f} of it reached "

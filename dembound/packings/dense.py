@@ -132,8 +132,8 @@ def settled(bed: Bed, pressure: float, fit: Callable[[np.ndarray], None], *, fin
 
     final : whether to the last digits. Returns whether it succeeded within `MAX_CROWDINGS` rounds.
     """
-    tolerance = MEDIUM
-    bed.compress(pressure, tolerance)
+    tolerance, hasten = MEDIUM, fit != bed.crowd
+    bed.compress(pressure, tolerance, hasten=hasten)
     for _ in range(MAX_CROWDINGS):
         loose = bed.loose()
         if loose.any():
@@ -143,7 +143,7 @@ def settled(bed: Bed, pressure: float, fit: Callable[[np.ndarray], None], *, fin
             return True
         else:
             tolerance = FINE
-        bed.compress(pressure, tolerance)
+        bed.compress(pressure, tolerance, hasten=hasten)
     return False
 
 
