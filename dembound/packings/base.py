@@ -31,6 +31,9 @@ PRESSURE = 8e-3
 # reach a tenth of the diameter and are no longer contacts.
 PRESSURES = (1e-5, 0.1)
 
+# Equal disks form crystals, which fall apart along their edges when the pressure falls.
+LOOSEST_EQUAL, LEAST_RATIO = 5e-4, 1.2
+
 SIZE = "size of a particle"
 """Meaning of keys that are sizes of disks."""
 
@@ -219,7 +222,8 @@ class DensePacking(Packing):
     def recipe(self, contact_modulus: float) -> Recipe:
         """All parameters of the brick, for disks of contact modulus E_c (Pa).
 
-        Raises CaseError when the confining stress is outside 1e-5 … 0.1 of the contact modulus.
+        Raises CaseError when the confining stress is outside 1e-5 … 0.1 of the contact modulus, or below 5e-4 of it
+        for nearly equal disks.
         """
         low, high = PRESSURES
         pressure = PRESSURE if self.confining_stress is None else self.confining_stress / contact_modulus
@@ -230,6 +234,14 @@ class DensePacking(Packing):
                     f"contact modulus {with_unit(contact_modulus, 'Pa')}; {low:g} to {high:g} of it "
                     f"({with_unit(low * contact_modulus, 'Pa')} to {with_unit(high * contact_modulus, 'Pa')}) "
                     "can be packed"
+                ]
+            )
+        if pressure < LOOSEST_EQUAL and self.radius_ratio < LEAST_RATIO:
+            raise CaseError(
+                [
+                    f"packing.radius_ratio: is {self.radius_ratio:g}, must be at least {LEAST_RATIO:g} for a confining "
+                    f"stress below {LOOSEST_EQUAL:g} of the contact modulus: nearly equal disks form crystals, which "
+                    "fall apart"
                 ]
             )
         return Recipe(

@@ -104,12 +104,12 @@ class Bed:
         self.radii[loose] = np.minimum(self.radii[loose] * GROWTH, largest)
         self.positions, self.radii = self.positions[~hopeless], self.radii[~hopeless]
 
-    def fill_cages(self, loose: np.ndarray) -> None:
+    def fill_cages(self, loose: np.ndarray, excess: float) -> None:
         """Put loose disks (n,) bool into the middle of the room they have, with radii that press on its three walls.
 
-        The radius exceeds that of the largest circle between the disks around by the mean overlap, so that hardly any
-        other contact opens: near the least density of a packing even 2 % more, see `crowd`, undo as many contacts as
-        they close. Of loose neighbours one is treated at a time; a disk with too much room is removed.
+        The radius exceeds that of the largest circle between the disks around by the mean overlap times `excess`; with
+        about 1 hardly any other contact opens, while near the least density of a packing 2 % more, see `crowd`, undo as
+        many contacts as they close. Of loose neighbours one is treated at a time; a disk with too much room is removed.
         """
         pairs, images = near_pairs(self.positions, self.radii, self.box, CAGE * float(self.radii.mean()))
         vectors = contact_vectors(self.positions, pairs, images, self.box)
@@ -126,7 +126,7 @@ class Bed:
             centre, radius = widest_circle(places, self.radii[around])
             hopeless[disk] = max(radius, self.radii[disk]) >= largest
             self.positions[disk] += centre
-            self.radii[disk] = min(radius + usual, largest)
+            self.radii[disk] = min(radius + excess * usual, largest)
         self.positions, self.radii = wrap(self.positions[~hopeless], self.box), self.radii[~hopeless]
 
     def compress(self, pressure: float, tolerance: float, *, hasten: bool = False) -> None:

@@ -2,7 +2,6 @@
 
 import logging
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +19,7 @@ SIZE_TOLERANCE = 2e-3  # of the mean radius
 MAX_STARTS = 30  # about one start in four succeeds with 100 disks: 0.75³⁰ = 2e-4 of the bricks fail
 MAX_CROWDINGS = 200  # rounds of growing loose disks; about 20 are usual
 CROWDED = 5e-4  # pressure over E_c below which loose disks are fitted into their room, as steps of growth are too large
+PRESSING = 10.0  # rounds after which fitted disks press twice as much: some take turns in being loose
 STAGE = 3.0  # ratio of two pressures in which looser beds are made: linear in the radii, they do not fall apart
 TOUCH = 1e-9  # of the mean radius: row disks that touch exactly have gaps of round-off size
 
@@ -70,7 +70,13 @@ def pack_dense(recipe: Recipe, rows: RegularRows = NO_ROWS) -> Brick:
     best, crowding = math.inf, recipe.pressure >= CROWDED
     estimates = []  # of the number of disks that would give the mean radius, one from each start
     for attempt in range(MAX_STARTS):
-        bed, crowding = pack_count(count, recipe, rows, attempt, crowding=crowding)
+        try:
+            bed, crowding = pack_count(count, recipe, rows, attempt, crowding=crowding)
+        except PackingError:
+            if attempt == MAX_STARTS - 1:
+                raise
+            crowding = False
+            continue
         factor = float(bed.radii[bed.held :].mean()) / recipe.radius
         if abs(factor - 1.0) <= SIZE_TOLERANCE:
             return finish(bed, recipe, rows)
@@ -109,10 +115,10 @@ def pack_count(
     radii = rng.permutation(np.linspace(*radius_range(recipe.radius, recipe.radius_ratio), count))
     bed = Bed(box, np.vstack([rows.positions, core]), np.concatenate([rows.radii, radii]), len(rows.radii))
     bed.compress(max(recipe.pressure, CROWDED), ROUGH)
-    if crowding and settled(bed, recipe.pressure, bed.crowd):
+    if crowding and settled(bed, recipe.pressure, fitting=False):
         return bed, True
     for pressure in stages(recipe.pressure):
-        if not settled(bed, pressure, bed.fill_cages, final=pressure == recipe.pressure):
+        if not settled(bed, pressure, fitting=True, final=pressure == recipe.pressure):
             loose = bed.loose()
             raise PackingError(
                 f"{int(loose.sum())} of {len(loose)} disks still have fewer than three contacts after "
@@ -127,23 +133,24 @@ def stages(pressure: float) -> list[float]:
     return [pressure * STAGE**step for step in range(steps, -1, -1)]
 
 
-def settled(bed: Bed, pressure: float, fit: Callable[[np.ndarray], None], *, final: bool = True) -> bool:
-    """Bring a bed to rest at a pressure (over E_c) without loose disks; fit(loose) : changes these each round.
+def settled(bed: Bed, pressure: float, *, fitting: bool, final: bool = True) -> bool:
+    """Bring a bed to rest at a pressure (over E_c) without loose disks.
 
-    final : whether to the last digits. Returns whether it succeeded within `MAX_CROWDINGS` rounds.
+    fitting : whether these are fitted into their room, pressing more from round to round, or grow by steps. final :
+    whether to the last digits. Returns whether it succeeded within `MAX_CROWDINGS` rounds.
     """
-    tolerance, hasten = MEDIUM, fit != bed.crowd
-    bed.compress(pressure, tolerance, hasten=hasten)
-    for _ in range(MAX_CROWDINGS):
+    tolerance = MEDIUM
+    bed.compress(pressure, tolerance, hasten=fitting)
+    for number in range(MAX_CROWDINGS):
         loose = bed.loose()
         if loose.any():
-            fit(loose)
+            bed.fill_cages(loose, 1.0 + number / PRESSING) if fitting else bed.crowd(loose)
             tolerance = MEDIUM
         elif tolerance == FINE or not final:
             return True
         else:
             tolerance = FINE
-        bed.compress(pressure, tolerance, hasten=hasten)
+        bed.compress(pressure, tolerance, hasten=fitting)
     return False
 
 
