@@ -32,7 +32,7 @@ PRESSURE = 8e-3
 PRESSURES = (1e-5, 0.1)
 
 # Equal disks form crystals, which fall apart along their edges when the pressure falls.
-LOOSEST_EQUAL, LEAST_RATIO = 5e-4, 1.2
+LOOSEST_EQUAL, LEAST_RATIO = 5e-4, 1.1
 
 SIZE = "size of a particle"
 """Meaning of keys that are sizes of disks."""

@@ -20,8 +20,8 @@ ROUNDS = 60
 SETTLED = 1e-3
 """Relative change of the stress between two solves that counts as none."""
 
-SLIGHT = 1e-300
-"""In place of stresses and forces of 0 that are divided by."""
+SLIGHT = 1e-9
+"""Stress of a bond under unit mean stress that counts as none: rounding leaves some 1e-13."""
 
 
 class FirstCrack(NamedTuple):
@@ -56,8 +56,8 @@ def first_crack(ground: PackedMaterial, material: Material, sign: float, axis: i
             break
         normal = closed * (stretch < 0.0)
         pressed = moduli.fric * springs.contact_normal * np.maximum(-stretch, 0.0)
-        needed = np.maximum(np.abs(springs.contact_shear * slip), SLIGHT)
-        shear = normal * np.minimum(1.0, pressed / needed)
+        needed = np.abs(springs.contact_shear * slip)
+        shear = normal * np.divide(pressed, needed, out=np.ones_like(needed), where=needed > pressed)
     return None if found is None else found._replace(stress=sign * found.stress)
 
 
@@ -91,9 +91,8 @@ def _first(
     pulled = springs.bond_normal * stretch / springs.area
     bent = np.abs(springs.bending * turn) * 1.5 / springs.bond_radius**2
     sheared = np.abs(springs.bond_shear * slip) / springs.area + limits.tan_fa * pulled
-    each = {
-        "tension": limits.tension / max((pulled + bent).max(), 1e-300),
-        "shear": limits.cohesion / max(sheared.max(), 1e-300),
-    }
+    largest = {"tension": (pulled + bent).max(), "shear": sheared.max()}
+    strength = {"tension": limits.tension, "shear": limits.cohesion}
+    each = {name: strength[name] / most if most > SLIGHT else np.inf for name, most in largest.items()}
     limit = min(each, key=lambda name: each[name])
     return FirstCrack(float(each[limit]), limit) if np.isfinite(each[limit]) else None
