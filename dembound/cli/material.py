@@ -20,8 +20,7 @@ def material(
 ) -> None:
     """Print what contacts and bonds make of the body, without a run.
 
-    Elastic moduli, wave speeds by direction, anisotropy, and the stress at which the first bond breaks: of one brick of
-    the packing, from static solves; of each layer.
+    Elastic moduli, wave speeds by direction, and the stress of the first crack, by static solves of a brick.
     """
     from dembound.disks.reports.micro_macro import describe_materials, material_rows, packing_line
     from dembound.disks.scene import build

@@ -187,7 +187,7 @@ class DensePacking(Packing):
         None,
         unit="Pa",
         means="stress",
-        help="pressure the brick is packed under, which sets its density; absent: 0.8 % of the contact modulus",
+        help="pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it",
         gt=0.0,
     )
     bond_gap: float = quantity(
