@@ -27,20 +27,18 @@ Advice = tuple[tuple[str, str], ...]
 _MODULUS: Advice = (
     ("youngs_modulus", "write youngs_modulus, Pa"),
     ("young_modulus", "write young_modulus, Pa"),
-    ("emod", f"{_SPEED}; or write emod and pb_emod, Pa"),
+    ("young", f"write young and poisson, of the body, or emod and pb_emod, of contacts and bonds, Pa{_MORE}"),
     ("", "give [material] a p_wave_speed, or emod and pb_emod; [bar] youngs_modulus"),
 )
 _OF_SHEAR: Advice = (
     ("youngs_modulus", _BAR_RATIO),
-    (
-        "kratio",
-        f"there is none: it follows from kratio and pb_kratio, normal over shear stiffness, and fric > 0{_MORE}",
-    ),
+    ("shear", f"write bulk and shear, Pa, of the body{_MORE}"),
 )
 _DENSITY: Advice = (("density", "write density, kg/m³, of the body as a whole: a particle's is larger, by the pores"),)
 _POISSON: Advice = (
     ("young_modulus", "write poisson_ratio"),
     ("youngs_modulus", _BAR_RATIO),
+    ("poisson", f"write poisson, and young, of the body{_MORE}"),
     ("", _RATIO),
 )
 _LOCAL: Advice = (

@@ -57,7 +57,7 @@ MORE = "More"
 
 ORDER = (
     *("new", "check", "run", "advise", "plot", "report", "calibrate", "chart", "sweep"),
-    *("cases", "schema", "packing", "boundary", "stability", "dispersion", "exact"),
+    *("cases", "schema", "material", "packing", "boundary", "stability", "dispersion", "exact"),
     *("resume", "rerun", "library", "respond"),
     *("estimate", "compare", "signals", "view", "movie", "wave", "gauge", "hopkinson", "cache"),
 )

@@ -254,9 +254,10 @@ def ground_of(case: DiskCase) -> PackedMaterial:
     """The case's brick, packed or from the cache, with its material."""
     brick = case.packing.pack(nominal_moduli(case.materials[-1]).emod)
     along = 1 if case.layer else 0  # waves in layers run upwards
+    places = [f"layer.{name}" for name in case.layer_names] or ["material"]
     materials = [
-        make_packed_material(brick, each, case.motion.held, along, mechanisms_of(case, each.quality_factor))
-        for each in reversed(case.materials)
+        make_packed_material(brick, each, case.motion.held, along, mechanisms_of(case, each.quality_factor), place)
+        for place, each in reversed([*zip(places, case.materials, strict=True)])
     ]
     if len(materials) == 1:
         return materials[0]

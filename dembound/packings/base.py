@@ -27,9 +27,12 @@ MOST_IN_BRICK = 1_000_000
 # Confining stress over contact modulus if the case gives none: 4.5 contacts per disk, and eight times the stress ρcv of
 # a wave of 0.5 m/s at 1000 m/s.
 PRESSURE = 8e-3
-# Below, a frictionless packing is nearly unstable and does not come to rest; above, overlaps reach a tenth of the
-# diameter and are no longer contacts.
-PRESSURES = (5e-4, 0.1)
+# Below, overlaps are 1e-5 of the diameter and the packing is as loose as frictionless disks can be; above, overlaps
+# reach a tenth of the diameter and are no longer contacts.
+PRESSURES = (1e-5, 0.1)
+
+# Equal disks form crystals, which fall apart along their edges when the pressure falls.
+LOOSEST_EQUAL, LEAST_RATIO = 5e-4, 1.1
 
 SIZE = "size of a particle"
 """Meaning of keys that are sizes of disks."""
@@ -184,7 +187,7 @@ class DensePacking(Packing):
         None,
         unit="Pa",
         means="stress",
-        help="pressure the brick is packed under, which sets its density; absent: 0.8 % of the contact modulus",
+        help="pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it",
         gt=0.0,
     )
     bond_gap: float = quantity(
@@ -219,7 +222,8 @@ class DensePacking(Packing):
     def recipe(self, contact_modulus: float) -> Recipe:
         """All parameters of the brick, for disks of contact modulus E_c (Pa).
 
-        Raises CaseError when the confining stress is outside 5e-4 … 0.1 of the contact modulus.
+        Raises CaseError when the confining stress is outside 1e-5 … 0.1 of the contact modulus, or below 5e-4 of it
+        for nearly equal disks.
         """
         low, high = PRESSURES
         pressure = PRESSURE if self.confining_stress is None else self.confining_stress / contact_modulus
@@ -230,6 +234,14 @@ class DensePacking(Packing):
                     f"contact modulus {with_unit(contact_modulus, 'Pa')}; {low:g} to {high:g} of it "
                     f"({with_unit(low * contact_modulus, 'Pa')} to {with_unit(high * contact_modulus, 'Pa')}) "
                     "can be packed"
+                ]
+            )
+        if pressure < LOOSEST_EQUAL and self.radius_ratio < LEAST_RATIO:
+            raise CaseError(
+                [
+                    f"packing.radius_ratio: is {self.radius_ratio:g}, must be at least {LEAST_RATIO:g} for a confining "
+                    f"stress below {LOOSEST_EQUAL:g} of the contact modulus: nearly equal disks form crystals, which "
+                    "fall apart"
                 ]
             )
         return Recipe(

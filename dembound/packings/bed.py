@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -17,6 +18,8 @@ MAX_ADJUSTMENTS = 60  # of the radii; about 5 are usual
 GROWTH = 1.02  # of a loose disk per round: the gaps around it close by about one usual overlap
 STIFFNESS = 0.7  # first guess of d(pressure/E_c)/d(ln radius): measured 0.68 at radius ratio 1.5
 PRESSURE_TOLERANCE = 5e-4
+ROUNDING = 1e-9  # of a radius: disks that touch
+CAGE = 1.0  # gap over the mean radius up to which disks can be the walls of a loose disk's room
 
 
 @dataclass
@@ -101,10 +104,36 @@ class Bed:
         self.radii[loose] = np.minimum(self.radii[loose] * GROWTH, largest)
         self.positions, self.radii = self.positions[~hopeless], self.radii[~hopeless]
 
-    def compress(self, pressure: float, tolerance: float) -> None:
+    def fill_cages(self, loose: np.ndarray, excess: float) -> None:
+        """Put loose disks (n,) bool into the middle of the room they have, with radii that press on its three walls.
+
+        The radius exceeds that of the largest circle between the disks around by the mean overlap times `excess`; with
+        about 1 hardly any other contact opens, while near the least density of a packing 2 % more, see `crowd`, undo as
+        many contacts as they close. Of loose neighbours one is treated at a time; a disk with too much room is removed.
+        """
+        pairs, images = near_pairs(self.positions, self.radii, self.box, CAGE * float(self.radii.mean()))
+        vectors = contact_vectors(self.positions, pairs, images, self.box)
+        overlaps = self.radii[pairs].sum(axis=1) - np.hypot(*vectors.T)
+        usual, largest = float(overlaps[overlaps > 0.0].mean()), self.radii[self.held :].max()
+        waiting, hopeless = loose.copy(), np.zeros(len(loose), bool)
+        for disk in np.flatnonzero(loose):
+            first, second = (pairs == disk).T
+            around = np.concatenate([pairs[first, 1], pairs[second, 0]])
+            waiting[disk] = False
+            if waiting[around].any():
+                continue
+            places = np.concatenate([vectors[first], -vectors[second]])
+            centre, radius = widest_circle(places, self.radii[around])
+            hopeless[disk] = max(radius, self.radii[disk]) >= largest
+            self.positions[disk] += centre
+            self.radii[disk] = min(radius + excess * usual, largest)
+        self.positions, self.radii = wrap(self.positions[~hopeless], self.box), self.radii[~hopeless]
+
+    def compress(self, pressure: float, tolerance: float, *, hasten: bool = False) -> None:
         """Scale all core radii by one factor until the relaxed bed is under `pressure` (over E_c).
 
-        A secant search on the logarithm of the factor. Raises PackingError when it does not converge.
+        A secant search on the logarithm of the factor. hasten : whether steps double while disks hardly touch. Raises
+        PackingError when it does not converge.
         """
         faint = 0.1 * pressure * 2.0 * float(self.radii.mean())
         slope, reached, step = STIFFNESS, math.nan, 0.0
@@ -115,9 +144,51 @@ class Bed:
                 return
             if abs(step) > 0.0 and before > 0.0:  # limit the slope, which jumps when disks rearrange
                 slope = min(max((reached - before) / step, 0.5 * STIFFNESS), 4.0 * STIFFNESS)
-            step = (pressure - reached) / slope
+            last, step = step, (pressure - reached) / slope
+            if hasten and reached < 0.5 * pressure and before < 0.5 * pressure:
+                step = max(step, 2.0 * last)
             self.radii[self.held :] *= math.exp(step)
         raise PackingError(
             f"the packing did not converge to its confining stress: {reached / pressure:.5f} of it reached "
             f"after {MAX_ADJUSTMENTS} adjustments of the radii"
         )
+
+
+def widest_circle(places: np.ndarray, radii: np.ndarray) -> tuple[np.ndarray, float]:
+    """Centre (2,) and radius of the largest circle held between three of some disks and free of all of them, in m.
+
+    places (k, 2) and radii (k,) of the disks. Without such a circle the radius is infinite.
+    """
+    chosen = np.array(list(combinations(range(len(radii)), 3)), dtype=np.int64).reshape(-1, 3)
+    x, r = places[chosen[:, 0]], radii[chosen[:, 0]]
+    # |c − x_k| = R + r_k, the first equation less the others: c − x = a + bR
+    apart, longer = places[chosen[:, 1:]] - x[:, None], radii[chosen[:, 1:]] - r[:, None]
+    squares = 0.5 * ((apart**2).sum(axis=2) - longer**2) - longer * r[:, None]
+    with np.errstate(all="ignore"):
+        a, b = (_solved(apart, sides) for sides in (squares, -longer))
+        two, one, none = (b**2).sum(axis=1) - 1.0, (a * b).sum(axis=1) - r, (a**2).sum(axis=1) - r**2
+        root = np.sqrt(one**2 - two * none)
+        found = np.stack([(-one - root) / two, (-one + root) / two], axis=1)
+        radius = np.where(found > 0.0, found, np.inf).min(axis=1)
+        centre = x + a + b * radius[:, None]
+        ways = places[chosen] - centre[:, None]
+        turns = _cross(ways, np.roll(ways, -1, axis=1))
+        gaps = np.hypot(*np.moveaxis(centre[:, None] - places, 2, 0)) - radii - radius[:, None]
+        fits = (np.abs(np.sign(turns).sum(axis=1)) == 3.0) & (gaps >= -ROUNDING * radius[:, None]).all(axis=1)
+    if not fits.any():
+        return np.zeros(2), math.inf
+    best = np.flatnonzero(fits)[np.argmax(radius[fits])]
+    return centre[best], float(radius[best])
+
+
+def _cross(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Cross products of vectors (…, 2)."""
+    return one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+
+
+def _solved(rows: np.ndarray, sides: np.ndarray) -> np.ndarray:
+    """Solutions (k, 2) of pairs of equations with rows (k, 2, 2) and right sides (k, 2); not finite without one."""
+    (first, second), (s, t) = np.moveaxis(rows, 1, 0), sides.T
+    return (s * np.array([second[:, 1], -second[:, 0]]) + t * np.array([-first[:, 1], first[:, 0]])).T / (
+        _cross(first, second)[:, None]
+    )

@@ -18,6 +18,9 @@ ROUGH, MEDIUM, FINE = 1e-3, 1e-4, 1e-9
 SIZE_TOLERANCE = 2e-3  # of the mean radius
 MAX_STARTS = 30  # about one start in four succeeds with 100 disks: 0.75³⁰ = 2e-4 of the bricks fail
 MAX_CROWDINGS = 200  # rounds of growing loose disks; about 20 are usual
+CROWDED = 5e-4  # pressure over E_c below which loose disks are fitted into their room, as steps of growth are too large
+PRESSING = 10.0  # rounds after which fitted disks press twice as much: some take turns in being loose
+STAGE = 3.0  # ratio of two pressures in which looser beds are made: linear in the radii, they do not fall apart
 TOUCH = 1e-9  # of the mean radius: row disks that touch exactly have gaps of round-off size
 
 
@@ -64,10 +67,16 @@ def pack_dense(recipe: Recipe, rows: RegularRows = NO_ROWS) -> Brick:
     """
     count = first_count(recipe, rows)
     LOGGER.info("packing a brick of %s disks", f"{count + len(rows.radii):,}")
-    best = math.inf
+    best, crowding = math.inf, recipe.pressure >= CROWDED
     estimates = []  # of the number of disks that would give the mean radius, one from each start
     for attempt in range(MAX_STARTS):
-        bed = pack_count(count, recipe, rows, attempt)
+        try:
+            bed, crowding = pack_count(count, recipe, rows, attempt, crowding=crowding)
+        except PackingError:
+            if attempt == MAX_STARTS - 1:
+                raise
+            crowding = False
+            continue
         factor = float(bed.radii[bed.held :].mean()) / recipe.radius
         if abs(factor - 1.0) <= SIZE_TOLERANCE:
             return finish(bed, recipe, rows)
@@ -90,8 +99,14 @@ def first_count(recipe: Recipe, rows: RegularRows) -> int:
     return max(round(room / (math.pi * mean_square)), 1)
 
 
-def pack_count(count: int, recipe: Recipe, rows: RegularRows, attempt: int) -> Bed:
-    """A bed that starts with `count` core disks, in equilibrium at the pressure, without loose disks."""
+def pack_count(
+    count: int, recipe: Recipe, rows: RegularRows, attempt: int, *, crowding: bool = True
+) -> tuple[Bed, bool]:
+    """A bed that starts with `count` core disks, in equilibrium at the pressure, without loose disks.
+
+    crowding : whether loose disks grow by steps; if that leaves some, or else, they are fitted into their room. Also
+    returns whether growing was enough.
+    """
     rng = np.random.default_rng([recipe.seed, attempt])
     box = np.array(recipe.size)
     core = rng.random((count, 2)) * box
@@ -99,22 +114,44 @@ def pack_count(count: int, recipe: Recipe, rows: RegularRows, attempt: int) -> B
     # evenly spaced, not random: the mean and the range are exact
     radii = rng.permutation(np.linspace(*radius_range(recipe.radius, recipe.radius_ratio), count))
     bed = Bed(box, np.vstack([rows.positions, core]), np.concatenate([rows.radii, radii]), len(rows.radii))
-    for tolerance in (ROUGH, MEDIUM):
-        bed.compress(recipe.pressure, tolerance)
-    for _ in range(MAX_CROWDINGS):
+    bed.compress(max(recipe.pressure, CROWDED), ROUGH)
+    if crowding and settled(bed, recipe.pressure, fitting=False):
+        return bed, True
+    for pressure in stages(recipe.pressure):
+        if not settled(bed, pressure, fitting=True, final=pressure == recipe.pressure):
+            loose = bed.loose()
+            raise PackingError(
+                f"{int(loose.sum())} of {len(loose)} disks still have fewer than three contacts after "
+                f"{MAX_CROWDINGS} rounds of fitting them between their neighbours"
+            )
+    return bed, False
+
+
+def stages(pressure: float) -> list[float]:
+    """Pressures over E_c, the last of which is `pressure`, in which a bed comes to one below `CROWDED`."""
+    steps = max(math.ceil(math.log(CROWDED / pressure, STAGE)), 0)
+    return [pressure * STAGE**step for step in range(steps, -1, -1)]
+
+
+def settled(bed: Bed, pressure: float, *, fitting: bool, final: bool = True) -> bool:
+    """Bring a bed to rest at a pressure (over E_c) without loose disks.
+
+    fitting : whether these are fitted into their room, pressing more from round to round, or grow by steps. final :
+    whether to the last digits. Returns whether it succeeded within `MAX_CROWDINGS` rounds.
+    """
+    tolerance = MEDIUM
+    bed.compress(pressure, tolerance, hasten=fitting)
+    for number in range(MAX_CROWDINGS):
         loose = bed.loose()
         if loose.any():
-            bed.crowd(loose)
+            bed.fill_cages(loose, 1.0 + number / PRESSING) if fitting else bed.crowd(loose)
             tolerance = MEDIUM
-        elif tolerance == FINE:
-            return bed
+        elif tolerance == FINE or not final:
+            return True
         else:
             tolerance = FINE
-        bed.compress(recipe.pressure, tolerance)
-    raise PackingError(
-        f"{int(loose.sum())} of {len(loose)} disks still have fewer than three contacts after "
-        f"{MAX_CROWDINGS} rounds of growing them"
-    )
+        bed.compress(pressure, tolerance, hasten=fitting)
+    return False
 
 
 def finish(bed: Bed, recipe: Recipe, rows: RegularRows) -> Brick:

@@ -169,7 +169,7 @@ sweep = { action = "calibrate", vary = { packing = { seed = "1:3" } } }
 
 SURROUND = """
 packing = { pattern = "A", size = [12.0, 6.0], radius = 0.5 }
-material = { density = 2500.0, p_wave_speed = 1000.0, s_wave_speed = 500.0, kratio = 2.0, damp = 0.0 }
+material = { density = 2500.0, p_wave_speed = 1000.0, kratio = 2.0, damp = 0.0 }
 boundary = { left = { type = "outside" }, right = { type = "outside" }, bottom = { type = "outside" } }
 incident = { type = "sv", angle = 20.0, wave = "ramp", point = [0.0, 0.0] }
 wave.ramp = { type = "constant", amplitude = 0.1, rise = 0.05, start = 0.01 }

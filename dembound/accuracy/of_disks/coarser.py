@@ -23,7 +23,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.layer import Layer
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.material import STIFFNESS_KEYS, TARGET_KEYS, Material
 from dembound.casefile.disks.static import Static
 from dembound.disks.loads import forces_of
 from dembound.disks.material.layered import materials_in
@@ -159,7 +159,7 @@ def _of_lattice(material: Material) -> dict[str, float | None]:
     """The keys of a layer for a material of a square lattice."""
     moduli = nominal_moduli(material)
     keys = "emod", "pb_emod", "kratio", "pb_kratio"
-    return {key: getattr(moduli, key) for key in keys} | {"p_wave_speed": None, "s_wave_speed": None}
+    return dict.fromkeys((*STIFFNESS_KEYS, *TARGET_KEYS)) | {key: getattr(moduli, key) for key in keys}
 
 
 def _material(material: Material, ground: PackedMaterial, along: int = 0) -> Material:
@@ -171,14 +171,13 @@ def _material(material: Material, ground: PackedMaterial, along: int = 0) -> Mat
     moduli = ground.moduli
     ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
     contacts = moduli.emod / (moduli.emod + moduli.pb_emod)
-    replaced = {"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
+    replaced = {*STIFFNESS_KEYS, *TARGET_KEYS, "match", "kratio", "pb_kratio", "locked_in"}
     given = material.model_dump(exclude_unset=True, exclude=replaced)
     given |= {
         "p_wave_speed": p,
         "contact_share": contacts,
         "kratio": ratio,
         "pb_kratio": ratio if material.fric > 0.0 else ratio * (1.0 - contacts),  # else bonds carry all shear
-        "s_wave_speed": None,
     }
     return Material.model_validate({key: value for key, value in given.items() if value is not None})
 

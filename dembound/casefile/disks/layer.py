@@ -3,11 +3,19 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import ValidationError, model_validator
 
-from dembound.casefile.disks.material import MODULI_KEYS, STIFFNESS_KEYS, WAVE_SPEED_KEYS, Material
+from dembound.casefile.disks.material import (
+    MODULI_KEYS,
+    RATIO_KEYS,
+    STIFFNESS_KEYS,
+    TARGET_KEYS,
+    WAVE_SPEED_KEYS,
+    Material,
+)
+from dembound.casefile.disks.targets import PAIRS
 from dembound.casefile.messages import numbered, places, show
 from dembound.packings import Packing
 from dembound.packings.base import TYPED
@@ -28,9 +36,9 @@ def _as_in_material(key: str) -> Any:
 class Layer(Table):
     """A horizontal layer of the ground, from the surface down in the order of the file.
 
-    A key that is absent is as in [material], which gives all that has no key here. Of `p_wave_speed`, `s_wave_speed`,
-    `emod` and `pb_emod` a layer that gives one takes none from [material], which needs none, nor a density, if every
-    layer has its own.
+    A key that is absent is as in [material], which gives all that has no key here. A layer that gives one of the keys
+    for stiffness (wave speeds, targets, `emod` and `pb_emod`) takes none of them from [material], which needs none, nor
+    a density, if every layer has its own.
     """
 
     name: FileName | None = quantity(None, unit="1", help="name in results; absent: its number, from 1 at the surface")
@@ -41,6 +49,12 @@ class Layer(Table):
     density: float | None = _as_in_material("density")
     p_wave_speed: float | None = _as_in_material("p_wave_speed")
     s_wave_speed: float | None = _as_in_material("s_wave_speed")
+    young: float | None = _as_in_material("young")
+    poisson: float | None = _as_in_material("poisson")
+    bulk: float | None = _as_in_material("bulk")
+    shear: float | None = _as_in_material("shear")
+    plane: Literal["strain", "stress"] | None = _as_in_material("plane")
+    along: Literal["isotropic", "x", "y"] | None = _as_in_material("along")
     emod: float | None = _as_in_material("emod")
     pb_emod: float | None = _as_in_material("pb_emod")
     kratio: float | None = _as_in_material("kratio")
@@ -74,7 +88,9 @@ class Layer(Table):
         """Its material: a case's [material] with the keys that it gives. Raises ValidationError for mistakes in it."""
         own, gone = self.own, set[str]()
         if not own.keys().isdisjoint(STIFFNESS_KEYS):
-            gone |= {*STIFFNESS_KEYS, *(() if "p_wave_speed" in own else ("match",))}
+            gone |= {*STIFFNESS_KEYS, *TARGET_KEYS, *(() if "p_wave_speed" in own else ("match",))}
+            if any(own.keys() >= {*pair} for pair in PAIRS):
+                gone |= {*RATIO_KEYS, "match"}
         if not own.keys().isdisjoint(MODULI_KEYS):
             gone |= {*WAVE_SPEED_KEYS}
         return Material(**{key: value for key, value in material.given().items() if key not in gone} | own)

@@ -5,13 +5,18 @@ from typing import Literal
 from pydantic import model_validator
 
 from dembound.casefile.disks.scatter import Scatter
+from dembound.casefile.disks.targets import PAIRS, PlaneModuli, Target
 from dembound.casefile.types import LAWS, LawName
 from dembound.table import Table, quantity
 
 WAVE_SPEED_KEYS = ("match", "contact_share")
 MODULI_KEYS = ("emod", "pb_emod")
-STIFFNESS_KEYS = ("p_wave_speed", "s_wave_speed", *MODULI_KEYS)
+RATIO_KEYS = ("kratio", "pb_kratio")
+STIFFNESS_KEYS = (*(key for pair in PAIRS for key in pair), *MODULI_KEYS)
 """Keys from which the moduli follow."""
+
+TARGET_KEYS = ("plane", "along")
+"""Keys that say what targets of the body mean."""
 
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
 BOND_KEYS = (*STRENGTH_KEYS, "pb_fa", "pb_scatter")
@@ -28,9 +33,11 @@ def with_history() -> str:
 
 
 class Material(Table):
-    """Density, and contacts and bonds by PFC's names; stiffness follows from a wave speed, or `emod` and `pb_emod`.
+    """Density, and contacts and bonds by PFC's names; stiffness is given, or follows from wave speeds or targets.
 
-    A `p_wave_speed` is made stiffness by Z eqs 9-11; an `s_wave_speed` alone scales it so that S waves have that speed.
+    Targets are elastic constants of the body: `young` and `poisson`, `bulk` and `shear`, or both wave speeds. Moduli
+    and `kratio` = `pb_kratio` are then found so that the packing has them. A `p_wave_speed` alone is made stiffness by
+    Z eqs 9-11; an `s_wave_speed` alone scales it so that S waves have that speed; `emod` and `pb_emod` give it.
     With the law "elastic" contacts neither open nor slip, and bonds do not break. "linearpbond" is PFC's: linear
     contacts without tension and with Coulomb friction, and parallel bonds that break for good. Only history-dependent
     laws have `locked_in` (which needs a static stage), `geometry`, `elastic_start`, and the dashpots `dp_nratio` and
@@ -61,8 +68,24 @@ class Material(Table):
         None,
         unit="m/s",
         means="wave speed",
-        help="S-wave speed of the body if given alone, else for the boundaries only; absent: the packing's own",
+        help="S-wave speed of the body; beside emod and pb_emod of the boundaries only; absent: the packing's own",
         gt=0.0,
+    )
+    young: float | None = quantity(None, unit="Pa", means="modulus", help="Young's modulus of the body", gt=0.0)
+    poisson: float | None = quantity(
+        None, unit="1", means="Poisson's ratio", help="Poisson's ratio of the body", gt=-1.0, lt=1.0
+    )
+    bulk: float | None = quantity(None, unit="Pa", means="modulus", help="bulk modulus of the body", gt=0.0)
+    shear: float | None = quantity(None, unit="Pa", means="modulus", help="shear modulus of the body", gt=0.0)
+    plane: Literal["strain", "stress"] = quantity(
+        "strain",
+        unit="1",
+        help='which young, poisson, bulk are meant: "strain", of the solid in plane strain; "stress", of the 2D sample',
+    )
+    along: Literal["isotropic", "x", "y"] = quantity(
+        "isotropic",
+        unit="1",
+        help='what has the targets: "isotropic", the mean over directions; "x", "y": waves or a test along it',
     )
     emod: float | None = quantity(
         None, unit="Pa", means="modulus", help="modulus E_c of the contacts; 0 in pattern A only", ge=0.0
@@ -154,7 +177,15 @@ class Material(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Material":
-        problems = self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
+        if len(self._pair) > 0:
+            problems = self._problems_with_target()
+        else:
+            problems = self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
+            problems += [
+                f"{key}: is only allowed together with targets: young and poisson, or both wave speeds"
+                for key in TARGET_KEYS
+                if key in self.model_fields_set
+            ]
         problems += self._problems_with_strength()
         if not LAWS[self.law].has_history:
             problems += self._problems_without_history()
@@ -169,7 +200,69 @@ class Material(Table):
     @property
     def by_s_waves(self) -> bool:
         """Whether the moduli follow from the S-wave speed alone."""
-        return all(getattr(self, key) is None for key in ("p_wave_speed", *MODULI_KEYS))
+        others = ("p_wave_speed", *MODULI_KEYS)
+        return self.s_wave_speed is not None and all(getattr(self, key) is None for key in others)
+
+    @property
+    def _pair(self) -> tuple[str, ...]:
+        """The keys that are targets, of a pair that may lack one; without targets none."""
+        for pair in PAIRS:
+            count = sum(getattr(self, key) is not None for key in pair)
+            if count == 2 or (count == 1 and pair != PAIRS[2]):
+                return pair
+        return ()
+
+    @property
+    def target(self) -> Target | None:
+        """What is asked of the body, from which moduli and kratio follow; None if they are given otherwise."""
+        pair = self._pair
+        if not pair:
+            return None
+        values = [getattr(self, key) for key in pair]
+        if pair == PAIRS[2]:
+            moduli = PlaneModuli.of_speeds(self.density, *values)
+        else:
+            of = PlaneModuli.of_young if pair == PAIRS[0] else PlaneModuli.of_bulk
+            moduli = of(values[0], values[1], self.plane)
+        return Target((pair[0], pair[1]), moduli, self.along, self.plane)
+
+    def _problems_with_target(self) -> list[str]:
+        """Mistakes of a material given by elastic constants of the body."""
+        pair = self._pair
+        together = " and ".join(pair)
+        problems = [f"{key}: is missing; {together} go together" for key in pair if getattr(self, key) is None]
+        problems += [
+            f"{key}: is not allowed together with {together}, which give the stiffness"
+            for key in STIFFNESS_KEYS
+            if key not in pair and getattr(self, key) is not None
+        ]
+        problems += [
+            f"{key}: is not allowed together with {together}, from which it is found"
+            for key in RATIO_KEYS
+            if key in self.model_fields_set
+        ]
+        if "match" in self.model_fields_set:
+            problems.append(
+                f"match: is only allowed together with p_wave_speed alone; {together} are those of the packing"
+            )
+        if pair == PAIRS[2]:
+            if "plane" in self.model_fields_set:
+                problems.append("plane: is only allowed together with young and poisson, or bulk and shear")
+            if (
+                self.s_wave_speed is not None
+                and self.p_wave_speed is not None
+                and self.s_wave_speed >= self.p_wave_speed
+            ):
+                problems.append(f"s_wave_speed: is {self.s_wave_speed:g}, must be less than p_wave_speed")
+        if pair == PAIRS[1] and self.along != "isotropic":
+            problems.append('along: is of waves or of a test; with bulk and shear it must be "isotropic"')
+        if self.poisson is not None and self.plane == "strain" and self.poisson >= 0.5:
+            problems.append(
+                f'poisson: is {self.poisson:g}, must be less than 0.5; a 2D sample (plane = "stress") may have it'
+            )
+        if self.fric == 0.0 and self.contact_share == 1.0:
+            problems.append("contact_share: is 1, so without friction nothing carries shear; give less, or fric > 0")
+        return problems
 
     @property
     def has_dashpots(self) -> bool:
@@ -196,21 +289,21 @@ class Material(Table):
 
     def _problems_with_speed(self) -> list[str]:
         """Mistakes of a material given by its P-wave speed."""
-        problems = [
+        return [
             f"{key}: is not allowed together with p_wave_speed, which gives the moduli"
             for key in MODULI_KEYS
             if getattr(self, key) is not None
         ]
-        if self.s_wave_speed is not None and self.p_wave_speed is not None and self.s_wave_speed >= self.p_wave_speed:
-            problems.append(f"s_wave_speed: is {self.s_wave_speed:g}, must be less than p_wave_speed")
-        return problems
 
     def _problems_with_moduli(self) -> list[str]:
         """Mistakes of a material without a P-wave speed."""
         missing = [key for key in MODULI_KEYS if getattr(self, key) is None]
         by_speed = len(missing) == 2
         if by_speed and self.s_wave_speed is None:
-            return ["p_wave_speed: is missing; give either p_wave_speed, s_wave_speed or both emod and pb_emod"]
+            return [
+                "p_wave_speed: is missing; give either p_wave_speed, s_wave_speed, young and poisson, bulk and shear, "
+                "or emod and pb_emod"
+            ]
         problems = [] if by_speed else [f"{key}: is missing; emod and pb_emod go together" for key in missing]
         for key in ("match",) if by_speed else WAVE_SPEED_KEYS:
             if key in self.model_fields_set:

@@ -19,6 +19,7 @@ from dembound.damping.attenuation import Attenuation
 from dembound.disks.material.free_surface import cut_at, skin_depths
 from dembound.disks.material.homogenise import HomogenisedMaterial, Network, homogenise
 from dembound.disks.material.sliding import sliding_forces
+from dembound.disks.material.targets import with_target
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
@@ -232,6 +233,10 @@ class PackedMaterial:
             self._cuts[height] = float(brick.mass_offset[1]), -depth
         return self._cuts[height]
 
+    def remember(self, found: HomogenisedMaterial) -> None:
+        """Take the continuum with both translations free from a solve for a multiple of its moduli."""
+        self._continua[tuple(component for component in self.held if component == 2)] = found
+
     def _continuum(self, held: tuple[int, ...]) -> HomogenisedMaterial:
         """The continuum with some components held, computed once."""
         if held not in self._continua:
@@ -271,16 +276,25 @@ class PackedMaterial:
 
 
 def make_packed_material(
-    brick: Brick, material: Material, held: Iterable[str], along: int = 0, mechanisms: Attenuation | None = None
+    brick: Brick,
+    material: Material,
+    held: Iterable[str],
+    along: int = 0,
+    mechanisms: Attenuation | None = None,
+    place: str = "material",
 ) -> PackedMaterial:
     """Combine a brick with its material; if match is "assembly", the moduli are scaled to the given wave speed.
 
-    An S-wave speed alone always scales them. along : axis of the waves with the given speed, 0 (x) or 1 (y).
-    mechanisms : of its damping.
+    An S-wave speed alone always scales them; targets of the body are met, see targets.py. along : axis of the waves
+    with a single given speed, 0 (x) or 1 (y). mechanisms : of its damping. place : of its table, for messages.
 
-    Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
+    Raises CaseError for a locked-in stress that the packing's contacts cannot carry, and for targets out of reach.
     """
-    ground = replace(_scaled(brick, material, held, along), mechanisms=mechanisms)
+    ground = _scaled(brick, material, held, along)
+    if material.target is not None:
+        ground = with_target(ground, material.target, place)
+    if mechanisms is not None:
+        ground = replace(ground, mechanisms=mechanisms)
     if material.locked_in is not None:
         most = LARGEST_OVERLAP * ground.moduli.emod
         if ground.packed_pressure <= 0.0:
@@ -299,8 +313,10 @@ def _scaled(brick: Brick, material: Material, held: Iterable[str], along: int) -
         moduli=nominal_moduli(material),
         law=LAWS[material.law],
         held=tuple(AXES[name] for name in held),
-        given_speeds=(material.p_wave_speed, material.s_wave_speed),
+        given_speeds=(None, None) if material.target else (material.p_wave_speed, material.s_wave_speed),
     )
+    if material.target is not None:
+        return ground
     kind, given = (1, material.s_wave_speed) if material.by_s_waves else (0, material.p_wave_speed)
     if given is None or (kind == 0 and material.match == "lattice"):
         return ground
@@ -312,8 +328,10 @@ def _scaled(brick: Brick, material: Material, held: Iterable[str], along: int) -
 
 
 def nominal_moduli(material: Material) -> Moduli:
-    """Micro-parameters as the case gives them, or by Z eq. 11 from its wave speed."""
+    """Micro-parameters as the case gives them, or by Z eq. 11 from its wave speed, or from that of its targets."""
     speed = material.p_wave_speed or (material.s_wave_speed if material.by_s_waves else None)
+    if material.target is not None:
+        speed = float(np.sqrt(material.target.moduli.uniaxial / material.density))
     if speed is not None:
         emod, pb_emod = lattice_moduli(material.density, speed, material.contact_share, material.pb_rmul)
     else:

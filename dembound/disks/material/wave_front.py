@@ -70,10 +70,21 @@ def largest_phase_speed(ground: PackedMaterial) -> float:
     """
     free = [axis for axis in (0, 1) if axis not in ground.held]
     angle = np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-    normal = np.stack([np.cos(angle), np.sin(angle)])
-    stiffness = ground.tensor[INDEX[:, :, None, None], INDEX]  # (a, i, b, j)
-    christoffel = np.einsum("aibj,ik,jk->kab", stiffness, normal, normal)[:, free][:, :, free]
+    christoffel = _christoffel(ground.tensor, angle)[:, free][:, :, free]
     return float(np.sqrt(np.linalg.eigvalsh(christoffel).max(initial=0.0) / ground.density))
+
+
+def phase_speeds(ground: PackedMaterial, angle: np.ndarray) -> np.ndarray:
+    """Speeds (k, 2) m/s of long plane P and S waves at angles (k,) from x, in a body that moves freely."""
+    squares = np.linalg.eigvalsh(_christoffel(ground.material_tensor, angle))
+    return np.asarray(np.sqrt(squares[:, ::-1] / ground.density))
+
+
+def _christoffel(tensor: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Christoffel matrices (k, 2, 2) Pa of a homogenised tensor for waves at angles (k,) from x."""
+    normal = np.stack([np.cos(angle), np.sin(angle)])
+    stiffness = tensor[INDEX[:, :, None, None], INDEX]  # (a, i, b, j)
+    return np.asarray(np.einsum("aibj,ik,jk->kab", stiffness, normal, normal))
 
 
 def largest_group_speed(lattice: PackedMaterial, safety: float) -> float:

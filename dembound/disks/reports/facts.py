@@ -29,6 +29,9 @@ from dembound.words import Entries, in_one_unit, percent, with_unit
 BALANCED = 1e-9
 """Part of the forces of a pressure below which their sum is a rounding error."""
 
+FOUND_DIGITS = 5
+"""Digits of micro-parameters that have been found."""
+
 MICRONS = 6
 """Digits of heights in m."""
 
@@ -125,6 +128,8 @@ def _packing_facts(scene: DiskScene) -> Entries:
     if (pressure := scene.ground.packed_pressure) > 0.0:  # a lattice needs none
         ratio = f"residual force ratio {packing['residual_ratio']:.1e}"
         yield "brick equilibrium", f"{ratio}, packed under {with_unit(pressure, 'Pa')}"
+    for own in materials_of(scene):
+        yield from _found_facts(own)
     if layers := describe_layers(scene):
         yield from _layer_facts(scene, layers)
         return
@@ -132,6 +137,16 @@ def _packing_facts(scene: DiskScene) -> Entries:
     texts, unit = in_one_unit([packing[name] for name in moduli], "Pa")
     yield "homogenised stiffness", f"{', '.join(map(' '.join, zip(moduli, texts, strict=True)))} {unit}"
     yield "wave speeds", ", ".join(speeds) or "no motion is free"
+
+
+def _found_facts(own: Own) -> Entries:
+    """Stiffness of contacts and bonds that follows from targets of the body."""
+    if own.material.target is not None:
+        moduli = own.ground.moduli
+        texts, unit = in_one_unit([moduli.emod, moduli.pb_emod], "Pa", FOUND_DIGITS)
+        ratio = f"kratio = pb_kratio = {moduli.kratio:.{FOUND_DIGITS}g}"
+        asked = " and ".join(own.material.target.keys)
+        yield f"found{own.name}", f"emod {texts[0]}, pb_emod {texts[1]} {unit}, {ratio} from {asked}"
 
 
 def _layer_facts(scene: DiskScene, layers: Sequence[Mapping[str, Any]]) -> Entries:

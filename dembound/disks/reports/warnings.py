@@ -10,7 +10,7 @@ import numpy as np
 from dembound.boundaries import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.material import with_history
+from dembound.casefile.disks.material import MODULI_KEYS, with_history
 from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.material.wave_front import slowest_speed
@@ -78,6 +78,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *load_warnings(scene),
         *_of_each_layer(scene, _speed_of_the_packing),
         *_of_each_layer(scene, _s_speed_of_the_packing),
+        *_of_each_layer(scene, _uneven_speed),
         *_of_each_layer(scene, _unlikely_speed),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
     ]
@@ -215,7 +216,7 @@ def _settles_in_tension(scene: DiskScene, own: Own) -> Iterator[str]:
 def _speed_of_the_packing(scene: DiskScene, own: Own) -> Iterator[str]:
     """A given wave speed that holds for the square lattice but not for the packing."""
     material = own.material
-    if material.p_wave_speed is None or material.match == "assembly":
+    if material.p_wave_speed is None or material.match == "assembly" or material.target is not None:
         return
     for axis in _axes_in_use(scene):
         speed = own.ground.wave_speeds(axis)[0]
@@ -230,7 +231,7 @@ def _speed_of_the_packing(scene: DiskScene, own: Own) -> Iterator[str]:
 def _s_speed_of_the_packing(scene: DiskScene, own: Own) -> Iterator[str]:
     """A warning about a given speed of S waves that the packing does not have: only dashpots of sides use it."""
     given = own.material.s_wave_speed
-    if given is None:
+    if given is None or own.material.target is not None:
         return
     for axis in _axes_in_use(scene):
         speed = own.ground.wave_speeds(axis)[1]
@@ -243,6 +244,22 @@ def _s_speed_of_the_packing(scene: DiskScene, own: Own) -> Iterator[str]:
             return
 
 
+def _uneven_speed(scene: DiskScene, own: Own) -> Iterator[str]:
+    """Targets of the body that waves along an axis do not have, as the packing differs by direction."""
+    target, ground = own.material.target, own.ground
+    if target is None:
+        return
+    asked = np.sqrt(np.array([target.moduli.uniaxial, target.moduli.shear]) / ground.density)
+    for axis in _axes_in_use(scene):
+        for name, speed, meant in zip("PS", ground.wave_speeds(axis), asked, strict=True):
+            if abs(speed / meant - 1.0) > SPEED_ERROR:
+                yield (
+                    f'{own.key("along")}: is "{target.along}", for which {name} waves have {meant:.4g} m/s, but along '
+                    f'{"xy"[axis]} they run at {speed:.4g} m/s; give along = "{"xy"[axis]}", or a larger random brick'
+                )
+                return
+
+
 def _unlikely_speed(scene: DiskScene, own: Own) -> Iterator[str]:
     """Moduli and density that are likely, but give waves of no solid."""
     material = own.material
@@ -250,7 +267,9 @@ def _unlikely_speed(scene: DiskScene, own: Own) -> Iterator[str]:
         return
     speed = own.ground.wave_speeds(0)[0]
     if found := MEANINGS["wave speed"].doubt(speed, "m/s", given=False):  # nan is not
-        yield f"{own.key('emod')}: makes P waves of a speed that {found}; are emod and pb_emod in Pa, density in kg/m³?"
+        keys = MODULI_KEYS if material.target is None else material.target.keys[:1]
+        are = f"{'is' if len(keys) == 1 else 'are'} {' and '.join(keys)}"
+        yield f"{own.key(keys[0])}: makes P waves of a speed that {found}; {are} in Pa, density in kg/m³?"
 
 
 def _axes_in_use(scene: DiskScene) -> list[int]:

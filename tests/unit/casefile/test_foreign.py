@@ -33,8 +33,8 @@ material | pb_radius | write pb_rmul
 material | pb_mcf | there is none: bonds break as with pb_mcf = 1
 material | contact_model | write law, "elastic" or "linearpbond"
 material | stress | [static] has stress = [sxx, syy, sxy]
-material | E | write p_wave_speed, which with density gives the moduli
-material | Poisson | there is none for disks: it follows from kratio and pb_kratio
+material | E | write young and poisson, of the body, or emod and pb_emod
+material | Poisson_ratio | write poisson, and young, of the body
 bar | poisson | there is none: a bar moves along its axis only
 material | restitution | write dp_nratio and dp_sratio, shares of critical damping, with law
 material | damping | write damp, which is for bringing bodies to rest: for waves leave it 0
@@ -102,7 +102,7 @@ def test_a_name_that_other_codes_have_in_several_tables_is_answered_by_the_keys_
 
 
 def test_only_a_near_key_is_guessed() -> None:
-    for key in ("stiffnes_of_all", "colour", "kz", "poisoned", "dampened", "pbx"):
+    for key in ("stiffnes_of_all", "colour", "kz", "dampened", "pbx"):
         line = about(DISKS, "material", key)
         assert line.startswith("unknown key; allowed: density, ")
         assert "did you mean" not in line

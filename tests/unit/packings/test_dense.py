@@ -7,6 +7,7 @@ import pytest
 
 from dembound.errors import PackingError
 from dembound.packings import dense
+from dembound.packings.bed import Bed
 from dembound.packings.dense import pack_dense
 
 
@@ -97,6 +98,26 @@ def test_rows_are_straight_equal_and_touching(edged_brick, recipe):
     assert np.count_nonzero(edged_brick.edge_rows.all(axis=1)) == 1
     core = edged_brick.radii[~edged_brick.edge_rows.any(axis=1)]  # which is scaled alone
     assert core.mean() == pytest.approx(recipe.radius, rel=2e-3)
+
+
+@pytest.mark.parametrize("pressure", [1e-5, 1e-4])
+def test_looser_packings_have_hardly_more_contacts_than_they_need(recipe, pressure):
+    """Frictionless disks at rest need four contacts each, on average."""
+    brick = pack_dense(replace(recipe, pressure=pressure, radius_ratio=1.66))
+    assert 4.0 <= brick.coordination < 4.25
+    assert brick.residual_ratio <= 1e-9
+    assert -0.5 * brick.stress[:2].sum() == pytest.approx(pressure, rel=5e-4)
+    assert np.bincount(brick.pairs.ravel()).min() >= 3
+    assert brick.radii.mean() == pytest.approx(recipe.radius, rel=2e-3)
+    assert brick.radii.max() <= 1.66 * brick.radii.min() * (1 + 1e-12)
+
+
+def test_disks_that_growing_leaves_loose_are_fitted(recipe, monkeypatch):
+    """As in large bricks at low pressure, where growing by steps opens as many contacts as it closes."""
+    monkeypatch.setattr(Bed, "crowd", lambda *given: None)
+    brick = pack_dense(replace(recipe, size=(4.0, 3.0)))
+    assert brick.residual_ratio <= 1e-9
+    assert np.bincount(brick.pairs.ravel()).min() >= 3
 
 
 def test_failure_says_how_far_it_got(recipe, monkeypatch):

@@ -66,10 +66,15 @@ def test_edge_radii_are_adjusted_to_whole_disks():
     assert 28 * on_x + 2 * on_y == pytest.approx(8.0)  # the corner disk and 14 more
 
 
-@pytest.mark.parametrize("modulus", [1e7, 1e12])
+@pytest.mark.parametrize("modulus", [1e7, 2e12])
 def test_confining_stress_out_of_range_names_the_range(modulus):
     with pytest.raises(CaseError, match=r"packing\.confining_stress: 10 MPa .* can be packed"):
         read({**B, "confining_stress": 1e7}).pack(modulus)
+
+
+def test_loose_packings_of_nearly_equal_disks_are_refused():
+    with pytest.raises(CaseError, match=r"packing\.radius_ratio: is 1\.05, must be at least 1\.1 .* crystals"):
+        read({**B, "radius_ratio": 1.05, "confining_stress": 1e6}).pack(1e10)
 
 
 def test_bricks_are_packed_once_for_a_stress_over_the_modulus(monkeypatch):

@@ -1,5 +1,7 @@
 """Layers of the ground: what they take from [material], where they end, and their mistakes."""
 
+import tomllib
+
 import pytest
 from small_cases import BODY, problems_of
 
@@ -35,6 +37,17 @@ def test_a_layer_takes_from_the_material_what_it_does_not_give() -> None:
     assert rock.given() == {"density": 2500.0, "emod": 1e9, "pb_emod": 2e9}
     assert case.joints == (3.5, 2.0)
     assert case.layer_names == ("clay", "2", "rock")
+
+
+def test_a_layer_with_targets_takes_no_stiffness_from_the_material() -> None:
+    """Nor ratios of stiffness, which follow from targets; targets of [material] are left out in the same way."""
+    moduli, targets = "emod = 1e9\npb_emod = 1e9\n", 'young = 5e9\npoisson = 0.3\nalong = "y"\n'
+    for own, others in ((targets, "p_wave_speed = 1000.0\nkratio = 2.0\n"), (moduli, targets)):
+        text = BODY.replace("p_wave_speed = 1000.0", others) + SOIL.replace("s_wave_speed = 200.0", own)
+        assert loads(text.replace("kratio = 2.0\n\n", "\n")).materials[0].given() == {
+            "density": 2500.0,
+            **tomllib.loads(own),
+        }
 
 
 def test_uniform_ground_is_one_material_without_joints() -> None:

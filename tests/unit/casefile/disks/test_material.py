@@ -3,6 +3,7 @@
 import pytest
 
 from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.targets import PlaneModuli
 
 STIFFNESS = {"emod": 1e9, "pb_emod": 1e9}
 SPEED = {"p_wave_speed": 1e3}
@@ -11,7 +12,10 @@ SPEED = {"p_wave_speed": 1e3}
 @pytest.mark.parametrize(
     "keys",
     [
-        SPEED | {"s_wave_speed": 700.0, "match": "assembly", "contact_share": 1.0},
+        SPEED | {"match": "assembly", "contact_share": 1.0},
+        SPEED | {"s_wave_speed": 700.0, "along": "y", "contact_share": 1.0, "fric": 0.1},
+        {"young": 6e10, "poisson": 0.5, "plane": "stress", "along": "x"},
+        {"bulk": 4e10, "shear": 6e10, "contact_share": 0.2},
         SPEED | {"contact_share": 0.0},
         {"emod": 1e9, "pb_emod": 0.0},
         {"emod": 0.0, "pb_emod": 1e9},
@@ -46,6 +50,29 @@ BONDED = {"law": "linearpbond", **STIFFNESS}
         ({"s_wave_speed": 1e3, "match": "lattice"}, ["match: is only allowed together with p_wave_speed"]),
         ({"s_wave_speed": 1e3, "emod": 1e9}, ["pb_emod: is missing; emod and pb_emod go together"]),
         (SPEED | {"s_wave_speed": 1e3}, ["s_wave_speed: is 1000, must be less than p_wave_speed"]),
+        ({"young": 6e10}, ["poisson: is missing; young and poisson go together"]),
+        (
+            SPEED | STIFFNESS | {"poisson": 0.2, "kratio": 1.0, "match": "lattice"},
+            [
+                "young: is missing; young and poisson go together",
+                "p_wave_speed: is not allowed together with young and poisson",
+                "emod: is not allowed together",
+                "pb_emod: is not allowed together",
+                "kratio: is not allowed together with young and poisson, from which it is found",
+                "match: is only allowed together with p_wave_speed alone",
+            ],
+        ),
+        ({"young": 6e10, "poisson": 0.5}, ["poisson: is 0.5, must be less than 0.5"]),
+        ({"bulk": 6e10, "shear": 6e10, "along": "x"}, ["along: is of waves or of a test"]),
+        (
+            SPEED | {"s_wave_speed": 700.0, "plane": "strain"},
+            ["plane: is only allowed together with young and poisson"],
+        ),
+        (SPEED | {"s_wave_speed": 700.0, "contact_share": 1.0}, ["contact_share: is 1, so without friction nothing"]),
+        (
+            SPEED | {"along": "x", "plane": "stress"},
+            ["plane: is only allowed together", "along: is only allowed together"],
+        ),
         (STIFFNESS | {"locked_in": 1.0}, ['locked_in: is only allowed with law = "linearpbond"']),
         (STIFFNESS | {"geometry": "updated"}, ['geometry: is only allowed with law = "linearpbond"']),
         (STIFFNESS | {"elastic_start": True}, ['elastic_start: is only allowed with law = "linearpbond"']),
@@ -73,3 +100,16 @@ def test_what_is_incomplete_or_doubled_is_refused(keys: dict[str, float], lines:
         Material(density=2500.0, **keys)
     found = str(caught.value.errors()[0]["ctx"]["error"]).splitlines()
     assert [line.startswith(start) for line, start in zip(found, lines, strict=True)] == [True] * len(lines)
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_targets_are_the_moduli_of_the_body(plane: str) -> None:
+    # a solid of λ = 1, μ = 2: in plane strain C11 = 5 and C12 = 1, and as a sheet C12 = 2λμ/(λ + 2μ) = 0.8
+    c12 = {"strain": 1.0, "stress": 0.8}[plane]
+    body = PlaneModuli(2.0 + c12, 2.0)
+    young, poisson, bulk = 2.0 * 7.0 / 3.0, 1.0 / 6.0, {"strain": 1.0 + 4.0 / 3.0, "stress": 2.8}[plane]
+    assert (body.young(plane), body.poisson(plane), body.compression(plane)) == pytest.approx((young, poisson, bulk))
+    for keys in ({"young": young, "poisson": poisson, "plane": plane}, {"bulk": bulk, "shear": 2.0, "plane": plane}):
+        assert Material(density=2.0, **keys).target.moduli == pytest.approx(body)
+    speeds = {"p_wave_speed": ((4.0 + c12) / 2.0) ** 0.5, "s_wave_speed": 1.0}
+    assert Material(density=2.0, **speeds).target.moduli == pytest.approx(body)

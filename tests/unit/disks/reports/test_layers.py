@@ -81,14 +81,16 @@ def test_waves_start_in_the_lowest_layer_and_are_as_fast_as_in_the_fastest() -> 
 
 def test_mistakes_name_the_layer_that_has_them_and_the_side_beside_it() -> None:
     """S waves of rock are given as 300 m/s, and have 700; of all others as nothing."""
-    layers = [*LAYERS[:2], LAYERS[2] | {"s_wave_speed": 300.0}]
+    rock = {"name": "rock", "density": 2300.0, "emod": 2.254e9, "pb_emod": 2.254e9, "s_wave_speed": 300.0}
+    layers = [*LAYERS[:2], rock]
     lines = warned(soil(layer=layers, boundary__left={"type": "viscous", "beta_s": 1.0}))
     given = "layer.rock.s_wave_speed: is 300 m/s, S waves along y run at 700 m/s"
     assert len([line for line in lines if line.startswith(given)]) == 1
     (side,) = [line for line in lines if "beta_s is 1" in line]
     assert side.startswith("boundary.left (beside rock): sends back 40 % of the amplitude of S waves")
     assert "matched would be 2.33" in side
-    inherited = warned(soil(material__s_wave_speed=300.0, layer=[{"thickness": 5.0, "density": 1800.0}, {"name": "b"}]))
+    moduli = {"density": 2000.0, "emod": 1e9, "pb_emod": 1e9, "s_wave_speed": 300.0}
+    inherited = warned(soil(material=moduli, layer=[{"thickness": 5.0, "density": 5500.0}, {"name": "b"}]))
     assert len([line for line in inherited if line.startswith("material.s_wave_speed: is 300 m/s")]) == 1
 
 

@@ -16,6 +16,8 @@ from dembound.disks.scene import build
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
 
+SHEARED = {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9, "s_wave_speed": 500.0}
+
 
 def test_a_side_is_described_by_its_particles_and_its_keys(bar) -> None:
     scene = build(bar({"boundary.right.half_mass": True, "boundary.right.beta_p": 0.9}))
@@ -26,7 +28,7 @@ def test_a_side_is_described_by_its_particles_and_its_keys(bar) -> None:
     assert describe_side(scene, "right") == expected
     assert set(describe_side(scene, "top")) & {"beta_p", "half_mass", "alpha_n"} == set()
     springs = {"type": "viscoelastic", "source": [0.0, 0.25], "alpha_n": 2.0}
-    found = describe_side(build(bar({"boundary.right": springs, "material.s_wave_speed": 500.0})), "right")
+    found = describe_side(build(bar({"boundary.right": springs, "material": SHEARED})), "right")
     assert (found["alpha_n"], found["alpha_s"]) == (2.0, 0.5)
     assert found["shear_modulus"] == pytest.approx(2500.0 * 500.0**2)
     # disks at 9.75 m, of heights 0.25 m and 0.75 m

@@ -128,8 +128,8 @@ def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
 
 @pytest.mark.parametrize(("share", "reported"), [(0.85, True), (1.0, False)])
 def test_a_speed_of_s_waves_that_the_packing_lacks_is_warned_of(share: float, reported: bool) -> None:
-    """A square lattice of p_wave_speed 1000 m/s with springs of a quarter in shear has S waves of 500 m/s."""
-    material = {"density": 2500.0, "p_wave_speed": 1000.0, "s_wave_speed": share * 500.0}
+    """A square lattice of 1000 m/s for P waves with springs of a quarter in shear has S waves of 500 m/s."""
+    material = {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9, "s_wave_speed": share * 500.0}
     ground = {"packing": {"pattern": "A", "size": [20.0, 10.0], "radius": 0.5}, "material": material}
     scene = build(small({**ground, "run": {"duration": 0.01}}))
     lines = [line for own in materials_of(scene) for line in _s_speed_of_the_packing(scene, own)]

@@ -1,0 +1,149 @@
+"""What contacts and bonds make of a body: moduli, wave speeds, anisotropy, and the stress of its first crack."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from dembound.disks.material.first_crack import FirstCrack, first_crack
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.targets import moduli_of
+from dembound.disks.material.wave_front import DIRECTIONS, phase_speeds
+from dembound.disks.reports.materials import Own, materials_of
+from dembound.disks.scene import DiskScene
+from dembound.words import in_one_unit, percent, with_unit
+
+PLANES = {"strain": "solid in plane strain", "stress": "2D sample"}
+"""Meanings of elastic constants, as for `material.plane`, in words."""
+
+DIGITS = 4
+"""Digits of the printed numbers."""
+
+LOADS = {"compression": -1.0, "tension": 1.0}
+"""Signs of the stress along y under which the first bond breaks."""
+
+
+def describe_materials(scene: DiskScene) -> list[dict[str, Any]]:
+    """Micro-parameters and the body's properties, of each layer from the surface down: plain values, SI units.
+
+    Without layers there is one entry, of an empty name.
+    """
+    return [{"layer": own.layer, **_describe(own)} for own in materials_of(scene)]
+
+
+def _describe(own: Own) -> dict[str, Any]:
+    ground, moduli = own.ground, own.ground.moduli
+    brick, tensor = ground.brick, ground.material_tensor
+    speeds = phase_speeds(ground, np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
+    names = ("emod", "pb_emod", "kratio", "pb_kratio", "pb_rmul", "fric")
+    lattice_shear = moduli.pb_rmul * moduli.pb_emod / moduli.pb_kratio
+    if moduli.fric > 0.0:
+        lattice_shear += moduli.emod / moduli.kratio
+    return {
+        "micro": {name: getattr(moduli, name) for name in names},
+        "density": ground.density,
+        "packing": {
+            "disks": len(brick.radii),
+            "mean_diameter": brick.mean_diameter,
+            "solid_fraction": brick.solid_fraction,
+            "coordination": brick.coordination,
+            "pressure": ground.packed_pressure,
+        },
+        "moduli": {
+            **{plane: _constants(tensor, plane, "isotropic") for plane in PLANES},
+            "along": {axis: {plane: _constants(tensor, plane, axis) for plane in PLANES} for axis in ("x", "y")},
+        },
+        "speeds": {
+            name: _speeds(*values)
+            for name, values in {
+                "isotropic": _isotropic(ground),
+                "x": speeds[0],
+                "45": speeds[DIRECTIONS // 4],
+                "y": speeds[DIRECTIONS // 2],
+                "lattice": np.sqrt(
+                    np.array([moduli.emod + moduli.pb_rmul * moduli.pb_emod, 0.5 * lattice_shear]) / ground.density
+                ),
+            }.items()
+        },
+        "anisotropy": _speeds(*(speeds.max(axis=0) / speeds.min(axis=0) - 1.0)),
+        "first_crack": {name: _described(first_crack(ground, own.material, sign)) for name, sign in LOADS.items()},
+    }
+
+
+def _constants(tensor: np.ndarray, plane: str, along: str) -> dict[str, float]:
+    """E and ν, and of the isotropic body also K and G, see `PlaneModuli`; E, K and G in Pa."""
+    found = moduli_of(tensor, along, by_waves=False)
+    young = {"young": float(found.young(plane)), "poisson": float(found.poisson(plane))}
+    if along != "isotropic":
+        return young
+    return young | {"bulk": float(found.compression(plane)), "shear": float(found.shear)}
+
+
+def _isotropic(ground: PackedMaterial) -> np.ndarray:
+    """Speeds (2,) m/s of P and S waves of the nearest isotropic body."""
+    found = moduli_of(ground.material_tensor, "isotropic", by_waves=True)
+    return np.sqrt(np.array([found.uniaxial, found.shear]) / ground.density)
+
+
+def _speeds(p: float, s: float) -> dict[str, float]:
+    return {"p": float(p), "s": float(s)}
+
+
+def _described(found: FirstCrack | None) -> dict[str, Any] | None:
+    return None if found is None else {"stress": found.stress, "limit": found.limit}
+
+
+def material_rows(found: dict[str, Any]) -> list[tuple[str, Sequence[Sequence[str]]]]:
+    """Titles and rows, the first of which is the head, of the tables about an entry of `describe_materials`."""
+    micro, moduli, speeds = found["micro"], found["moduli"], found["speeds"]
+    stiffness, unit = in_one_unit([micro["emod"], micro["pb_emod"]], "Pa", DIGITS + 1)
+    ratios = [f"{micro[name]:.{DIGITS + 1}g}" for name in ("kratio", "pb_kratio", "pb_rmul", "fric")]
+    each = [moduli[plane] for plane in PLANES]
+    along = [[moduli["along"][axis][plane] for plane in PLANES] for axis in ("x", "y")]
+    body = [
+        ["E", *(with_unit(one["young"], "Pa", DIGITS) for one in each)],
+        ["ν", *(f"{one['poisson']:.{DIGITS}f}" for one in each)],
+        ["K", *(with_unit(one["bulk"], "Pa", DIGITS) for one in each)],
+        ["G", *(with_unit(one["shear"], "Pa", DIGITS) for one in each)],
+    ]
+    for axis, pair in zip("xy", along, strict=True):
+        body.append([f"E along {axis}", *(with_unit(one["young"], "Pa", DIGITS) for one in pair)])
+        body.append([f"ν along {axis}", *(f"{one['poisson']:.{DIGITS}f}" for one in pair)])
+    ways = {"isotropic": "mean", "x": "along x", "45": "at 45°", "y": "along y", "lattice": "square lattice"}
+    waves = [
+        [words, *(f"{speeds[name][kind]:.5g}" for kind in "ps"), f"{speeds[name]['p'] / speeds[name]['s']:.{DIGITS}g}"]
+        for name, words in ways.items()
+    ]
+    waves.append(["largest over least", *(f"+{percent(found['anisotropy'][kind])}" for kind in "ps"), ""])
+    cracks = [
+        [name, with_unit(crack["stress"], "Pa"), f"breaks in {crack['limit']}"]
+        for name, crack in found["first_crack"].items()
+        if crack is not None
+    ]
+    tables: list[tuple[str, Sequence[Sequence[str]]]] = [
+        (
+            "Contacts and bonds",
+            [
+                ["emod", "pb_emod", "kratio", "pb_kratio", "pb_rmul", "fric"],
+                [*(f"{value} {unit}" for value in stiffness), *ratios],
+            ],
+        ),
+        ("Body", [["", *PLANES.values()], *body]),
+        ("Wave speeds (m/s)", [["", "c_p", "c_s", "c_p/c_s"], *waves]),
+    ]
+    if cracks:
+        tables.append(("First crack under stress along y with free sides", [["", "stress", "bond"], *cracks]))
+    return tables
+
+
+def packing_line(found: dict[str, Any]) -> str:
+    """The packing of an entry of `describe_materials` in words."""
+    packing = found["packing"]
+    parts = [
+        f"{packing['disks']:,} disks of {with_unit(packing['mean_diameter'], 'm')}",
+        f"solid fraction {packing['solid_fraction']:.3f}",
+        f"{packing['coordination']:.3g} contacts per disk",
+    ]
+    if packing["pressure"] > 0.0:
+        parts.append(f"packed under {with_unit(packing['pressure'], 'Pa')}")
+    return ", ".join([*parts, f"density {with_unit(found['density'], 'kg/m³', DIGITS)}"])
