@@ -4,12 +4,14 @@ import re
 from collections.abc import Iterator
 from itertools import chain
 
+import pytest
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator, NullLocator
 
+from dembound.plot import style
 from dembound.plot.style import is_seen, number_axes
 
 LATER = "bond broken"
@@ -17,6 +19,12 @@ LATER = "bond broken"
 
 COUNTED = {"pass", "steps", "member", "row"}
 """Names of counts, which have no unit."""
+
+
+def drawn_quickly(patch: pytest.MonkeyPatch) -> None:
+    """Draw pictures that no test looks at: of few dots, their panels where they happen to be."""
+    patch.setattr(style, "DOTS_PER_INCH", 30)
+    patch.setattr(style, "lay_out", lambda figure: figure.set_layout_engine("none"))
 
 
 def problems_of(figure: Figure) -> list[str]:

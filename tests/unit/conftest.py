@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 import pytest
+from readable import drawn_quickly
 from small_cases import PUSHED, SPALLING, SURROUNDED, small
 from typer.main import get_command
 
@@ -28,7 +29,6 @@ from dembound.motion.trackers import NEVER
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
-from dembound.plot import style
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.running import plan
@@ -290,7 +290,7 @@ def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
     """Runs a command in an empty folder as the shell would, with small pictures and few draws of noise."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
-    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
+    drawn_quickly(monkeypatch)
     monkeypatch.setattr(noise_of_gauges, "MOST_DRAWS", 10)
     monkeypatch.setattr(compiling, "report_compiling", lambda: None)  # else what is printed depends on earlier tests
 

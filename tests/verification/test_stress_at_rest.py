@@ -18,12 +18,14 @@ STRESS = [-2e6, -3e6, 0.5e6]
 WEIGHT = [{"acceleration": (0.0, -9.81)}]
 K0 = {"k0": 0.5, "boundary": {"bottom": {"type": "fixed"}}}
 STRONG = {"law": "linearpbond", "fric": 0.5, "pb_ten": 1e12, "pb_coh": 1e12}
+REFERENCE = STRONG | {"geometry": "reference", "fric": 50.0}
 PULSE = {"type": "cosine", "amplitude": 0.02, "period": 0.02}
 SIDES = {
     "column": {"left": "free_field", "right": "free_field", "bottom": {"type": "viscous_input", "wave_s": "pulse"}},
     "continuum": {**dict.fromkeys(("left", "right"), "outside"), "bottom": {"type": "outside", "wave_s": "pulse"}},
     "wrapped": {"left": "periodic", "right": "periodic", "bottom": {"type": "viscous_input", "wave_s": "pulse"}},
 }
+BONDED, DAMPED = STRONG | {"pb_ten": 1e6, "pb_coh": 2e6}, {"quality_factor": 20.0}
 HOLE = {"name": "tunnel", "type": "circle", "centre": [10.0, 10.0], "radius": 2.0, "stage": "after"}
 
 
@@ -60,8 +62,13 @@ def test_a_stress_is_there_from_the_start(lab, name: str, law: str) -> None:
     assert speed(lab, scene, found) < 1e-9
 
 
-@pytest.mark.parametrize("name", ["column", "continuum"])
-@pytest.mark.parametrize("material", [{}, STRONG | {"geometry": "reference", "fric": 50.0}])
+@pytest.mark.parametrize(
+    ("name", "material"),
+    [
+        *(("column", {}), ("continuum", REFERENCE)),
+        *(pytest.param(*each, marks=pytest.mark.slow) for each in (("column", REFERENCE), ("continuum", {}))),
+    ],
+)
 def test_a_wave_passes_as_through_ground_without_stress(lab, name: str, material) -> None:
     """As long as nothing opens or slides stresses add up; the motion is the same to rounding, over 400 steps."""
     plain = ground(lab, "B", SIDES[name], {"fric": 0.5}, wave=PULSE)
@@ -120,8 +127,16 @@ def test_each_layer_has_its_own_k0(lab, law: str) -> None:
     assert speed(lab, scene, found) < 1e-9
 
 
-@pytest.mark.parametrize("material", [STRONG | {"pb_ten": 1e6, "pb_coh": 2e6}, {"quality_factor": 20.0}])
-@pytest.mark.parametrize("name", SIDES)
+@pytest.mark.parametrize(
+    ("name", "material"),
+    [
+        *(("column", BONDED), ("continuum", DAMPED), ("wrapped", BONDED)),
+        *(
+            pytest.param(*each, marks=pytest.mark.slow)
+            for each in (("column", DAMPED), ("continuum", BONDED), ("wrapped", DAMPED))
+        ),
+    ],
+)
 def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, name: str, material) -> None:
     """Each layer keeps its K0 and has its strengths; the ground rests with a hole, and a wave passes from below."""
     layers = [
@@ -150,7 +165,7 @@ def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, name: str, material)
     assert max(abs(entry.error) for entry in ledger.entries) < (1e-4 if bonded else 1e-9) * most
 
 
-@pytest.mark.parametrize("name", SIDES)
+@pytest.mark.parametrize("name", [n if n == "column" else pytest.param(n, marks=pytest.mark.slow) for n in SIDES])
 def test_layers_at_rest_begin_to_slide_at_their_load_factor(lab, name: str) -> None:
     """Found under the elastic law; 0.1 % below it nothing slides in the geometry of the start, 0.1 % above it does."""
     layers = [{"thickness": 10.0, "density": 1800.0, "p_wave_speed": 400.0, "k0": 0.8}, {"density": 2300.0, "k0": 0.6}]

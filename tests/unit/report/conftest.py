@@ -4,18 +4,18 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from readable import drawn_quickly
 from small_cases import PUSHED, SPALLING, small
 
 from dembound import api
-from dembound.plot import style
 from dembound.report import page
 
 
 @pytest.fixture(autouse=True, scope="module")
 def small_pictures() -> Iterator[None]:
-    """Pictures of a few dots per inch, soon packed."""
+    """Pictures of a few dots per inch, soon drawn and packed."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(style, "DOTS_PER_INCH", 30)
+        drawn_quickly(patch)
         patch.setattr(page, "FRAME_DOTS", 30)
         yield
 

@@ -6,13 +6,13 @@ import time
 import h5py
 import numpy as np
 import pytest
+from readable import drawn_quickly
 
 from dembound.errors import CaseError, RunError
 from dembound.kinds import with_changes
 from dembound.motion.paths import first_arrivals
 from dembound.motion.silence import monitored
 from dembound.motion.trackers import Run
-from dembound.plot import style
 from dembound.plot.scene import plot_scene
 from dembound.results.folder import OWN
 from dembound.results.summary import end_in_words
@@ -50,7 +50,7 @@ def test_the_number_of_steps_covers_the_duration(bar) -> None:
 
 @pytest.fixture(autouse=True)
 def _small_pictures(monkeypatch) -> None:
-    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
+    drawn_quickly(monkeypatch)
 
 
 def test_a_run_leaves_one_whole_folder_and_pictures_where_they_are_requested(bar, tmp_path) -> None:

@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
+from readable import drawn_quickly
 from small_cases import GRAINS, small
 from warned_cases import warned
 
@@ -23,7 +24,7 @@ from dembound.disks.sources import sources_of
 from dembound.disks.stability import step_limit
 from dembound.disks.trials import trials_of_disks
 from dembound.plot.scene import plot_scene
-from dembound.report.page import write_report
+from dembound.report import page
 from dembound.results.vtk import write_paraview
 
 LAYERS = [
@@ -167,8 +168,10 @@ def test_disks_have_their_layer_in_the_record_in_pictures_and_for_paraview(run, 
     assert names == {"clay": pytest.approx(0.0), "sand": -5.0, "rock": -11.0}
 
 
-def test_a_page_has_a_table_of_layers(run, tmp_path) -> None:
-    write_report([run], tmp_path / "page.html")
+def test_a_page_has_a_table_of_layers(run, tmp_path, monkeypatch) -> None:
+    drawn_quickly(monkeypatch)
+    monkeypatch.setattr(page, "FRAME_DOTS", 30)
+    page.write_report([run], tmp_path / "page.html")
     row = r'<th scope="row">(\w+)</th><td data-head="run">soil</td><td data-head="y">([^<]+)</td>'
     rows = re.findall(row, (tmp_path / "page.html").read_text())
     assert rows == [("clay", "0 to -5 m"), ("sand", "-5 to -11 m"), ("rock", "-11 to -20 m")]
