@@ -284,7 +284,7 @@ def answered(data: Mapping[str, Any], folder: Path) -> bool:
     return True
 
 
-@pytest.mark.parametrize("count", [80, pytest.param(3000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [40, pytest.param(3000, marks=pytest.mark.slow)])
 def test_a_changed_case_is_planned_or_answered_in_lines(count: int, sweep, tmp_path: Path) -> None:
     planned = []
 
@@ -312,7 +312,7 @@ NUMBERED = [
 """Every number of every sound case, and each of the extremes in its place."""
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(len(NUMBERED), marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [20, pytest.param(len(NUMBERED), marks=pytest.mark.slow)])
 def test_an_extreme_number_anywhere_is_planned_or_answered_in_lines(count: int, tmp_path: Path) -> None:
     planned = []
     for number, path, extreme in random.Random(0).sample(NUMBERED, count):
@@ -323,7 +323,7 @@ def test_an_extreme_number_anywhere_is_planned_or_answered_in_lines(count: int, 
     assert any(planned)
 
 
-@pytest.mark.parametrize("count", [25, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [12, pytest.param(1000, marks=pytest.mark.slow)])
 def test_a_case_made_of_allowed_values_is_planned_or_answered_in_lines(count: int, sweep, tmp_path: Path) -> None:
     @sweep(count)
     @given(WHOLE)

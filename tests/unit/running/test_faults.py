@@ -78,7 +78,7 @@ def history(record) -> np.ndarray:
         return file["histories/gauge/velocity"][()]
 
 
-@pytest.mark.parametrize("count", [4, pytest.param(9, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [3, pytest.param(9, marks=pytest.mark.slow)])
 def test_a_full_disk_loses_nothing_that_was_written(case, finished, whole, tmp_path, count: int) -> None:
     largest = max(path.stat().st_size for path in finished.rglob("*"))
     reached = set()

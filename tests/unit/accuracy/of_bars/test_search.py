@@ -37,7 +37,9 @@ def true_error(choice: Advised) -> float:
     ("name", "changes", "bound", "kept"),
     [
         ("finite differences, ν = 0.5", {}, 0.003, []),
-        ("sine burst, ν = 0.5", BURST | {"monitor.far.position": 0.79}, 0.01, []),
+        pytest.param(
+            *("sine burst, ν = 0.5", BURST | {"monitor.far.position": 0.79}, 0.01, []), marks=pytest.mark.slow
+        ),
         pytest.param("viscous soft end, m = 3", {"bar.spacing": 0.0025}, 0.06, ["bar"], marks=pytest.mark.slow),
         pytest.param("input, β = 0.8, m = 3", {"bar.spacing": 0.0025}, 0.03, ["bar", "run"], marks=pytest.mark.slow),
     ],
@@ -248,7 +250,7 @@ def test_bars_of_which_nothing_is_known_are_refused(case: Case, line: str) -> No
 
 def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
     """Nothing remains of a pulse once it has left; a bar between free ends rings on."""
-    case = with_changes(scene("viscous end, β = 0.7"), {"run.duration": 0.008})
+    case = with_changes(scene("viscous end, β = 0.7"), {"run.duration": 0.004})
     choice = advised(case, 0.01, ["bar"])
     assert choice.holds
     assert choice.case.run.until == "silent"
@@ -257,5 +259,5 @@ def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
     expected = float(choice.words.rpartition("about ")[2].removesuffix(" s"))
     # the run looks at its monitors some times only, and ends at the next of them
     assert next(iter(recorded.values())).time[-1] == pytest.approx(expected, rel=0.15)
-    ringing = with_changes(scene("finite differences, ν = 0.5"), {"run.duration": 0.008})
+    ringing = with_changes(scene("finite differences, ν = 0.5"), {"run.duration": 0.004})
     assert advised(ringing, 0.1).case.run.until == "duration"

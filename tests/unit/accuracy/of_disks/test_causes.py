@@ -124,7 +124,7 @@ def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_mor
     np.testing.assert_allclose(np.asarray(cause.parts["m"]["velocity"]), larger, atol=1e-9 * np.abs(larger).max())
 
 
-@pytest.mark.parametrize("side", ["fixed", "roller"])
+@pytest.mark.parametrize("side", ["fixed", pytest.param("roller", marks=pytest.mark.slow)])
 def test_waves_of_a_load_come_back_early_from_disks_that_are_held(side: str) -> None:
     """Compared with disks three times smaller, which have a third of this error.
 
