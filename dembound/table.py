@@ -33,10 +33,16 @@ class Table(BaseModel):
         return usable(value)
 
     def given(self) -> dict[str, Any]:
-        """The keys that have been given, in TOML's types; the key that distinguishes types is always included."""
-        keys = [name for name in type(self).model_fields if name in self.model_fields_set | DISCRIMINATORS]
+        """The keys that have been given, in TOML's types; the key that distinguishes tables is always included."""
+        fixed = {name for name in DISCRIMINATORS if len(get_args(self._annotation(name))) == 1}  # else it is a choice
+        keys = [name for name in type(self).model_fields if name in self.model_fields_set | fixed]
         given = {name: getattr(self, name) for name in keys if getattr(self, name) is not None}
         return {self.key_of(name): as_toml(value) for name, value in given.items()}
+
+    @classmethod
+    def _annotation(cls, name: str) -> Any:
+        """The annotation of a field; None without this field."""
+        return cls.model_fields[name].annotation if name in cls.model_fields else None
 
     @classmethod
     def described(cls, name: str) -> Mapping[str, Any]:
