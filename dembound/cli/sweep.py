@@ -106,7 +106,7 @@ def sweep(
         err.print(f"{loaded.name}: {line}")
     folder = output / f"{loaded.name}_sweep"
     try:
-        with _shown(loaded.name) as report:
+        with shown(loaded.name) as report:
             outcomes = sweep_all(members, options, folder, report)
     except KeyboardInterrupt as stop:
         err.print(f"{loaded.name}: stopped; the same command continues what is left")
@@ -122,7 +122,7 @@ def sweep(
 
 
 @contextmanager
-def _shown(name: str) -> Iterator[Report]:
+def shown(name: str) -> Iterator[Report]:
     """Shows the progress of a sweep: a bar on a terminal, else a line every ten seconds."""
     began = said = time.monotonic()
 

@@ -94,13 +94,13 @@ def write_tables(swept: Swept, folder: Path) -> list[Path]:
     """Write all files into the folder of a sweep; returns their paths."""
     averages = list(statistics(swept.members, swept.outcomes))
     paths = [folder / name for name in ("sweep.csv", "statistics.csv", "sweep.h5")]
-    _write_csv(paths[0], _rows_of_members(swept))
-    _write_csv(paths[1], _rows_of_statistics(swept, averages))
+    write_csv(paths[0], _rows_of_members(swept))
+    write_csv(paths[1], _rows_of_statistics(swept, averages))
     _write_record(paths[2], swept, averages)
     return paths
 
 
-def _write_csv(path: Path, rows: Iterable[Sequence[Any]]) -> None:
+def write_csv(path: Path, rows: Iterable[Sequence[Any]]) -> None:
     """Write rows, completely or not at all; missing values are empty."""
     with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         for row in rows:
