@@ -29,8 +29,8 @@ STRESS: Mapping[TestName, str] = {
 MOST_NAMED = 8
 """Largest number of curves that have a name in the legend."""
 
-TALLEST = 5.2
-"""Height of a sample on the page in inches."""
+LARGEST = (3.4, 5.2)
+"""Largest width and height of a sample on the page in inches."""
 
 MARGIN = 1.5
 """End of the colour scale over the largest motion at the peak: pieces that fly away have its colour."""
@@ -74,7 +74,9 @@ def plot_curves(title: str, curves: Mapping[str, LoadingCurve]) -> Figure:
 
 @styled
 def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
-    """A sample at its first crack, at its peak and at the end: motion along x, and broken bonds.
+    """A sample at its first crack, at its peak and at the end: motion across the cracks to come, and broken bonds.
+
+    That is motion along y in tension, else along x.
 
     Raises CaseError when the record cannot be read.
     """
@@ -83,18 +85,20 @@ def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
         states = {"first crack": curve.crack_time[0]} | states
     with open_record(record) as file:
         disks, groups = read_disks(file), list(snapshots_of(file))
-        motion = np.array([_motion_at(groups, curve.gauge_time, time) for time in states.values()])
+        axis = 1 if curve.kind == "tension" else 0
+        nearest = [groups[int(np.argmin(np.abs(curve.gauge_time - time)))] for time in states.values()]
+        motion = np.array([group["displacement"][:, axis] for group in nearest])
         limit = MARGIN * float(np.abs(motion[-2]).max()) or 1.0
         shown = Field(
             captions=[f"{name}, {curve.stress_at(time) / MEGA:.3g} MPa" for name, time in states.items()],
             values=motion,
             cracks=[cracks_until(file, time) for time in states.values()],
             limits=(-limit, limit),
-            name="displacement along x",
+            name=f"displacement along {'xy'[axis]}",
             unit="m",
         )
     width, height = disks.window.size
-    scale = TALLEST / max(width, height)
+    scale = min(LARGEST[0] / width, LARGEST[1] / height)
     figure = new_figure(len(states) * (scale * width + 0.6) + 1.6, scale * height + 1.6)
     panels = figure.subplots(1, len(states), sharey=True, squeeze=False)[0]
     for number, panel in enumerate(panels):
@@ -106,11 +110,6 @@ def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
     figure.suptitle(f"{disks.case}, {len(disks.radii):,} disks", fontsize=11)
     outside_legend(figure, panels, columns=2)
     return figure
-
-
-def _motion_at(groups: Sequence, times: np.ndarray, time: float) -> np.ndarray:  # type: ignore[type-arg]
-    """Displacement along x (n,) m in the snapshot nearest to a time; zero without snapshots, groups of a record."""
-    return groups[int(np.argmin(np.abs(times - time)))]["displacement"][:, 0]
 
 
 @styled
