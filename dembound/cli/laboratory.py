@@ -150,9 +150,7 @@ def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
     if found:
         print_rows(name, list(_rows(found)), left=2 if any(each.group for each in found) else 1)
     for ratio in ratios:
-        out.print(
-            f"{name}: uniaxial compressive over tensile strength {ratio.value:.3g} ({ratio.other}: {ratio.folder})"
-        )
+        out.print(f"{name}: compressive over tensile strength {ratio.value:.3g}, with {ratio.folder}")
     return bool(failed)
 
 

@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Arc
 
 from dembound.plot.field import Field, read_disks
 from dembound.plot.scene import draw_panel
-from dembound.plot.style import COLOURS, REFERENCE, Powers, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, Powers, new_figure, outside_legend, styled
 from dembound.results.loading_curve import LoadingCurve, TestName
 from dembound.results.reader import cracks_until, open_record, snapshots_of
 
@@ -59,7 +58,15 @@ def plot_curves(title: str, curves: Mapping[str, LoadingCurve]) -> Figure:
             strain = np.interp(curve.crack_time, curve.time, percent)
             broken.step(strain, np.arange(1, len(strain) + 1), where="post", color=colour, linewidth=0.7, linestyle=":")
             first = "first broken bond" if number == 0 else None
-            panel.plot(strain[0], curve.first_crack / MEGA, "v", color=colour, markersize=6.0, label=first)
+            panel.plot(
+                strain[0],
+                curve.first_crack / MEGA,
+                "v",
+                color=colour,
+                markersize=7.0,
+                markeredgecolor="white",
+                label=first,
+            )
     panel.set_xlabel("strain between the platens (%)")
     panel.set_ylabel(STRESS[next(iter(curves.values())).kind])
     broken.set_ylabel("broken bonds (dotted)")
@@ -153,6 +160,6 @@ def plot_envelope(title: str, tests: Sequence[tuple[float, float]], angle: float
 
 def _draw_circle(panel: Axes, low: float, high: float, label: str | None) -> None:
     """Half of Mohr's circle between two principal stresses."""
-    middle, size = 0.5 * (low + high), high - low
-    panel.add_patch(Arc((middle, 0.0), size, size, theta1=0.0, theta2=180.0, color=COLOURS[0], label=label))
-    panel.plot([low, high], [0.0, 0.0], "|", color=REFERENCE)
+    angle = np.linspace(0.0, np.pi, 181)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    panel.plot(middle + half * np.cos(angle), half * np.sin(angle), color=COLOURS[0], label=label)
