@@ -11,7 +11,7 @@ import typer
 
 from dembound.cli.app import Name, Output, Settings, app, load_disks
 from dembound.cli.console import err, out, print_rows
-from dembound.cli.sweep import FAILED, shown
+from dembound.cli.sweep import FAILED, print_warnings, shown
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
 from dembound.words import in_one_unit, with_unit
@@ -138,12 +138,15 @@ def _numbers(option: str, text: str) -> list[float]:
 
 def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
     """Print failures, warnings, means and ratios; returns whether a run has failed."""
+    from dembound.studies.sweep.tables import distinct
+
     name = tested.sample.case.name
     failed = [
         (s.member.name, state) for s, state in zip(tested.specimens, tested.states, strict=True) if state != "done"
     ]
     for member, state in failed:
         err.print(f"{name}: {member}: failed, {state}")
+    print_warnings(name, distinct(tested.outcomes), len(tested.specimens))
     for line in tested.warnings:
         err.print(f"{name}: warning: {line}")
     found = [each for each in tested.statistics if each.quantity in PRINTED]

@@ -72,22 +72,27 @@ class Swept:
 
     @property
     def warnings(self) -> dict[str, int]:
-        """Each distinct warning of the members' runs -> number of members with it.
-
-        Warnings that differ only in numbers count as one, with the numbers of the first member.
-        """
-        first: dict[str, str] = {}
-        count: Counter[str] = Counter()
-        for warnings in (each.warnings for each in self.outcomes if each is not None):
-            alike = {line: NUMBER.sub("", line) for line in warnings}
-            for line, words in alike.items():
-                first.setdefault(words, line)
-            count.update(set(alike.values()))
-        return {line: count[words] for words, line in first.items()}
+        """Each distinct warning of the members' runs, see `distinct`."""
+        return distinct(self.outcomes)
 
     def values(self, quantity: str) -> np.ndarray:
         """The values (n,) of a quantity, nan for members without it."""
         return np.array([np.nan if each is None else each.values.get(quantity, np.nan) for each in self.outcomes])
+
+
+def distinct(outcomes: Sequence[Outcome | None]) -> dict[str, int]:
+    """Each distinct warning of members' runs -> number of members with it.
+
+    Warnings that differ only in numbers count as one, with the numbers of the first member.
+    """
+    first: dict[str, str] = {}
+    count: Counter[str] = Counter()
+    for warnings in (each.warnings for each in outcomes if each is not None):
+        alike = {line: NUMBER.sub("", line) for line in warnings}
+        for line, words in alike.items():
+            first.setdefault(words, line)
+        count.update(set(alike.values()))
+    return {line: count[words] for words, line in first.items()}
 
 
 def write_tables(swept: Swept, folder: Path) -> list[Path]:
