@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import tomli_w
 
+from dembound.boundaries import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import STRENGTH_KEYS
 from dembound.casefile.types import LAWS
@@ -173,8 +174,9 @@ class Sample:
             yield from ("[[hole]]  # the sample is round", 'type = "circle"', 'name = "sample"')
             yield from (f"centre = [{middle:.9g}, {middle:.9g}]", f"radius = {radius:.9g}", 'keep = "inside"', "")
         if pressure > 0.0:
-            yield "[static]  # the pressure of the membrane, which then stays on the sides"
-            yield from (f"stress = [{-pressure:.6g}, {-pressure:.6g}, 0.0]", "")
+            yield from ("[[load]]  # a membrane, before the test and during it", 'name = "membrane"')
+            yield from (f"pressure = {pressure:.6g}", f"sides = {list(SIDES)}".replace("'", '"'), "")
+            yield from ("[static]  # the sample comes to rest under this pressure", "")
         elif self.case.material.locked_in is not None:
             yield from ("[static]  # the packing's own stress comes to rest", "")
         jaw = 0.5 * max(JAW * self.width, LEAST_JAW * 2.0 * packing.radius)
