@@ -173,9 +173,9 @@ def perform(
 
 
 def default_pressures(sample: Sample) -> list[float]:
-    """Pressures (Pa) of a biaxial test: none, and a twentieth, a tenth and a fifth of a low guess of the strength."""
+    """Pressures (Pa) of a biaxial test: none, and a tenth, a quarter and a half of a low guess of the strength."""
     guess = sample.peak_strain * sample.elastic[0]
-    return [0.0, *(float(f"{share * guess:.2g}") for share in (0.05, 0.1, 0.2))]
+    return [0.0, *(float(f"{share * guess:.2g}") for share in (0.1, 0.25, 0.5))]
 
 
 def _group(sample: Sample, pressure: float) -> dict[str, float]:
