@@ -31,8 +31,8 @@ MOST_NAMED = 8
 LARGEST = (3.4, 5.2)
 """Largest width and height of a sample on the page in inches."""
 
-MARGIN = 1.5
-"""End of the colour scale over the largest motion at the peak: pieces that fly away have its colour."""
+CALM, MARGIN = 0.98, 1.5
+"""Share of the disks that have not broken off at the peak, and end of the colour scale over their largest motion."""
 
 
 @styled
@@ -95,7 +95,7 @@ def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
         axis = 1 if curve.kind == "tension" else 0
         nearest = [groups[int(np.argmin(np.abs(curve.gauge_time - time)))] for time in states.values()]
         motion = np.array([group["displacement"][:, axis] for group in nearest])
-        limit = MARGIN * float(np.abs(motion[-2]).max()) or 1.0
+        limit = MARGIN * float(np.quantile(np.abs(motion[-2]), CALM)) or 1.0
         shown = Field(
             captions=[f"{name}, {curve.stress_at(time) / MEGA:.3g} MPa" for name, time in states.items()],
             values=motion,

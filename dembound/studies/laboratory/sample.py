@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -12,13 +12,13 @@ import tomli_w
 from dembound.boundaries import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import STRENGTH_KEYS
+from dembound.casefile.toml import parsed
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import ground_of
 from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.packings.base import DensePacking, Packing
 from dembound.results.loading_curve import TestName
-from dembound.table import as_toml
 from dembound.words import with_unit
 
 Ends = Literal["smooth", "grips"]
@@ -52,11 +52,14 @@ JAW, LEAST_JAW = 1.0 / 7.0, 3.0
 SNAPSHOTS = 150
 """Snapshots of a test that goes on for `HIGHEST`; most end after a third of it."""
 
+AT_REST = 3e-4
+"""Unbalanced force at which a sample under pressure is at rest: an outer disk that comes off leaves up to 1e-4."""
+
 PEAK_SHARE = 0.6
 """Share of its peak to which the force falls before a test ends."""
 
-COUNTED = ("title", "packing", "material")
-"""Tables of a case that count for its sample."""
+COUNTED = ("title", "packing", "material", "run")
+"""Tables of a case that count for its sample, and one that every case must have."""
 
 
 @dataclass(frozen=True)
@@ -176,7 +179,7 @@ class Sample:
         if pressure > 0.0:
             yield from ("[[load]]  # a membrane, before the test and during it", 'name = "membrane"')
             yield from (f"pressure = {pressure:.6g}", f"sides = {list(SIDES)}".replace("'", '"'), "")
-            yield from ("[static]  # the sample comes to rest under this pressure", "")
+            yield from ("[static]  # at rest under this pressure", f"ratio = {AT_REST:g}  # as single disks may come off", "")
         elif self.case.material.locked_in is not None:
             yield from ("[static]  # the packing's own stress comes to rest", "")
         jaw = 0.5 * max(JAW * self.width, LEAST_JAW * 2.0 * packing.radius)
@@ -242,6 +245,5 @@ def _whole(packing: Packing, axis: int, length: float) -> float:
 
 
 def ignored(case: DiskCase) -> list[str]:
-    """The tables of a case that do not count for its sample."""
-    tables: Mapping[str, Any] = {name: as_toml(table) for name, table in case.tables.items()}
-    return [name for name, table in tables.items() if name not in COUNTED and table not in (None, {}, [], "")]
+    """The tables of a case that do not count for its sample; [run], which every case has, goes without saying."""
+    return [name for name in parsed(case.text) if name not in COUNTED]

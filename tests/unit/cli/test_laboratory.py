@@ -44,7 +44,7 @@ def test_a_lattice_breaks_at_the_strength_of_its_bonds(dembound, done) -> None:
     found = dembound("test", "tension", "rock.toml", "--seeds", 1)
 
     assert found.code == 0
-    assert "rock: only [packing] and [material] count; not used: boundary, wave, run" in found.err
+    assert "rock: only [packing] and [material] count; not used: boundary, wave" in found.err
     assert "smooth ends, damp 0.7, strain rate" in found.err
     assert "warning" not in found.err
     assert "rock: compressive over tensile strength 10" in found.out  # within what is printed

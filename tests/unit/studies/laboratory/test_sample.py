@@ -44,7 +44,7 @@ def test_grips_hold_both_components_and_other_tables_do_not_count() -> None:
     assert grips.boundary["top"].hold == ("normal", "shear")
     assert grips.material.damp == 0.1
     assert grips.wave["bottom"].amplitude == pytest.approx(6.0)
-    assert ignored(case) == ["boundary", "wave", "run"]
+    assert ignored(case) == ["boundary", "wave"]
 
 
 def test_an_elastic_material_with_strengths_gets_a_law_that_breaks() -> None:
