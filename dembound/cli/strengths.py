@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import typer
 
+from dembound.cli.app import settings_of
 from dembound.cli.console import err, out
 from dembound.cli.sweep import shown
 from dembound.errors import CaseError
@@ -18,11 +20,14 @@ if TYPE_CHECKING:
     from dembound.studies.laboratory.sample import Sample
 
 
-def match_strengths(path: Path, case: DiskCase, targets: dict[TestName, float], seeds: int, output: Path) -> None:
+def match_strengths(
+    path: Path, case: DiskCase, targets: Mapping[str, float], settings: list[str] | None, seeds: int, output: Path
+) -> None:
     """Find pb_ten and pb_coh with which samples of a case have strengths (Pa) by test, and write the case with them.
 
-    path : of the case, whose comments are kept. Raises CaseError for a ratio that parallel bonds do not reach, and if
-    the file to write exists.
+    path : of the case, whose comments are kept. settings : changes of its keys, as of --set.
+
+    Raises CaseError for a ratio that parallel bonds do not reach, and if the file to write exists.
     """
     from dembound.casefile.edit import edited
     from dembound.results.replacing import replacing
@@ -37,6 +42,7 @@ def match_strengths(path: Path, case: DiskCase, targets: dict[TestName, float], 
     )
     from dembound.studies.sweep.study import Options
 
+    wanted = cast("dict[TestName, float]", dict(targets))
     target = Path(f"{case.name}_strengths.toml")
     if target.exists():
         raise CaseError([f"{target}: exists already; rename or remove it"])
@@ -50,17 +56,17 @@ def match_strengths(path: Path, case: DiskCase, targets: dict[TestName, float], 
     try:
         with shown(case.name) as report:
             measure = measure_in(make, case, seeds, Options(), output / f"{case.name}_strengths", report)
-            for trial in trials(targets, ratio, measure, most):
-                for line in in_words(trial, targets):
+            for trial in trials(wanted, ratio, measure, most):
+                for line in in_words(trial, wanted):
                     out.print(f"{case.name}: {line}")
     except KeyboardInterrupt as stop:
         err.print(f"{case.name}: stopped; the same command continues what is left")
         raise typer.Exit(exit_code_of(stop)) from None
-    changes = changes_of(trial, targets)
+    changes = changes_of(trial, wanted)
     for key, value in changes.items():
         out.print(f"{case.name}: {key} = {value:g}")
     text = path.read_bytes().decode("utf-8-sig")
     law = {} if material.law == "linearpbond" else {"material.law": LAW}
     with replacing(target) as part:
-        part.write_bytes(edited(text, law | changes).encode())
+        part.write_bytes(edited(text, settings_of(settings) | law | changes).encode())
     out.print(f"wrote {target}")

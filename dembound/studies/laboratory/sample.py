@@ -179,7 +179,11 @@ class Sample:
         if pressure > 0.0:
             yield from ("[[load]]  # a membrane, before the test and during it", 'name = "membrane"')
             yield from (f"pressure = {pressure:.6g}", f"sides = {list(SIDES)}".replace("'", '"'), "")
-            yield from ("[static]  # at rest under this pressure", f"ratio = {AT_REST:g}  # as single disks may come off", "")
+            yield from (
+                "[static]  # at rest under this pressure",
+                f"ratio = {AT_REST:g}  # as single disks may come off",
+                "",
+            )
         elif self.case.material.locked_in is not None:
             yield from ("[static]  # the packing's own stress comes to rest", "")
         jaw = 0.5 * max(JAW * self.width, LEAST_JAW * 2.0 * packing.radius)

@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 from small_cases import PUSHED, small
 
+from dembound.kinds import loads
 from dembound.running import run_case
-from dembound.studies.laboratory import study
+from dembound.studies.laboratory import strengths, study
 from dembound.studies.sweep.perform import MEMBERS, Outcome
+from dembound.studies.sweep.statistics import statistic
 
 STRENGTH, MODULUS = 5e5, 2e9
 BONDS = {"emod": 0.0, "pb_emod": MODULUS, "pb_ten": STRENGTH, "pb_coh": 2.0 * STRENGTH}
@@ -77,3 +79,22 @@ def test_options_that_have_no_effect_or_no_meaning(dembound) -> None:
         answer = dembound("test", options[0], "rock.toml", *options[1:])
         assert answer.code == 2
         assert message in answer.err
+
+
+def test_strengths_asked_for_are_written_with_the_comments_of_the_case(dembound, monkeypatch) -> None:
+    text = "# my rock\n" + small(LATTICE).text.replace("pb_ten = 500000.0", "pb_ten = 5e5  # to be found")
+    Path("rock.toml").write_text(text, encoding="utf-8")
+
+    def measured(*arguments):  # tension is 0.45 of pb_ten, compression 4.5 times as much
+        return lambda test, pb_ten, pb_coh: statistic({}, "strength", [pb_ten * {"tension": 0.45, "ucs": 2.025}[test]])
+
+    monkeypatch.setattr(strengths, "measure_in", measured)
+    found = dembound("material", "rock.toml", "--ucs", "90e6", "--tension", "20e6", "--seeds", 1)
+
+    assert found.code == 0
+    assert "ucs 90 MPa over 1 seeds" in found.out
+    written = Path("rock_strengths.toml").read_text(encoding="utf-8")
+    assert written.startswith("# my rock\n")
+    assert "  # to be found" in written
+    assert loads(written).material.pb_ten == pytest.approx(20e6 / 0.45, rel=1e-3)
+    assert "exists already" in dembound("material", "rock.toml", "--ucs", "90e6").err
