@@ -56,7 +56,7 @@ MORE = "More"
 """Panel of the help for less usual commands."""
 
 ORDER = (
-    *("new", "check", "run", "advise", "plot", "report", "calibrate", "chart", "sweep"),
+    *("new", "check", "run", "advise", "plot", "report", "calibrate", "chart", "sweep", "test"),
     *("cases", "schema", "material", "packing", "boundary", "stability", "dispersion", "exact"),
     *("resume", "rerun", "library", "respond"),
     *("estimate", "compare", "signals", "view", "movie", "wave", "gauge", "hopkinson", "cache"),

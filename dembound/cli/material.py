@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from dembound.cli.app import MORE, Settings, app, load_disks
+from dembound.cli.app import MORE, Output, Settings, app, load_disks
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import out, print_rows
 
@@ -15,13 +16,28 @@ from dembound.cli.console import out, print_rows
 @app.command("material", rich_help_panel=MORE)
 def material(
     case: OneCase,
+    ucs: Annotated[
+        float | None, typer.Option(min=0.0, help="Uniaxial compressive strength (Pa) to give samples of the material.")
+    ] = None,
+    tension: Annotated[
+        float | None, typer.Option(min=0.0, help="Tensile strength (Pa) to give them, by direct tension.")
+    ] = None,
+    seeds: Annotated[int, typer.Option(min=1, help="Samples of each test, for --ucs and --tension.")] = 8,
+    output: Output = Path("results"),
     changes: Settings = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI units, for scripts.")] = False,
 ) -> None:
     """Print what contacts and bonds make of the body, without a run.
 
     Elastic moduli, wave speeds by direction, and the stress of the first crack, by static solves of a brick.
+
+    With --ucs or --tension samples are tested (`dembound test`), and a case is written that has these strengths.
     """
+    if targets := {name: value for name, value in (("ucs", ucs), ("tension", tension)) if value}:
+        from dembound.cli.strengths import match_strengths
+
+        match_strengths(case, load_disks(case, changes), targets, changes, seeds, output)
+        return
     from dembound.disks.reports.micro_macro import describe_materials, material_rows, packing_line
     from dembound.disks.scene import build
 

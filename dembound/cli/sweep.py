@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
@@ -106,7 +106,7 @@ def sweep(
         err.print(f"{loaded.name}: {line}")
     folder = output / f"{loaded.name}_sweep"
     try:
-        with _shown(loaded.name) as report:
+        with shown(loaded.name) as report:
             outcomes = sweep_all(members, options, folder, report)
     except KeyboardInterrupt as stop:
         err.print(f"{loaded.name}: stopped; the same command continues what is left")
@@ -122,7 +122,7 @@ def sweep(
 
 
 @contextmanager
-def _shown(name: str) -> Iterator[Report]:
+def shown(name: str) -> Iterator[Report]:
     """Shows the progress of a sweep: a bar on a terminal, else a line every ten seconds."""
     began = said = time.monotonic()
 
@@ -165,7 +165,7 @@ def _print(swept: Swept) -> bool:
     failed = [(m.name, state) for m, state in zip(swept.members, swept.states, strict=True) if state != "done"]
     for member, state in failed:
         err.print(f"{swept.case.name}: {member}: failed, {state}")
-    _print_warnings(swept)
+    print_warnings(swept.case.name, swept.warnings, len(swept.members))
     found = [each for each in statistics(swept.members, swept.outcomes) if each.quantity in swept.shown]
     if found:
         print_rows(swept.case.name, list(_rows(found[:MOST_ROWS])), left=2)
@@ -175,14 +175,13 @@ def _print(swept: Swept) -> bool:
     return bool(failed)
 
 
-def _print_warnings(swept: Swept) -> None:
-    """Print each distinct warning of the members once, with the numbers of the first."""
-    warnings = swept.warnings
+def print_warnings(name: str, warnings: Mapping[str, int], members: int) -> None:
+    """Print distinct warnings of a number of members, each once with the number of members that have it."""
     for text, count in list(warnings.items())[:MOST_WARNINGS]:
-        err.print(f"{swept.case.name}: warning: {text} ({count} of {len(swept.members)} members)")
+        err.print(f"{name}: warning: {text} ({count} of {members} members)")
     if len(warnings) > MOST_WARNINGS:
         left = len(warnings) - MOST_WARNINGS
-        err.print(f"{swept.case.name}: {left} more warnings are in summary.json of the members")
+        err.print(f"{name}: {left} more warnings are in summary.json of the members")
 
 
 def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:

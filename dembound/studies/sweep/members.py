@@ -70,12 +70,13 @@ def members_of(
     choices, left_out = choices_of(case, dict(zip(_names(changes), changes, strict=True)))
     done = [action, method if action == "calibrate" else ""]
     return [
-        Member(choice.name, choice.changes, replace(choice.case, name=choice.name), _key(choice.case, done))
+        Member(choice.name, choice.changes, replace(choice.case, name=choice.name), key_of(choice.case, done))
         for choice in choices
     ], left_out
 
 
-def _key(case: Case, done: Sequence[str]) -> str:
+def key_of(case: Case, done: Sequence[str]) -> str:
+    """The key of a member, see `Member`; done : the action, and its method."""
     return hashlib.sha256(json.dumps([digest(case), *done]).encode()).hexdigest()[:16]
 
 

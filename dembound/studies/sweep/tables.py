@@ -72,35 +72,40 @@ class Swept:
 
     @property
     def warnings(self) -> dict[str, int]:
-        """Each distinct warning of the members' runs -> number of members with it.
-
-        Warnings that differ only in numbers count as one, with the numbers of the first member.
-        """
-        first: dict[str, str] = {}
-        count: Counter[str] = Counter()
-        for warnings in (each.warnings for each in self.outcomes if each is not None):
-            alike = {line: NUMBER.sub("", line) for line in warnings}
-            for line, words in alike.items():
-                first.setdefault(words, line)
-            count.update(set(alike.values()))
-        return {line: count[words] for words, line in first.items()}
+        """Each distinct warning of the members' runs, see `distinct`."""
+        return distinct(self.outcomes)
 
     def values(self, quantity: str) -> np.ndarray:
         """The values (n,) of a quantity, nan for members without it."""
         return np.array([np.nan if each is None else each.values.get(quantity, np.nan) for each in self.outcomes])
 
 
+def distinct(outcomes: Sequence[Outcome | None]) -> dict[str, int]:
+    """Each distinct warning of members' runs -> number of members with it.
+
+    Warnings that differ only in numbers count as one, with the numbers of the first member.
+    """
+    first: dict[str, str] = {}
+    count: Counter[str] = Counter()
+    for warnings in (each.warnings for each in outcomes if each is not None):
+        alike = {line: NUMBER.sub("", line) for line in warnings}
+        for line, words in alike.items():
+            first.setdefault(words, line)
+        count.update(set(alike.values()))
+    return {line: count[words] for words, line in first.items()}
+
+
 def write_tables(swept: Swept, folder: Path) -> list[Path]:
     """Write all files into the folder of a sweep; returns their paths."""
     averages = list(statistics(swept.members, swept.outcomes))
     paths = [folder / name for name in ("sweep.csv", "statistics.csv", "sweep.h5")]
-    _write_csv(paths[0], _rows_of_members(swept))
-    _write_csv(paths[1], _rows_of_statistics(swept, averages))
+    write_csv(paths[0], _rows_of_members(swept))
+    write_csv(paths[1], _rows_of_statistics(swept, averages))
     _write_record(paths[2], swept, averages)
     return paths
 
 
-def _write_csv(path: Path, rows: Iterable[Sequence[Any]]) -> None:
+def write_csv(path: Path, rows: Iterable[Sequence[Any]]) -> None:
     """Write rows, completely or not at all; missing values are empty."""
     with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         for row in rows:

@@ -1,0 +1,196 @@
+"""The command test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from dembound.cli.app import Name, Output, Settings, app, load_disks
+from dembound.cli.console import err, out, print_rows
+from dembound.cli.sweep import FAILED, print_warnings, shown
+from dembound.errors import CaseError
+from dembound.interrupts import exit_code_of
+from dembound.words import in_one_unit, with_unit
+
+if TYPE_CHECKING:
+    from dembound.studies.laboratory.study import Tested
+    from dembound.studies.laboratory.tables import Ratio
+    from dembound.studies.sweep.statistics import Statistic
+
+PRINTED = {
+    "strength": "strength",
+    "first_crack": "first crack",
+    "young": "E of the sample",
+    "poisson": "ν of the sample",
+    "young_plane_strain": "E, plane strain",
+    "poisson_plane_strain": "ν, plane strain",
+    "strain_at_peak": "strain at the peak",
+    "tension_cracks_at_peak": "broken in tension, at the peak",
+    "shear_cracks_at_peak": "broken in shear, at the peak",
+    "friction_angle": "friction angle φ",
+    "cohesion": "cohesion",
+    "uniaxial": "strength at no pressure, of the line",
+}
+"""Quantities that are printed, and their names there; all others are in the files."""
+
+
+class Kind(StrEnum):
+    """The tests."""
+
+    ucs = "ucs"
+    tension = "tension"
+    brazilian = "brazilian"
+    biaxial = "biaxial"
+
+
+class EndsKind(StrEnum):
+    """How platens hold the ends."""
+
+    smooth = "smooth"
+    grips = "grips"
+
+
+@app.command("test")
+def laboratory(
+    kind: Annotated[Kind, typer.Argument(metavar="TEST", help="ucs, tension, brazilian or biaxial.")],
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
+    seeds: Annotated[int, typer.Option(min=1, help="Samples, whose packings have seeds packing.seed and above.")] = 4,
+    width: Annotated[
+        float | None, typer.Option(min=0.0, help="Width of the sample (m); by default the case's.")
+    ] = None,
+    height: Annotated[float | None, typer.Option(min=0.0, help="Height (m); twice a given width by default.")] = None,
+    ends: Annotated[EndsKind, typer.Option(help="Platens hold the normal motion only, or all.")] = EndsKind.smooth,
+    damp: Annotated[float, typer.Option(min=0.0, max=0.99, help="Local damping; strengths depend on it.")] = 0.7,
+    rate: Annotated[float | None, typer.Option(min=0.0, help="Strain rate (1/s); by default quasi-static.")] = None,
+    pressures: Annotated[
+        str | None, typer.Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")
+    ] = None,
+    shares: Annotated[
+        str, typer.Option(metavar="LOW,HIGH", help="Shares of the peak between which E is taken.")
+    ] = "0.1,0.5",
+    processes: Annotated[
+        int | None, typer.Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
+    ] = None,
+    anew: Annotated[bool, typer.Option("--anew", help="Also repeat samples that are done.")] = False,
+    output: Output = Path("results"),
+    changes: Settings = None,
+    name: Name = None,
+) -> None:
+    """Test samples of a case's material: E, ν, first crack, strength, and from pressures at the sides φ and cohesion.
+
+    Only [packing] and [material] of the case count. Each sample is a case of its own, which is left with the results.
+
+    Complete samples are not repeated: the same command continues a test, and more seeds add samples to it.
+    """
+    from dembound.studies.laboratory.sample import ignored, sample_of
+    from dembound.studies.laboratory.study import default_pressures, perform, specimens_of
+    from dembound.studies.laboratory.tables import ratios_of
+    from dembound.studies.sweep.study import Options
+
+    if scheduler and processes:
+        raise CaseError(["--processes: is for this machine, not allowed together with --scheduler"])
+    if pressures and kind != Kind.biaxial:
+        raise CaseError(["--pressures: is for biaxial; other tests have free sides"])
+    between = _numbers("--shares", shares)
+    if len(between) != 2 or not 0.0 <= between[0] < between[1] <= 1.0:
+        raise CaseError([f"--shares: is {shares}, must be two shares of the peak, as 0.1,0.5"])
+    loaded = load_disks(case, changes, name)
+    sample = sample_of(loaded, kind.value, width or None, height or None, ends=ends.value, damp=damp, rate=rate or None)
+    if unused := ignored(loaded):
+        err.print(f"{loaded.name}: only [packing] and [material] count; not used: {', '.join(unused)}")
+    given = _numbers("--pressures", pressures) if pressures else None
+    sides = (given or default_pressures(sample)) if kind == Kind.biaxial else [0.0]
+    specimens = specimens_of(sample, seeds, sides)
+    err.print(f"{loaded.name}: {kind.value}, {sample.in_words}")
+    folder = output / f"{loaded.name}_{kind.value}"
+    try:
+        with shown(loaded.name) as report:
+            options = Options(processes=processes, scheduler=scheduler, anew=anew)
+            found = perform(sample, specimens, options, folder, report, (between[0], between[1]))
+    except KeyboardInterrupt as stop:
+        err.print(f"{loaded.name}: stopped; the same command continues what is left")
+        raise typer.Exit(exit_code_of(stop)) from None
+    ratios = list(ratios_of(found, output))
+    has_failed = _print(found, ratios)
+    for path in _leave(found, ratios):
+        out.print(f"wrote {path}")
+    if has_failed:
+        raise typer.Exit(FAILED)
+
+
+def _numbers(option: str, text: str) -> list[float]:
+    """Numbers between commas; raises CaseError for anything else, negative and duplicate ones."""
+    try:
+        found = [float(each) for each in text.split(",")]
+    except ValueError:
+        found = []
+    if not found or min(found) < 0.0 or len(set(found)) < len(found):
+        raise CaseError([f"{option}: is {text}, must be different numbers with commas between them, none negative"])
+    return found
+
+
+def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
+    """Print failures, warnings, means and ratios; returns whether a run has failed."""
+    from dembound.studies.sweep.tables import distinct
+
+    name = tested.sample.case.name
+    failed = [
+        (s.member.name, state) for s, state in zip(tested.specimens, tested.states, strict=True) if state != "done"
+    ]
+    for member, state in failed:
+        err.print(f"{name}: {member}: failed, {state}")
+    print_warnings(name, distinct(tested.outcomes), len(tested.specimens))
+    for line in tested.warnings:
+        err.print(f"{name}: warning: {line}")
+    found = [each for each in tested.statistics if each.quantity in PRINTED]
+    if found:
+        print_rows(name, list(_rows(found)), left=2 if any(each.group for each in found) else 1)
+    for ratio in ratios:
+        out.print(f"{name}: compressive over tensile strength {ratio.value:.3g}, with {ratio.folder}")
+    return bool(failed)
+
+
+def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
+    """A head, and a row for each quantity and pressure, with three digits; all digits are in the files."""
+    from dembound.studies.laboratory.study import UNITS
+
+    grouped = any(each.group for each in statistics)
+    yield *(("pressure",) if grouped else ()), "quantity", "n", "mean", "spread", "95 % ±", "unit"
+    for each in statistics:
+        numbers, unit = (each.mean, each.spread, each.interval), UNITS.get(each.quantity, "1")
+        texts = [f"{value:.3g}" for value in numbers]
+        if unit == "Pa":
+            texts, unit = in_one_unit(numbers, unit)
+        cells = ("–" if value != value else text for value, text in zip(numbers, texts, strict=True))
+        group = (with_unit(each.group["pressure"], "Pa") if each.group else "all",) if grouped else ()
+        yield *group, PRINTED[each.quantity], str(each.count), *cells, "" if unit == "1" else unit
+
+
+def _leave(tested: Tested, ratios: Sequence[Ratio]) -> Iterator[Path]:
+    """Write tables, cases and pictures, yielding each."""
+    from dembound.studies.laboratory.tables import write_tables
+
+    yield from write_tables(tested, ratios)
+    if tested.done:
+        from dembound.plot.laboratory import plot_curves, plot_envelope, plot_sample
+        from dembound.plot.style import save
+
+        name, kind = tested.sample.case.name, tested.sample.test
+        save(plot_curves(f"{name}: {kind}", tested.curves), tested.folder / "curves.png", None)
+        yield tested.folder / "curves.png"
+        first = tested.done[0]
+        save(plot_sample(tested.record(first), tested.curves[first.member.name]), tested.folder / "sample.png", None)
+        yield tested.folder / "sample.png"
+        if tested.envelopes:
+            points = [(each.pressure, tested.curves[each.member.name].strength) for each in tested.done]
+            line = {s.quantity: s.mean for s in tested.statistics if not s.group}
+            figure = plot_envelope(f"{name}: {kind}", points, line["friction_angle"], line["cohesion"])
+            save(figure, tested.folder / "envelope.png", None)
+            yield tested.folder / "envelope.png"

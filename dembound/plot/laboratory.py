@@ -1,0 +1,165 @@
+"""Pictures of laboratory tests: curves of stress and strain, the sample as it breaks, and the envelope of strengths."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from dembound.plot.field import Field, read_disks
+from dembound.plot.scene import draw_panel
+from dembound.plot.style import COLOURS, Powers, new_figure, outside_legend, styled
+from dembound.results.loading_curve import LoadingCurve, TestName
+from dembound.results.reader import cracks_until, open_record, snapshots_of
+
+MEGA = 1e6
+
+STRESS: Mapping[TestName, str] = {
+    "ucs": "axial stress, compression positive (MPa)",
+    "biaxial": "axial stress, compression positive (MPa)",
+    "tension": "axial stress, tension positive (MPa)",
+    "brazilian": "tension 2P/(πD) in the middle (MPa)",
+}
+"""Label of the stress of each test."""
+
+MOST_NAMED = 8
+"""Largest number of curves that have a name in the legend."""
+
+LARGEST = (3.4, 5.2)
+"""Largest width and height of a sample on the page in inches."""
+
+CALM, MARGIN = 0.98, 1.5
+"""Share of the disks that have not broken off at the peak, and end of the colour scale over their largest motion."""
+
+
+@styled
+def plot_curves(title: str, curves: Mapping[str, LoadingCurve]) -> Figure:
+    """Stress over the strain of the platens of all samples, and the number of broken bonds; first cracks are marked.
+
+    Curves of one pressure at the sides have one colour, if there are several; else each sample has its own.
+    """
+    figure = new_figure(7.4, 5.4)
+    panel = figure.subplots()
+    broken = panel.twinx()
+    pressures = sorted({curve.pressure for curve in curves.values()})
+    named: set[str] = set()
+    for number, (name, curve) in enumerate(curves.items()):
+        if len(pressures) > 1:
+            number, name = pressures.index(curve.pressure), f"{curve.pressure / MEGA:.3g} MPa at the sides"
+        label = name if name not in named and len(named) < MOST_NAMED else None
+        named.add(name)
+        colour = COLOURS[number % len(COLOURS)]
+        percent = 100.0 * curve.strain
+        panel.plot(percent, curve.stress / MEGA, color=colour, label=label)
+        if len(curve.crack_time):
+            strain = np.interp(curve.crack_time, curve.time, percent)
+            broken.step(strain, np.arange(1, len(strain) + 1), where="post", color=colour, linewidth=0.7, linestyle=":")
+            first = "first broken bond" if number == 0 else None
+            panel.plot(
+                strain[0],
+                curve.first_crack / MEGA,
+                "v",
+                color=colour,
+                markersize=7.0,
+                markeredgecolor="white",
+                label=first,
+            )
+    panel.set_xlabel("strain between the platens (%)")
+    panel.set_ylabel(STRESS[next(iter(curves.values())).kind])
+    broken.set_ylabel("broken bonds (dotted)")
+    broken.set_ylim(bottom=0.0)
+    broken.grid(False)
+    panel.set_ylim(bottom=0.0)
+    panel.set_xlim(left=0.0)
+    figure.suptitle(title, fontsize=11)
+    outside_legend(figure, [panel], columns=3)
+    return figure
+
+
+@styled
+def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
+    """A sample at its first crack, at its peak and at the end: motion across the cracks to come, and broken bonds.
+
+    That is motion along y in tension, else along x.
+
+    Raises CaseError when the record cannot be read.
+    """
+    states = {"peak": curve.time[curve.at_peak], "end": curve.time[-1]}
+    if len(curve.crack_time):
+        states = {"first crack": curve.crack_time[0]} | states
+    with open_record(record) as file:
+        disks, groups = read_disks(file), list(snapshots_of(file))
+        axis = 1 if curve.kind == "tension" else 0
+        nearest = [groups[int(np.argmin(np.abs(curve.gauge_time - time)))] for time in states.values()]
+        motion = np.array([group["displacement"][:, axis] for group in nearest])
+        limit = MARGIN * float(np.quantile(np.abs(motion[-2]), CALM)) or 1.0
+        shown = Field(
+            captions=[f"{name}, {curve.stress_at(time) / MEGA:.3g} MPa" for name, time in states.items()],
+            values=motion,
+            cracks=[cracks_until(file, time) for time in states.values()],
+            limits=(-limit, limit),
+            name=f"displacement along {'xy'[axis]}",
+            unit="m",
+        )
+    width, height = disks.window.size
+    scale = min(LARGEST[0] / width, LARGEST[1] / height)
+    figure = new_figure(len(states) * (scale * width + 0.6) + 1.6, scale * height + 1.6)
+    panels = figure.subplots(1, len(states), sharey=True, squeeze=False)[0]
+    for number, panel in enumerate(panels):
+        colours = draw_panel(panel, disks, shown, number, disks.window, scale * figure.dpi)
+        panel.set_title(shown.captions[number])
+        if number:
+            panel.set_ylabel("")
+    figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers())
+    figure.suptitle(f"{disks.case}, {len(disks.radii):,} disks", fontsize=11)
+    outside_legend(figure, panels, columns=2)
+    return figure
+
+
+@styled
+def plot_envelope(title: str, tests: Sequence[tuple[float, float]], angle: float, cohesion: float) -> Figure:
+    """Mohr's circles of the mean strength at each pressure with the Mohr-Coulomb line, and the strengths themselves.
+
+    Parameters
+    ----------
+    title
+        of the picture.
+    tests
+        pressure at the sides and largest axial stress of each sample, Pa.
+    angle, cohesion
+        of the line, degrees and Pa.
+    """
+    pressure, strength = np.array(tests).T / MEGA
+    figure = new_figure(9.6, 4.4)
+    over, circles = figure.subplots(1, 2)
+    sine = np.sin(np.radians(angle))
+    slope = (1.0 + sine) / (1.0 - sine)
+    uniaxial = 2.0 * cohesion / MEGA * np.sqrt(slope)
+    ends = np.array([0.0, 1.05 * pressure.max()])
+    over.plot(pressure, strength, "o", color=COLOURS[0], label="samples")
+    over.plot(ends, uniaxial + slope * ends, color=COLOURS[1], label=f"{uniaxial:.3g} MPa + {slope:.3g}·pressure")
+    over.set(xlabel="pressure at the sides (MPa)", ylabel="largest axial stress (MPa)")
+    for number, each in enumerate(np.unique(pressure)):
+        mean = float(strength[pressure == each].mean())
+        label = "mean strength at each pressure" if number == 0 else None
+        _draw_circle(circles, each, mean, label)
+    reach = np.array([0.0, 0.5 * (mean + each)])
+    line = cohesion / MEGA + reach * np.tan(np.radians(angle))
+    label = f"φ = {angle:.3g}°, cohesion {cohesion / MEGA:.3g} MPa"
+    circles.plot(reach, line, color=COLOURS[1], label=label)
+    circles.set(xlabel="normal stress, compression positive (MPa)", ylabel="shear stress (MPa)", aspect="equal")
+    circles.set_xlim(0.0, 1.05 * strength.max())
+    circles.set_ylim(0.0, 1.1 * max(0.5 * strength.max(), line.max()))
+    figure.suptitle(title, fontsize=11)
+    outside_legend(figure, [over, circles], columns=2)
+    return figure
+
+
+def _draw_circle(panel: Axes, low: float, high: float, label: str | None) -> None:
+    """Half of Mohr's circle between two principal stresses."""
+    angle = np.linspace(0.0, np.pi, 181)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    panel.plot(middle + half * np.cos(angle), half * np.sin(angle), color=COLOURS[0], label=label)

@@ -1,0 +1,253 @@
+"""Samples: a packing of the case's disks in the size of the sample, and the case of its test as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import tomli_w
+
+from dembound.boundaries import SIDES
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.material import STRENGTH_KEYS
+from dembound.casefile.toml import parsed
+from dembound.casefile.types import LAWS
+from dembound.disks.scene import ground_of
+from dembound.errors import CaseError
+from dembound.kinds import loads
+from dembound.packings.base import DensePacking, Packing
+from dembound.results.loading_curve import TestName
+from dembound.words import with_unit
+
+Ends = Literal["smooth", "grips"]
+"""How platens hold the ends: along their normal only, or in all directions."""
+
+LAW = "linearpbond"
+"""The law of a sample whose case has one without strength."""
+
+MOST_OWN = 20_000
+"""Disks of a case above which the size of the sample must be given."""
+
+LOW = {"ucs": 0.9, "biaxial": 0.9, "tension": 0.25, "brazilian": 0.4}
+"""Peak over the smaller strength of the bonds, as low as it has been measured; of a Brazilian test with the larger
+strain below its jaws."""
+
+HIGHEST = 8.0
+"""Strain up to which a sample is loaded at most, over the one that `LOW` gives."""
+
+QUASI_STATIC = 15.0
+"""Travel times of a P wave through the height within which the peak is reached no sooner: inertia then adds nothing."""
+
+SLOWER = 4.0
+"""Travel times of tests over `QUASI_STATIC`: at 1.2 compressive strengths are 5 % higher."""
+
+RISE = 5.0
+"""Travel times during which platens gain their speed, so that they send no wave."""
+
+JAW, LEAST_JAW = 1.0 / 7.0, 3.0
+"""Width of the jaws of a Brazilian test over the diameter of the sample, an arc of 16°; at least, in mean disks."""
+
+SNAPSHOTS = 150
+"""Snapshots of a test that goes on for `HIGHEST`; most end after a third of it."""
+
+AT_REST = 3e-4
+"""Unbalanced force at which a sample under pressure is at rest: an outer disk that comes off leaves up to 1e-4."""
+
+PEAK_SHARE = 0.6
+"""Share of its peak to which the force falls before a test ends."""
+
+COUNTED = ("title", "packing", "material", "run")
+"""Tables of a case that count for its sample, and one that every case must have."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A sample and how it is loaded.
+
+    Attributes
+    ----------
+    case : whose packing and material it has. test : its name. width, height : m; of a Brazilian test both are the
+    diameter.
+    ends, damp : of the platens and of the run. given_rate : strain rate, 1/s; None: slow enough for `peak_strain`.
+    """
+
+    case: DiskCase
+    test: TestName
+    width: float
+    height: float
+    ends: Ends = "smooth"
+    damp: float = 0.7
+    given_rate: float | None = None
+
+    @property
+    def packing(self) -> dict[str, Any]:
+        """The table of its packing, one brick of its size."""
+        own = self.case.packing
+        kept = {key: value for key, value in own.given().items() if key not in ("bricks", "origin")}
+        size = {"size": [self.width, self.height]}
+        return kept | size | ({"brick": [self.width, self.height]} if isinstance(own, DensePacking) else {})
+
+    @property
+    def material(self) -> dict[str, Any]:
+        """The table of its material, with a law whose bonds break."""
+        own = self.case.material
+        given = {key: value for key, value in own.given().items() if key != "quality_factor"}
+        law = own.law if LAWS[own.law].has_history else LAW
+        return given | {"law": law, "damp": self.damp}
+
+    def seeded(self, by: int) -> dict[str, Any]:
+        """The table of its packing with a seed larger by a number; raises CaseError for a packing without seeds."""
+        if by == 0:
+            return self.packing
+        packing = self.case.packing.reseeded(by)
+        if packing is None:
+            raise CaseError(["--seeds: all samples of this pattern are the same; give --seeds 1, or pattern B or C"])
+        return replace(self, case=replace(self.case, packing=packing)).packing
+
+    @cached_property
+    def elastic(self) -> tuple[float, float, float]:
+        """Modulus E (Pa) along y and Poisson's ratio between free sides, and c_p along y (m/s), homogenised."""
+        tables = tomli_w.dumps({"packing": self.packing, "material": self.material, "run": {"duration": 1.0}})
+        case = loads(tables, self.case.folder, self.case.name)
+        assert isinstance(case, DiskCase)
+        ground = ground_of(case)
+        tensor = ground.material_tensor
+        c11, c22, c12 = tensor[0, 0], tensor[1, 1], 0.5 * (tensor[0, 1] + tensor[1, 0])
+        return float(c22 - c12**2 / c11), float(c12 / c11), ground.wave_speeds(1)[0]
+
+    @property
+    def travel_time(self) -> float:
+        """Time (s) that a P wave needs through its height."""
+        return self.height / self.elastic[2]
+
+    @property
+    def peak_strain(self) -> float:
+        """A strain at which the peak is not yet reached, from the strength of the bonds."""
+        weakest = min(value for key in STRENGTH_KEYS if (value := getattr(self.case.material, key)) is not None)
+        return LOW[self.test] * weakest / self.elastic[0]
+
+    @property
+    def rate(self) -> float:
+        """Strain rate at which the platens move, 1/s."""
+        return self.given_rate or self.peak_strain / (SLOWER * QUASI_STATIC * self.travel_time)
+
+    def rate_limit(self, peak_strain: float) -> float:
+        """Strain rate (1/s) below which inertia adds nothing to a peak at this strain."""
+        return peak_strain / (QUASI_STATIC * self.travel_time)
+
+    @property
+    def duration(self) -> float:
+        """Time (s) after which a test ends at the latest."""
+        return HIGHEST * self.peak_strain / self.rate + RISE * self.travel_time
+
+    @property
+    def in_words(self) -> str:
+        """Size, disks, ends, damping and rate in words."""
+        diameter = 2.0 * self.case.packing.radius
+        across, up = self.width / diameter, self.height / diameter
+        width, height = with_unit(self.width, "m"), with_unit(self.height, "m")
+        round_one = f"disk of {width}, {across:.3g} diameters"
+        size = round_one if self.test == "brazilian" else f"{width} × {height}, {across:.3g} × {up:.3g} diameters"
+        return f"{size}; {self.ends} ends, damp {self.damp:g}, strain rate {self.rate:.3g} 1/s"
+
+    def text(self, by: int = 0, pressure: float = 0.0) -> str:
+        """The case of the test with another seed, as TOML; pressure : Pa at the sides.
+
+        Raises CaseError as `seeded`.
+        """
+        tables = tomli_w.dumps({"packing": self.seeded(by), "material": self.material})
+        return "\n".join([f'title = "{self._title(by, pressure)}"', "", tables, *self._loading(pressure), ""])
+
+    def _title(self, by: int, pressure: float) -> str:
+        words = {
+            "ucs": "Uniaxial compression",
+            "tension": "Direct tension",
+            "brazilian": "Brazilian test",
+            "biaxial": f"Compression under {with_unit(pressure, 'Pa')}",
+        }[self.test]
+        return f"{words}, seed {self.seeded(by).get('seed', 0)}"
+
+    def _loading(self, pressure: float) -> Iterator[str]:
+        """Lines of the tables that load the sample."""
+        packing = self.case.packing
+        if self.test == "brazilian":
+            middle, radius = 0.5 * self.width, 0.5 * self.width
+            yield from ("[[hole]]  # the sample is round", 'type = "circle"', 'name = "sample"')
+            yield from (f"centre = [{middle:.9g}, {middle:.9g}]", f"radius = {radius:.9g}", 'keep = "inside"', "")
+        if pressure > 0.0:
+            yield from ("[[load]]  # a membrane, before the test and during it", 'name = "membrane"')
+            yield from (f"pressure = {pressure:.6g}", f"sides = {list(SIDES)}".replace("'", '"'), "")
+            yield from (
+                "[static]  # at rest under this pressure",
+                f"ratio = {AT_REST:g}  # as single disks may come off",
+                "",
+            )
+        elif self.case.material.locked_in is not None:
+            yield from ("[static]  # the packing's own stress comes to rest", "")
+        jaw = 0.5 * max(JAW * self.width, LEAST_JAW * 2.0 * packing.radius)
+        for side in ("bottom", "top"):
+            yield from (f"[boundary.{side}]", 'type = "velocity"', f'wave_p = "{side}"')
+            if self.ends == "smooth":
+                yield 'hold = ["normal"]  # smooth platens; both components without this line'
+            if self.test == "brazilian":
+                yield f"within = [{0.5 * self.width - jaw:.9g}, {0.5 * self.width + jaw:.9g}]  # the jaw"
+            yield ""
+        sense = -1.0 if self.test == "tension" else 1.0
+        speed = 0.5 * sense * self.rate * self.height
+        for side, velocity in (("bottom", speed), ("top", -speed)):
+            yield from (f"[wave.{side}]", 'type = "constant"', f"amplitude = {velocity:.6g}  # m/s")
+            yield from (f"rise = {RISE * self.travel_time:.6g}  # s", "")
+        yield from ("[run]", f"duration = {self.duration:.6g}  # s, at most")
+        yield from ('until = "peak"', f"peak_share = {PEAK_SHARE}", "")
+        yield from ("[output]", f"snapshots = {SNAPSHOTS}", 'paraview = "vtkhdf"', "pictures = false")
+
+
+def sample_of(
+    case: DiskCase,
+    test: TestName,
+    width: float | None = None,
+    height: float | None = None,
+    *,
+    ends: Ends = "smooth",
+    damp: float = 0.7,
+    rate: float | None = None,
+) -> Sample:
+    """A sample of the material of a case; width, height : m, by default those of the case's disks.
+
+    A given width makes it twice as high; a Brazilian sample is round, of this width. Lengths of lattices are rounded to
+    whole cells.
+
+    Raises CaseError for a material without strength, a case of too many disks without a width, and invalid numbers.
+    """
+    packing = case.packing
+    if all(getattr(case.material, key) is None for key in STRENGTH_KEYS):
+        raise CaseError(["material: has no strength, so no bond breaks; give pb_ten and pb_coh"], case.name)
+    if width is None and packing.expected_disks > MOST_OWN:
+        diameter = 2.0 * packing.radius
+        raise CaseError(
+            [
+                f"--width: is missing, and the case has {packing.expected_disks:,.0f} disks; give the width of the "
+                f"sample (m), such as --width {40.0 * diameter:.3g}, 40 diameters"
+            ],
+            case.name,
+        )
+    across = packing.extent[0] if width is None else width
+    up = height or (packing.extent[1] if width is None else 2.0 * across)
+    if test == "brazilian":
+        up = across
+    if not isinstance(packing, DensePacking):
+        across, up = (_whole(packing, axis, length) for axis, length in enumerate((across, up)))
+    return Sample(case, test, across, up, ends, damp, rate)
+
+
+def _whole(packing: Packing, axis: int, length: float) -> float:
+    """The length (m) of whole bricks along an axis that is nearest to a length."""
+    part = packing.brick_size[axis]
+    return float(f"{max(round(length / part), 1) * part:.12g}")
+
+
+def ignored(case: DiskCase) -> list[str]:
+    """The tables of a case that do not count for its sample; [run], which every case has, goes without saying."""
+    return [name for name in parsed(case.text) if name not in COUNTED]

@@ -1,0 +1,183 @@
+"""A laboratory test over seeds: its runs as members of a sweep, and what is measured in each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from dembound.kinds import loads
+from dembound.results.loading_curve import LoadingCurve, read_test
+from dembound.studies.laboratory.envelope import Envelope, fitted
+from dembound.studies.laboratory.sample import Sample
+from dembound.studies.sweep.members import Member, key_of
+from dembound.studies.sweep.perform import MEMBERS, Outcome
+from dembound.studies.sweep.statistics import Statistic, statistic
+from dembound.studies.sweep.study import Options, Report, sweep
+
+SHARES = (0.1, 0.5)
+"""Shares of the peak between which moduli are the slopes of the curve."""
+
+UNITS = {
+    **dict.fromkeys(("strength", "first_crack", "young", "young_plane_strain", "cohesion", "uniaxial"), "Pa"),
+    "friction_angle": "degrees",
+    "rate": "1/s",
+}
+"""Units of quantities; others are pure numbers."""
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """One run of a test: its seed, the pressure at its sides (Pa), and the member of the sweep."""
+
+    seed: int
+    pressure: float
+    member: Member
+
+
+@dataclass(frozen=True)
+class Tested:
+    """A test over seeds.
+
+    Attributes
+    ----------
+    sample : of the test. specimens : its runs. outcomes : of the sweep, in the same order. shares : of the peak, for
+    moduli. folder : of the results.
+    """
+
+    sample: Sample
+    specimens: Sequence[Specimen]
+    outcomes: Sequence[Outcome | None]
+    folder: Path
+    shares: tuple[float, float] = SHARES
+
+    @property
+    def states(self) -> list[str]:
+        """State of every run: done, or the reason why it is not."""
+        return ["not done" if each is None else each.failure or "done" for each in self.outcomes]
+
+    @property
+    def done(self) -> list[Specimen]:
+        """The runs that are complete."""
+        return [each for each, state in zip(self.specimens, self.states, strict=True) if state == "done"]
+
+    def record(self, specimen: Specimen) -> Path:
+        """The record of a run."""
+        return self.folder / MEMBERS / specimen.member.name / "run.h5"
+
+    @cached_property
+    def curves(self) -> dict[str, LoadingCurve]:
+        """The curve of every complete run by name."""
+        sample = self.sample
+        return {
+            each.member.name: read_test(self.record(each), sample.test, sample.width, each.pressure)
+            for each in self.done
+        }
+
+    def values(self, specimen: Specimen) -> dict[str, float]:
+        """The quantities measured in a run, by name."""
+        return measured(self.curves[specimen.member.name], self.shares)
+
+    @cached_property
+    def statistics(self) -> list[Statistic]:
+        """Means over seeds of all quantities, for each pressure, and of friction angle and cohesion over all."""
+        found = []
+        for pressure in dict.fromkeys(each.pressure for each in self.done):
+            rows = [self.values(each) for each in self.done if each.pressure == pressure]
+            group = _group(self.sample, pressure)
+            for name in rows[0]:
+                values = [row[name] for row in rows if np.isfinite(row[name])]
+                found += [statistic(group, name, values)] if values else []
+        fits = list(self.envelopes.values())
+        for name in fits[0]._fields if fits else ():
+            found.append(statistic({}, name, [getattr(fit, name) for fit in fits]))
+        return found
+
+    @cached_property
+    def envelopes(self) -> dict[int, Envelope]:
+        """The Mohr-Coulomb line of every seed with two or more pressures."""
+        if self.sample.test != "biaxial":
+            return {}
+        found = {}
+        for seed in dict.fromkeys(each.seed for each in self.done):
+            own = [each for each in self.done if each.seed == seed]
+            if len(own) > 1:
+                strengths = [self.curves[each.member.name].strength for each in own]
+                found[seed] = fitted([each.pressure for each in own], strengths)
+        return found
+
+    @property
+    def warnings(self) -> Iterator[str]:
+        """What makes its numbers doubtful: no peak, a rate at which inertia counts, no cracks."""
+        curves = list(self.curves.values())
+        if without := [name for name, curve in self.curves.items() if not curve.has_peak]:
+            yield f"no peak in {', '.join(without[:3])}: the stress was still rising or level at the end"
+        fast = [(c.rate, limit) for c in curves if c.rate > (limit := self.sample.rate_limit(c.strain[c.at_peak]))]
+        if fast:
+            rate, limit = max(fast, key=lambda pair: pair[0] / pair[1])
+            yield (
+                f"strain rate {rate:.3g} 1/s is above {limit:.3g} 1/s, ε_peak·c/(15 H), so inertia raises the peak "
+                f"({len(fast)} of {len(curves)} runs); give --rate"
+            )
+
+
+def measured(curve: LoadingCurve, shares: tuple[float, float] = SHARES) -> dict[str, float]:
+    """The quantities of a curve by name; strains, and cracks by kind up to the peak and the end, are pure numbers.
+
+    ``young`` and ``poisson`` are those of the two-dimensional sample, whose third direction does not count;
+    ``…_plane_strain`` those of the isotropic solid whose section under plane strain has them.
+    """
+    values = {"strength": curve.strength, "first_crack": curve.first_crack}
+    if curve.kind != "brazilian":
+        young, poisson = curve.elastic(*shares)
+        plane = poisson / (1.0 + poisson)
+        values |= {"young": young, "poisson": poisson}
+        values |= {"young_plane_strain": young * (1.0 - plane**2), "poisson_plane_strain": plane}
+        values["strain_at_peak"] = float(curve.strain[curve.at_peak])
+    peak = curve.time[curve.at_peak]
+    for name, shear in (("tension", False), ("shear", True)):
+        values[f"{name}_cracks_at_peak"] = float(curve.cracks(shear=shear, until=peak))
+        values[f"{name}_cracks"] = float(curve.cracks(shear=shear))
+    return values | {"rate": curve.rate}
+
+
+def specimens_of(sample: Sample, seeds: int, pressures: Sequence[float] = (0.0,)) -> list[Specimen]:
+    """The runs of a test for a number of seeds and each pressure; raises CaseError for cases that are not valid."""
+    found = []
+    for pressure in pressures:
+        for by in range(seeds):
+            case = loads(sample.text(by, pressure), sample.case.folder, sample.case.name)
+            seed = int(sample.seeded(by).get("seed", 0))
+            name = f"seed={seed}" + (f",pressure={pressure:.6g}" if sample.test == "biaxial" else "")
+            changes = {"packing.seed": seed, "pressure": pressure}
+            found.append(
+                Specimen(seed, pressure, Member(name, changes, replace(case, name=name), key_of(case, ["run"])))
+            )
+    return found
+
+
+def perform(
+    sample: Sample,
+    specimens: Sequence[Specimen],
+    options: Options,
+    folder: Path,
+    report: Report,
+    shares: tuple[float, float] = SHARES,
+) -> Tested:
+    """Run a test; complete runs are not repeated, see `sweep`. shares : as of `Tested`."""
+    outcomes = sweep([each.member for each in specimens], options, folder, report)
+    return Tested(sample, specimens, outcomes, folder, shares)
+
+
+def default_pressures(sample: Sample) -> list[float]:
+    """Pressures (Pa) of a biaxial test: none, and a tenth, a quarter and a half of a low guess of the strength."""
+    guess = sample.peak_strain * sample.elastic[0]
+    return [0.0, *(float(f"{share * guess:.2g}") for share in (0.1, 0.25, 0.5))]
+
+
+def _group(sample: Sample, pressure: float) -> dict[str, float]:
+    """What the runs of a mean share: the pressure of a biaxial test."""
+    return {"pressure": pressure} if sample.test == "biaxial" else {}

@@ -1,0 +1,149 @@
+"""The results of a laboratory test in files: ``test.csv``, ``curves.csv``, ``test.json``, and the cases of its runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dembound.results.json_files import write_json
+from dembound.results.loading_curve import TestName
+from dembound.results.replacing import replacing
+from dembound.studies.laboratory.study import UNITS, Tested
+from dembound.studies.sweep.tables import write_csv
+from dembound.version import __version__
+
+MOST_POINTS = 400
+"""Largest number of rows of one curve in ``curves.csv``."""
+
+SUMMARY = "test.json"
+
+OPPOSITES: dict[TestName, tuple[TestName, ...]] = {
+    "ucs": ("tension", "brazilian"),
+    "biaxial": ("tension", "brazilian"),
+    "tension": ("ucs", "biaxial"),
+    "brazilian": ("ucs", "biaxial"),
+}
+"""Tests with whose strength that of a test makes the ratio of uniaxial compressive and tensile strength."""
+
+UNIAXIAL: dict[TestName, str] = {"biaxial": "uniaxial"}
+"""Quantity that is the uniaxial strength of a test; by default its strength."""
+
+
+class Ratio(NamedTuple):
+    """The uniaxial compressive strength over the tensile one, means of both; other : test that gave the second one."""
+
+    value: float
+    other: TestName
+    folder: Path
+
+
+def write_tables(tested: Tested, ratios: Sequence[Ratio]) -> list[Path]:
+    """Write all tables, and the case of each run, into the folder of a test; returns the paths."""
+    folder = tested.folder
+    paths = [folder / "test.csv", folder / "curves.csv", folder / SUMMARY]
+    write_csv(paths[0], _rows(tested))
+    write_csv(paths[1], _points(tested))
+    write_json(paths[2], _summary(tested, ratios))
+    cases = folder / "cases"
+    cases.mkdir(exist_ok=True)
+    for specimen in tested.specimens:
+        with replacing(cases / f"{specimen.member.name}.toml") as part:
+            part.write_text(specimen.member.case.text, encoding="utf-8")
+    return [*paths, cases]
+
+
+def _rows(tested: Tested) -> Iterator[Sequence[Any]]:
+    """A head, and a row for each run: name, state, seed, pressure (Pa), and its quantities in SI units."""
+    values = {each.member.name: tested.values(each) for each in tested.done}
+    names = list(dict.fromkeys(name for row in values.values() for name in row))
+    yield ["run", "state", "seed", "pressure", *names]
+    for specimen, state in zip(tested.specimens, tested.states, strict=True):
+        own = values.get(specimen.member.name, {})
+        yield [specimen.member.name, state, specimen.seed, specimen.pressure, *(own.get(name) for name in names)]
+
+
+def _points(tested: Tested) -> Iterator[Sequence[Any]]:
+    """A head, and rows of each curve: time, strain of the platens, strains of the middle, stress, broken bonds."""
+    yield ["run", "time", "strain", "axial_strain", "lateral_strain", "stress", "tension_cracks", "shear_cracks"]
+    for name, curve in tested.curves.items():
+        for number in np.unique(np.linspace(0, len(curve.time) - 1, MOST_POINTS).round().astype(int)):
+            time = float(curve.time[number])
+            inner = [float(np.interp(time, curve.gauge_time, each)) for each in (curve.axial, curve.lateral)]
+            cracks = [curve.cracks(shear=shear, until=time) for shear in (False, True)]
+            yield [name, time, float(curve.strain[number]), *inner, float(curve.stress[number]), *cracks]
+
+
+def _summary(tested: Tested, ratios: Sequence[Ratio]) -> dict[str, Any]:
+    """The contents of ``test.json``, see docs/tasks/laboratory.md."""
+    sample = tested.sample
+    young, poisson, speed = sample.elastic
+    return {
+        "test": sample.test,
+        "case": sample.case.name,
+        "version": __version__,
+        "sample": {
+            "width": sample.width,
+            "height": sample.height,
+            "ends": sample.ends,
+            "damp": sample.damp,
+            "rate": sample.rate,
+            "shares": list(tested.shares),
+        },
+        "packing": sample.packing,
+        "material": sample.material,
+        "homogenised": {"young": young, "poisson": poisson, "p_wave_speed": speed},
+        "runs": [
+            {
+                "name": each.member.name,
+                "seed": each.seed,
+                "pressure": each.pressure,
+                "state": state,
+                **(tested.values(each) if state == "done" else {}),
+            }
+            for each, state in zip(tested.specimens, tested.states, strict=True)
+        ],
+        "statistics": [
+            {
+                **each.group,
+                "quantity": each.quantity,
+                "unit": UNITS.get(each.quantity, "1"),
+                "count": each.count,
+                "mean": each.mean,
+                "spread": each.spread,
+                "interval": each.interval,
+            }
+            for each in tested.statistics
+        ],
+        "ratios": [{"value": each.value, "other": each.other, "folder": str(each.folder)} for each in ratios],
+        "warnings": list(tested.warnings),
+    }
+
+
+def ratios_of(tested: Tested, output: Path) -> Iterator[Ratio]:
+    """Uniaxial compressive over tensile strength, with each other test of the same material in a folder of results."""
+    sample = tested.sample
+    own = _uniaxial(sample.test, [{"quantity": s.quantity, "mean": s.mean} for s in tested.statistics])
+    for other in OPPOSITES[sample.test]:
+        folder = output / f"{sample.case.name}_{other}"
+        found = _strength_in(folder, other, sample.material)
+        if own is not None and found is not None:
+            yield Ratio(own / found if sample.test in ("ucs", "biaxial") else found / own, other, folder)
+
+
+def _strength_in(folder: Path, test: TestName, material: dict[str, Any]) -> float | None:
+    """The strength (Pa) that a test has left in a folder; None without one of this material."""
+    try:
+        there = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        return _uniaxial(test, there["statistics"]) if there["material"] == material else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _uniaxial(test: TestName, statistics: Sequence[dict[str, Any]]) -> float | None:
+    """The mean uniaxial strength (Pa) among the statistics of a test."""
+    name = UNIAXIAL.get(test, "strength")
+    return next((float(each["mean"]) for each in statistics if each["quantity"] == name), None)

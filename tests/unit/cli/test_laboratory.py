@@ -1,0 +1,100 @@
+"""The command test: a square lattice that is pulled until one row of bonds tears."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from small_cases import PUSHED, small
+
+from dembound.kinds import loads
+from dembound.running import run_case
+from dembound.studies.laboratory import strengths, study
+from dembound.studies.sweep.perform import MEMBERS, Outcome
+from dembound.studies.sweep.statistics import statistic
+
+STRENGTH, MODULUS = 5e5, 2e9
+BONDS = {"emod": 0.0, "pb_emod": MODULUS, "pb_ten": STRENGTH, "pb_coh": 2.0 * STRENGTH}
+MATERIAL = {"density": 2500.0, "law": "linearpbond", **BONDS}
+LATTICE = {name: table for name, table in PUSHED.items() if name != "monitor"} | {
+    "packing": {"pattern": "A", "size": [4.0, 8.0], "radius": 0.25},
+    "material": MATERIAL,
+}
+
+
+@pytest.fixture
+def done(monkeypatch):
+    """Runs members at once, in this process; returns all that were run."""
+    members = []
+
+    def sweep(requested, options, folder, report):
+        for member in requested:
+            run_case(member.case, folder / MEMBERS)
+        members.extend(requested)
+        return [Outcome(member.name, member.name) for member in requested]
+
+    monkeypatch.setattr(study, "sweep", sweep)
+    return members
+
+
+def test_a_lattice_breaks_at_the_strength_of_its_bonds(dembound, done) -> None:
+    Path("rock.toml").write_text(small(LATTICE).text, encoding="utf-8")
+    ucs = {"statistics": [{"quantity": "strength", "mean": 10.0 * STRENGTH}], "material": MATERIAL | {"damp": 0.7}}
+    Path("results/rock_ucs").mkdir(parents=True)
+    Path("results/rock_ucs/test.json").write_text(json.dumps(ucs), encoding="utf-8")
+
+    found = dembound("test", "tension", "rock.toml", "--seeds", 1)
+
+    assert found.code == 0
+    assert "rock: only [packing] and [material] count; not used: boundary, wave" in found.err
+    assert "smooth ends, damp 0.7, strain rate" in found.err
+    assert "warning" not in found.err
+    assert "rock: compressive over tensile strength 10" in found.out  # within what is printed
+    folder = Path("results/rock_tension")
+    (row,) = csv.DictReader((folder / "test.csv").open(encoding="utf-8"))
+    strength, young, poisson = (float(row[name]) for name in ("strength", "young", "poisson"))
+    assert strength == pytest.approx(STRENGTH, rel=0.01)  # η = 1, all columns pull alike
+    assert young == pytest.approx(MODULUS, rel=1e-3)
+    assert abs(poisson) < 1e-6
+    assert float(row["tension_cracks"]) > 0.0 == float(row["shear_cracks"])
+    summary = json.loads((folder / "test.json").read_text(encoding="utf-8"))
+    assert summary["homogenised"]["young"] == pytest.approx(MODULUS)
+    assert summary["ratios"][0]["value"] == pytest.approx(10.0 * STRENGTH / strength)
+    (member,) = done
+    assert (folder / "cases" / f"{member.name}.toml").read_text(encoding="utf-8") == member.case.text
+    points = list(csv.DictReader((folder / "curves.csv").open(encoding="utf-8")))
+    assert max(float(each["stress"]) for each in points) == pytest.approx(strength, rel=0.02)
+    assert {"curves.png", "sample.png"} <= {path.name for path in folder.iterdir()}
+
+
+def test_options_that_have_no_effect_or_no_meaning(dembound) -> None:
+    Path("rock.toml").write_text(small(LATTICE).text, encoding="utf-8")
+
+    for options, message in (
+        (["ucs", "--pressures", "1e6"], "--pressures: is for biaxial"),
+        (["biaxial", "--pressures", "1e6,1e6"], "--pressures: is 1e6,1e6, must be different numbers"),
+        (["ucs", "--shares", "0.5,0.1"], "--shares: is 0.5,0.1, must be two shares"),
+        (["ucs", "--seeds", "2"], "--seeds: all samples of this pattern are the same"),
+    ):
+        answer = dembound("test", options[0], "rock.toml", *options[1:])
+        assert answer.code == 2
+        assert message in answer.err
+
+
+def test_strengths_asked_for_are_written_with_the_comments_of_the_case(dembound, monkeypatch) -> None:
+    text = "# my rock\n" + small(LATTICE).text.replace("pb_ten = 500000.0", "pb_ten = 5e5  # to be found")
+    Path("rock.toml").write_text(text, encoding="utf-8")
+
+    def measured(*arguments):  # tension is 0.45 of pb_ten, compression 4.5 times as much
+        return lambda test, pb_ten, pb_coh: statistic({}, "strength", [pb_ten * {"tension": 0.45, "ucs": 2.025}[test]])
+
+    monkeypatch.setattr(strengths, "measure_in", measured)
+    found = dembound("material", "rock.toml", "--ucs", "90e6", "--tension", "20e6", "--seeds", 1)
+
+    assert found.code == 0
+    assert "ucs 90 MPa over 1 seeds" in found.out
+    written = Path("rock_strengths.toml").read_text(encoding="utf-8")
+    assert written.startswith("# my rock\n")
+    assert "  # to be found" in written
+    assert loads(written).material.pb_ten == pytest.approx(20e6 / 0.45, rel=1e-3)
+    assert "exists already" in dembound("material", "rock.toml", "--ucs", "90e6").err
