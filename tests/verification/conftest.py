@@ -1,7 +1,7 @@
 """The lab in which physical claims are tested: cases from a few words, and their motion at chosen places."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -140,11 +140,17 @@ class Lab:
         return build_bar(loads(tomli_w.dumps(tables)))
 
     def disks(
-        self, positions: np.ndarray, radii: np.ndarray, pairs: Sequence[tuple[int, int]] = (), **words: Any
+        self,
+        positions: np.ndarray,
+        radii: np.ndarray,
+        pairs: Sequence[tuple[int, int]] = (),
+        s_speed: float | None = None,
+        **words: Any,
     ) -> DiskScene:
         """Disks at positions (n, 2) m, of radii (n,) m, of which `pairs` are bonded; the words are those of `case`.
 
-        Each weighs ρ(2R)², as it would in a square lattice.
+        Each weighs ρ(2R)², as it would in a square lattice. s_speed : of S waves beyond the sides, m/s, for disks that
+        are no packing and have none.
         """
         positions, radii = np.asarray(positions, dtype=float), np.asarray(radii, dtype=float)
         bonds = np.array(pairs, dtype=np.int64).reshape(-1, 2)
@@ -153,6 +159,7 @@ class Lab:
         nothing = np.zeros_like(bonds), np.zeros((len(radii), 2), bool), np.zeros(3)
         brick = Brick(box, positions, radii, bonds, *nothing, residual_ratio=0.0)
         ground = make_packed_material(brick, case.material, case.motion.held)
+        ground = replace(ground, given_speeds=(ground.given_speeds[0], s_speed))
         twins, types = np.arange(len(radii), dtype=np.int32), np.arange(len(bonds), dtype=np.int32)
         tiles = np.zeros((len(radii), 2), dtype=np.int32)
         assembly = Assembly(positions, radii, twins, tiles, bonds.astype(np.int32), types, (1, 1), box, box)

@@ -26,11 +26,12 @@ STEP = 0.02 * np.sqrt(MASS / EMOD)
 def block_on_slope(lab, loads: Sequence[dict]) -> DiskScene:
     """Disks 0 to 3 are the slope, 4 to 7 the block above them."""
     along = 2.0 * RADIUS * np.arange(DISKS)
-    material = {"law": "linearpbond", "kratio": KRATIO, "fric": FRICTION, "s_wave_speed": 0.5 * lab.speed}
+    material = {"law": "linearpbond", "kratio": KRATIO, "fric": FRICTION}
     return lab.disks(
         [(x, y) for y in (0.0, 2.0 * RADIUS) for x in along],
         np.full(2 * DISKS, RADIUS),
         [(k, k + 1) for k in range(DISKS, 2 * DISKS - 1)],
+        s_speed=0.5 * lab.speed,
         held=("rotation",),
         material=material | {"elastic_start": False},
         boundary={"bottom": "fixed"},

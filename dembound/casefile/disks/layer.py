@@ -107,7 +107,8 @@ def completed_by_layers(tables: Mapping[str, Any]) -> tuple[Mapping[str, Any], l
         return tables, []
     own = [layer if isinstance(layer, Mapping) else {} for layer in layers]
     added, lacking = dict[str, Any](), list[str]()
-    for keys, words in ((("density",), ""), (STIFFNESS_KEYS, "; give it p_wave_speed, s_wave_speed or moduli")):
+    stiffness = ("p_wave_speed", *STIFFNESS_KEYS), "; give it a wave speed, targets or moduli"
+    for keys, words in ((("density",), ""), stiffness):
         giving = [{key: layer[key] for key in keys if key in layer} for layer in own]
         if any(giving) and not any(key in material for key in keys):
             added |= next(given for given in reversed(giving) if given)

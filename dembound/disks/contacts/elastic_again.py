@@ -22,8 +22,10 @@ def never_elastic_again(case: DiskCase) -> str:
         return f'material.law = "{material.law}" is used from the start'
     if case.static is None:
         return "there is no static stage"
-    if not material.begins_elastic:
-        return "material.elastic_start is false, or contacts have dashpots"
+    if material.has_dashpots:
+        return "contacts have dashpots"
+    if not material.elastic_start:
+        return "material.elastic_start is false"
     if case.begins_stressed and case.column_sides:
         return "the stress at rest acts through the seam of the free field, which the elastic law does not include"
     if material.locked_in is not None and any(table.needs_column for table in case.boundary.values()):
