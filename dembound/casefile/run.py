@@ -9,6 +9,9 @@ from dembound.table import Table, quantity
 ENDING_KEYS = {"silent": ("silent_level", "silent_for"), "peak": ("peak_share", "peak_for")}
 """Ends before the duration, and the keys that belong to each."""
 
+ENDING = ("until", *(key for keys in ENDING_KEYS.values() for key in keys))
+"""Keys of ``[run]`` that end a run before its duration."""
+
 
 class Run(Table):
     """Simulated time and time step, and whether the run ends before it."""

@@ -93,7 +93,7 @@ def test_the_material_needs_nothing_that_every_layer_gives() -> None:
     full = full.replace("[[layer]]", "[[layer]]\ndensity = 1900.0")
     assert [each.density for each in loads(bare + full).materials] == [1900.0] * 3
     assert problems_of(bare + full.replace("p_wave_speed = 800.0", "")) == [
-        "layer[2].p_wave_speed: is missing in the layer and in [material]; give it p_wave_speed, s_wave_speed or moduli"
+        "layer[2].p_wave_speed: is missing in the layer and in [material]; give it wave speeds, targets or moduli"
     ]
     assert problems_of(bare + full.replace("density = 1900.0\n", "", 1)) == [
         "layer[1, clay].density: is missing in the layer and in [material]"
