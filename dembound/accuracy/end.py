@@ -62,7 +62,7 @@ def earlier_ends(case: Case, motion: Motions, bound: float, kept: Sequence[str])
 
     motion : expected records of its monitors, at the same times. bound : error bound. kept : keys that do not change.
     """
-    if case.run.until == "silent" or any(key in KEYS for key in kept):
+    if case.run.until != "duration" or any(key in KEYS for key in kept):
         return []
     default = float(type(case.run).model_fields["silent_level"].default)
     levels: dict[float, dict[str, object]] = {default: {}}

@@ -78,7 +78,7 @@ def _estimated(folder: Path, repeat: bool) -> tuple[Budget, Motions, dict[str, A
 def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, Any]) -> Causes:
     """The causes of the error of a run up to its first break, at `until` (s)."""
     broken = [] if case.run.duration < until else [_broken(until)]
-    case = replace(case, run=case.run.model_copy(update={"duration": min(case.run.duration, until)}))
+    case = replace(case, run=case.run.lasting(min(case.run.duration, until)))
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
     causes = causes_of(case, recorded, summary["time_step"], work)
     causes += Causes([], broken, list(judge_of(case).notes(case, summary)))
@@ -129,7 +129,7 @@ def _summary(folder: Path) -> dict[str, Any]:
 
 def _until(case: Case, summary: Mapping[str, Any]) -> Case:
     """The case to the time at which its run has ended."""
-    return replace(case, run=case.run.model_copy(update={"duration": summary["duration"]}))
+    return replace(case, run=case.run.lasting(summary["duration"]))
 
 
 def _broken(first: float) -> str:

@@ -17,6 +17,7 @@ from dembound.accuracy.choice import AnyCase, digest
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.watch import current
 from dembound.casefile import Case
+from dembound.casefile.run import ENDING
 from dembound.motion.clock import Clock
 from dembound.motion.kind import Finding, Plan
 from dembound.motion.simulation import Simulation
@@ -24,7 +25,7 @@ from dembound.motion.trackers import Records
 from dembound.running import Progress, Reports, plan, simulation_of
 from dembound.table import Box
 
-STEP_AND_END = ("time_step", "safety", "courant", "until", "silent_level", "silent_for")
+STEP_AND_END = ("time_step", "safety", "courant", *ENDING)
 """Keys of ``[run]`` that a companion with a given step and duration does not have."""
 
 BUDGET, SHORT = 0.1, 5e7

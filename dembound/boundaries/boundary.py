@@ -104,6 +104,10 @@ class Boundary(Table):
         """The side with other factors β of its dashpots, by kind of wave: the keys beta_p and beta_s."""
         return self.model_copy(update={f"beta_{motion}": beta for motion, beta in factors.items()})
 
+    def on_whole_side(self) -> Self:
+        """The side as it is where it acts; only of some sides it does so on a range of particles alone."""
+        return self
+
     @property
     def is_artificial(self) -> bool:
         """Whether the side represents ground or rock beyond it; by default true if that is a continuum."""

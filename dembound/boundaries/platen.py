@@ -1,7 +1,7 @@
 """Sides that hold their particles, all of them or those within a range: walls, grips, platens and jaws of tests."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Self
 
 from pydantic import field_validator
 
@@ -34,6 +34,10 @@ class Holding(Boundary):
         yield from super().problems(side, tables)
         yield from beside_disks(f"boundary.{side}", side, self, tables)
 
+    def on_whole_side(self) -> Self:
+        """The side with all its particles held."""
+        return self if self.within is None else self.model_copy(update={"within": None})
+
     def part_of(self, edge: Edge) -> Edge:
         """The particles of an edge that are held."""
         if self.within is None:
@@ -55,6 +59,12 @@ def beside_disks(place: str, side: str, table: Boundary | None, tables: Mapping[
         first, last = box[1 - normal_axis(side)], box[3 - normal_axis(side)]
         if high <= first or low >= last:
             yield f"{place}.within: is beside the disks, which are from {first:g} to {last:g} m there"
+        for other, beyond in tables["boundary"].items():
+            if beyond and normal_axis(other) != normal_axis(side) and (beyond.needs_column or beyond.is_outside):
+                yield (
+                    f'{place}.within: is of a sample, but boundary.{other} is "{beyond.type}", where the ground '
+                    "and this side go on; leave it out"
+                )
 
 
 def driven_components(boundary: Mapping[str, Boundary | None]) -> Iterator[tuple[str, int]]:

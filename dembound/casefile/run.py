@@ -1,6 +1,6 @@
 """The ``[run]`` table."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -8,6 +8,9 @@ from dembound.table import Table, quantity
 
 ENDING_KEYS = {"silent": ("silent_level", "silent_for"), "peak": ("peak_share", "peak_for")}
 """Ends before the duration, and the keys that belong to each."""
+
+ENDING = ("until", *(key for keys in ENDING_KEYS.values() for key in keys))
+"""Keys of ``[run]`` that end a run before its duration."""
 
 
 class Run(Table):
@@ -67,6 +70,11 @@ class Run(Table):
     def is_test(self) -> bool:
         """Whether it is a test to failure, in which waves are not what is studied."""
         return self.until == "peak"
+
+    def lasting(self, duration: float) -> Self:
+        """The run with another duration (s), without times of an earlier end that are longer than it."""
+        times = [key for key in ("silent_for", "peak_for") if (getattr(self, key) or 0.0) > duration]
+        return self.model_copy(update={"duration": duration, **dict.fromkeys(times)})
 
     @model_validator(mode="after")
     def _ending_keys_have_effect(self) -> "Run":

@@ -12,7 +12,7 @@ from typing import Any
 import tomli_w
 
 from dembound.casefile import Case
-from dembound.casefile.run import ENDING_KEYS
+from dembound.casefile.run import ENDING
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.kinds import load, loads
 from dembound.motion.scene import Scene
@@ -26,9 +26,6 @@ from dembound.results.reader import increasing, open_record, text_of, understood
 from dembound.results.source import DIGEST, PLACE, recorded_source
 from dembound.running.recorded import case_of, inputs_of, silent_of
 from dembound.waves.file_wave import read_text
-
-ENDING = ("until", *(key for keys in ENDING_KEYS.values() for key in keys))
-"""Keys of ``[run]`` that end a run before its duration."""
 
 MOST_KEYS = 5
 """Largest number of changed keys of a case that are listed."""

@@ -25,6 +25,7 @@ from dembound.casefile.disks.layer import Layer
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import STIFFNESS_KEYS, TARGET_KEYS, Material
 from dembound.casefile.disks.static import Static
+from dembound.casefile.run import ENDING
 from dembound.disks.loads import forces_of
 from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial, nominal_moduli
@@ -140,8 +141,8 @@ class _Sides:
 
 def _run(case: DiskCase) -> Any:
     """The ``[run]`` table: its own time step, to the same end, without files."""
-    ended = {"until": type(case.run).model_fields["until"].default}
-    return case.run.model_copy(update={"time_step": "auto", "checkpoint": 0.0, **ended})
+    lasting = case.run.model_dump(exclude=set(ENDING), exclude_unset=True)
+    return type(case.run).model_validate(lasting | {"time_step": "auto", "checkpoint": 0.0})
 
 
 def _layers(case: DiskCase, ground: PackedMaterial, sides: _Sides) -> tuple[Layer, ...]:

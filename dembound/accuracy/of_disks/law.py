@@ -17,6 +17,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -29,8 +30,9 @@ from dembound.accuracy.of_disks.pair import ratios
 from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.material import BOND_KEYS, HISTORY_KEYS
+from dembound.casefile.disks.material import BOND_KEYS, HISTORY_KEYS, STRENGTH_KEYS
 from dembound.casefile.types import LAWS
+from dembound.disks.material.scatter import bond_factors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
@@ -111,10 +113,12 @@ def elastic_twin(
     given = {key: value for key, value in case.material.given().items() if key not in HISTORY_KEYS}
     law = {"law": LAWS[case.material.law].linear}
     strong = {"material": given | law, "output.load_factor": True}
-    weak = {key: value for key, value in given.items() if key not in BOND_KEYS} | law
+    weak: dict[str, Any] = {"material": {key: value for key, value in given.items() if key not in BOND_KEYS} | law}
+    for number, layer in enumerate(case.layer, start=1):
+        weak |= {f"layer.{number}.{key}": None for key in BOND_KEYS if key in layer.given()}
     try:
-        watched = with_changes(case, strong)
-        twins = [with_changes(case, {"material": weak} | change) for change in _without_stage(case)]
+        watched = with_changes(case, strong | _as_the_weakest(case, planned.scene))
+        twins = [with_changes(case, weak | change) for change in _without_stage(case)]
     except CaseError:  # a load that never ends, without a body at rest under it; local damping
         return None
     twin = next((each for each in twins if keeps(case, each, kept)), None)
@@ -137,10 +141,20 @@ def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
     """Whether the law is history-dependent, with limits that are known for disks of other sizes."""
     if not LAWS[case.material.law].has_history or not case.material.begins_elastic:
         return False
-    if case.material.pb_scatter is not None:
-        return False
     pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
     return is_square_lattice(scene.ground) and not (case.static is not None and (case.hole or pushed))
+
+
+def _as_the_weakest(case: DiskCase, scene: DiskScene) -> dict[str, Any]:
+    """Changes by which all bonds are as strong as the weakest one; none without scatter of strengths."""
+    bonds = bond_factors(case, scene.ground, scene.assembly)
+    if bonds is None:
+        return {}
+    least = float(bonds.at(scene.assembly.pairs[:, 0], scene.assembly.contact_type).min())
+    tables = [("material", case.material), *((f"layer.{number}", layer) for number, layer in enumerate(case.layer, 1))]
+    strengths = {f"{place}.{key}": getattr(table, key) for place, table in tables for key in STRENGTH_KEYS}
+    weakest = {place: least * strength for place, strength in strengths.items() if strength is not None}
+    return {"material.pb_scatter": None} | weakest
 
 
 def _without_stage(case: DiskCase) -> list[dict[str, None]]:

@@ -24,6 +24,9 @@ from dembound.table import Box, FileName, Table, quantity
 THINNEST = 2.0
 """Least thickness of a layer over the mean diameter of the disks: bonds then join neighbouring layers only."""
 
+_WITHOUT = dict(zip(PAIRS, ((), ("along",), ("plane",)), strict=True))
+"""Keys of `TARGET_KEYS` that each pair of targets does not have."""
+
 
 def _as_in_material(key: str) -> Any:
     """The field of a layer for a key of [material], with its meaning and limits; absent: as there."""
@@ -88,9 +91,9 @@ class Layer(Table):
         """Its material: a case's [material] with the keys that it gives. Raises ValidationError for mistakes in it."""
         own, gone = self.own, set[str]()
         if not own.keys().isdisjoint(STIFFNESS_KEYS):
-            gone |= {*STIFFNESS_KEYS, *TARGET_KEYS, *(() if "p_wave_speed" in own else ("match",))}
-            if any(own.keys() >= {*pair} for pair in PAIRS):
-                gone |= {*RATIO_KEYS, "match"}
+            gone |= {*STIFFNESS_KEYS, *(() if "p_wave_speed" in own else ("match",))}
+            pair = next((pair for pair in PAIRS if own.keys() >= {*pair}), None)
+            gone |= {*RATIO_KEYS, "match", *_WITHOUT[pair]} if pair else {*TARGET_KEYS}
         if not own.keys().isdisjoint(MODULI_KEYS):
             gone |= {*WAVE_SPEED_KEYS}
         return Material(**{key: value for key, value in material.given().items() if key not in gone} | own)

@@ -160,8 +160,13 @@ def _out_of_reach(ground: PackedMaterial, target: Target, place: str) -> str:
     else:
         low, asked, high = (each.poisson(target.plane) for each in (ends[0], target.moduli, ends[1]))
         what, key = f'Poisson\'s ratio (plane = "{target.plane}")', target.keys[1]
-    looser = ", a looser packing (packing.confining_stress)" if asked > high else ""
+    others = ", a looser packing (packing.confining_stress)" if asked > high and len(ground.brick.radii) > 1 else ""
+    others += (
+        ', or pattern "A", which has any along its rows (along = "x" or "y")'
+        if target.by_waves
+        else ', or p_wave_speed and s_wave_speed, of which pattern "A" has any along its rows (along = "x" or "y")'
+    )
     return (
         f"{place}.{key}: asks for {what} = {asked:.3g}, but this brick has {low:.3g} to {high:.3g} (kratio {LEAST:g} "
-        f'to {MOST:g}); give one within it{looser}, or pattern "A", which has any along its rows (along = "x" or "y")'
+        f"to {MOST:g}); give one within it{others}"
     )

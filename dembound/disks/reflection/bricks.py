@@ -186,7 +186,7 @@ def end_scene(case: DiskCase, side: str, bricks: int = LAST) -> DiskScene:
     copies = [1, 1]
     copies[axis] = bricks
     ends: dict[str, Boundary] = {name: Periodic(type="periodic") for name in lateral}
-    ends[side] = case.side(side).stiffest(side, case.box).at_rest()
+    ends[side] = case.side(side).stiffest(side, case.box).at_rest().on_whole_side()
     packing = case.packing.with_copies(*copies)
     case = case.uniform_at(case.box[3 if side == "top" else 1])  # beside layers the lowest
     return build(

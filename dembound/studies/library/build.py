@@ -12,6 +12,7 @@ from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import BOND_KEYS
 from dembound.casefile.model import as_kind
+from dembound.casefile.run import ENDING
 from dembound.casefile.toml import parsed
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene
@@ -35,7 +36,7 @@ HAT = "hat_"
 WHOLE = 1e-9
 """Part of a time step by which a time may differ from a whole number of them."""
 
-CHOSEN = ("until", "silent_level", "silent_for", "time_step", "duration")
+CHOSEN = (*ENDING, "time_step", "duration")
 """Keys of ``[run]`` that a library chooses."""
 
 
