@@ -249,13 +249,15 @@ def _uneven_speed(scene: DiskScene, own: Own) -> Iterator[str]:
     target, ground = own.material.target, own.ground
     if target is None:
         return
+    by_waves = "give" if target.by_waves else "give p_wave_speed and s_wave_speed with"
     asked = np.sqrt(np.array([target.moduli.uniaxial, target.moduli.shear]) / ground.density)
     for axis in _axes_in_use(scene):
         for name, speed, meant in zip("PS", ground.wave_speeds(axis), asked, strict=True):
             if abs(speed / meant - 1.0) > SPEED_ERROR:
+                closer = f'{by_waves} along = "{"xy"[axis]}"'
                 yield (
                     f'{own.key("along")}: is "{target.along}", for which {name} waves have {meant:.4g} m/s, but along '
-                    f'{"xy"[axis]} they run at {speed:.4g} m/s; give along = "{"xy"[axis]}", or a larger random brick'
+                    f"{'xy'[axis]} they run at {speed:.4g} m/s; {closer}, or a larger random brick"
                 )
                 return
 

@@ -5,9 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from small_cases import BODY
 
 from dembound.boundaries import Fixed, Roller, Velocity, driven_components
 from dembound.boundaries.support import Edge, SupportBuilder
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
+from dembound.disks.reflection.bricks import end_scene
+from dembound.kinds import loads
 
 ALONG = np.array([0.0, 1.0, 2.0, 3.0])
 TOP = Edge("top", np.array([7, 3, 9, 5]), np.stack([ALONG, np.full(4, 5.0)], axis=1), np.ones(4), 4.0)
@@ -60,3 +65,19 @@ def test_only_motion_that_a_wave_prescribes_is_driven() -> None:
 def test_a_platen_without_effect_is_refused(keys, message) -> None:
     with pytest.raises(ValidationError, match=message):
         Velocity.model_validate({"type": "velocity", **keys})
+
+
+def test_the_depth_of_a_jaw_beside_the_first_brick_is_that_of_the_whole_side() -> None:
+    """A strip one brick wide stands for the side, and a jaw may hold none of its disks."""
+    jaw = """
+[boundary.top]
+type = "velocity"
+wave_p = "press"
+within = [2.0, 4.0]
+[wave.press]
+type = "constant"
+amplitude = -0.1
+rise = 0.01
+"""
+    case = as_kind(loads(BODY + jaw), DiskCase, "is of disks")
+    assert len(end_scene(case, "top").supports.node) > 0
