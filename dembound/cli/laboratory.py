@@ -85,7 +85,7 @@ def laboratory(
 ) -> None:
     """Test samples of a case's material: E, ν, first crack, strength, and from pressures at the sides φ and cohesion.
 
-    Only [packing] and [material] of the case count. Each sample is a case of its own, which is left with the results.
+    Of the case only packing and material count. Each sample is a case of its own, which is left with the results.
 
     Complete samples are not repeated: the same command continues a test, and more seeds add samples to it.
     """

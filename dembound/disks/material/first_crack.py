@@ -25,10 +25,19 @@ SLIGHT = 1e-9
 
 
 class FirstCrack(NamedTuple):
-    """The stress (Pa) at which a bond breaks first, tension positive, and whether it breaks in "tension" or "shear"."""
+    """The first bond to break.
+
+    Attributes
+    ----------
+    stress : Pa, tension positive. limit : whether it breaks in "tension" or "shear".
+    young, poisson : Young's modulus (Pa) and Poisson's ratio of the two-dimensional sample up to there, with contacts
+    that open and slip.
+    """
 
     stress: float
     limit: str
+    young: float
+    poisson: float
 
 
 def first_crack(ground: PackedMaterial, material: Material, sign: float, axis: int = 1) -> FirstCrack | None:
@@ -50,8 +59,10 @@ def first_crack(ground: PackedMaterial, material: Material, sign: float, axis: i
     load = sign * np.eye(3)[axis]
     found = None
     for _ in range(ROUNDS):
-        stretch, slip, turn = _strained(ground, springs, (normal, shear), load)
+        (stretch, slip, turn), mean = _strained(ground, springs, (normal, shear), load)
         before, found = found, _first(material, springs, stretch, slip, turn)
+        if found is not None:
+            found = found._replace(young=sign / mean[axis], poisson=-mean[1 - axis] / mean[axis])
         if not has_history or found is None or (before and abs(found.stress / before.stress - 1.0) < SETTLED):
             break
         normal = closed * (stretch < 0.0)
@@ -63,8 +74,8 @@ def first_crack(ground: PackedMaterial, material: Material, sign: float, axis: i
 
 def _strained(
     ground: PackedMaterial, springs: Springs, parts: tuple[np.ndarray, np.ndarray], load: np.ndarray
-) -> np.ndarray:
-    """Stretch, shear and turn (3, b) of contacts under a mean stress xx, yy, xy (3,) Pa.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Stretch, shear and turn (3, b) of contacts, and mean strains xx, yy, 2xy, under a mean stress xx, yy, xy (3,) Pa.
 
     parts : of the normal and shear springs of contacts that act, (b,) each.
     """
@@ -80,7 +91,8 @@ def _strained(
     gradients = network.gradient_matrix()[:, :3]
     elongations = gradients + network.motion_matrix() @ network.relaxed(gradients)
     tensor = gradients.T @ (network.springs[:, None] * elongations) / float(np.prod(ground.brick.size))
-    return (elongations @ np.linalg.solve(tensor, load)).reshape(3, -1)
+    mean = np.linalg.solve(tensor, load)
+    return (elongations @ mean).reshape(3, -1), mean
 
 
 def _first(
@@ -95,4 +107,4 @@ def _first(
     strength = {"tension": limits.tension, "shear": limits.cohesion}
     each = {name: strength[name] / most if most > SLIGHT else np.inf for name, most in largest.items()}
     limit = min(each, key=lambda name: each[name])
-    return FirstCrack(float(each[limit]), limit) if np.isfinite(each[limit]) else None
+    return FirstCrack(float(each[limit]), limit, np.nan, np.nan) if np.isfinite(each[limit]) else None

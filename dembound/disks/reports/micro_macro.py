@@ -90,7 +90,7 @@ def _speeds(p: float, s: float) -> dict[str, float]:
 
 
 def _described(found: FirstCrack | None) -> dict[str, Any] | None:
-    return None if found is None else {"stress": found.stress, "limit": found.limit}
+    return None if found is None else found._asdict()
 
 
 def material_rows(found: dict[str, Any]) -> list[tuple[str, Sequence[Sequence[str]]]]:
@@ -116,7 +116,13 @@ def material_rows(found: dict[str, Any]) -> list[tuple[str, Sequence[Sequence[st
     ]
     waves.append(["largest over least", *(f"+{percent(found['anisotropy'][kind])}" for kind in "ps"), ""])
     cracks = [
-        [name, with_unit(crack["stress"], "Pa"), f"breaks in {crack['limit']}"]
+        [
+            name,
+            with_unit(crack["stress"], "Pa"),
+            f"breaks in {crack['limit']}",
+            with_unit(crack["young"], "Pa", DIGITS),
+            f"{crack['poisson']:.{DIGITS}f}",
+        ]
         for name, crack in found["first_crack"].items()
         if crack is not None
     ]
@@ -132,7 +138,12 @@ def material_rows(found: dict[str, Any]) -> list[tuple[str, Sequence[Sequence[st
         ("Wave speeds (m/s)", [["", "c_p", "c_s", "c_p/c_s"], *waves]),
     ]
     if cracks:
-        tables.append(("First crack under stress along y with free sides", [["", "stress", "bond"], *cracks]))
+        tables.append(
+            (
+                "First crack under stress along y with free sides",
+                [["", "stress", "bond", "E till then", "ν till then"], *cracks],
+            )
+        )
     return tables
 
 

@@ -6,6 +6,7 @@ import pytest
 from dembound.casefile.disks.material import Material
 from dembound.disks.material.first_crack import FirstCrack, first_crack
 from dembound.disks.material.packed_material import make_packed_material
+from dembound.disks.material.targets import moduli_of
 from dembound.packings.brick import Brick
 from dembound.packings.square import Square
 
@@ -36,5 +37,9 @@ def test_random_packings_crack_earlier_where_contacts_open_and_in_proportion_to_
     for k, sign in enumerate((-1.0, 1.0)):
         assert np.sign(loose[k].stress) == sign
         assert stronger[k].stress == pytest.approx(2.0 * loose[k].stress, rel=1e-9)
+        assert stronger[k].young == loose[k].young < elastic[k].young
+    own = make_packed_material(random_brick, Material(**MATERIAL), ()).material_tensor
+    sheet = moduli_of(own, "y", by_waves=False)
+    assert elastic[0][2:] == elastic[1][2:] == pytest.approx((sheet.young("stress"), sheet.poisson("stress")), rel=1e-6)
     assert loose[1].stress < 0.6 * elastic[1].stress
     assert abs(loose[0].stress) > loose[1].stress
