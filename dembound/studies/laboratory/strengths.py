@@ -20,8 +20,8 @@ from dembound.studies.sweep.statistics import Statistic
 from dembound.studies.sweep.study import Options, Report
 from dembound.words import with_unit
 
-COHESIONS = (0.3, 0.6, 1.0, 2.0)
-RATIOS = (2.04, 2.55, 3.75, 4.15)
+COHESIONS = (0.3, 0.6, 1.0, 1.4, 2.0)
+RATIOS = (2.04, 2.55, 3.75, 4.1, 4.15)
 """Compressive over tensile strength of samples 20 diameters wide for `pb_coh` over `pb_ten` as in `COHESIONS`.
 
 Means of four seeds; above the last one the ratio is level, below 0.6 strength in tension falls, too.
