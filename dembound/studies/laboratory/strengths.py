@@ -18,7 +18,7 @@ from dembound.studies.laboratory.sample import LAW, Sample
 from dembound.studies.laboratory.study import perform, specimens_of
 from dembound.studies.sweep.statistics import Statistic
 from dembound.studies.sweep.study import Options, Report
-from dembound.words import with_unit
+from dembound.words import percent, with_unit
 
 COHESIONS = (0.3, 0.6, 1.0, 1.4, 2.0)
 RATIOS = (2.04, 2.55, 3.75, 4.1, 4.15)
@@ -153,8 +153,8 @@ def in_words(trial: Trial, targets: Mapping[TestName, float]) -> Iterator[str]:
     for test, target in targets.items():
         found = trial.strengths[test]
         interval = "" if np.isnan(found.interval) else f" ± {with_unit(found.interval, 'Pa')} (95 %)"
-        deviation = 100.0 * (found.mean / target - 1.0)
+        excess = found.mean / target - 1.0
         yield (
-            f"{bonds}: {test} {with_unit(found.mean, 'Pa')}{interval} over {found.count} seeds, {deviation:+.2g} % of "
-            f"the {with_unit(target, 'Pa')} asked for"
+            f"{bonds}: {test} {with_unit(found.mean, 'Pa')}{interval} over {found.count} seeds, "
+            f"{percent(abs(excess))} {'above' if excess > 0.0 else 'below'} the {with_unit(target, 'Pa')} asked for"
         )
