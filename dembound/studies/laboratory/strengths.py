@@ -18,11 +18,14 @@ from dembound.studies.laboratory.sample import LAW, Sample
 from dembound.studies.laboratory.study import perform, specimens_of
 from dembound.studies.sweep.statistics import Statistic
 from dembound.studies.sweep.study import Options, Report
-from dembound.words import with_unit
+from dembound.words import percent, with_unit
 
-COHESIONS = (0.3, 0.6, 1.0, 2.0)
-RATIOS = (3.1, 4.1, 4.7, 4.9)
-"""Compressive over tensile strength of samples for `pb_coh` over `pb_ten` as in `COHESIONS`; above it is level."""
+COHESIONS = (0.3, 0.6, 1.0, 1.4, 2.0)
+RATIOS = (2.04, 2.55, 3.75, 4.1, 4.15)
+"""Compressive over tensile strength of samples 20 diameters wide for `pb_coh` over `pb_ten` as in `COHESIONS`.
+
+Means of four seeds; above the last one the ratio is level, below 0.6 strength in tension falls, too.
+"""
 
 MOST_RATIO, MOST_SCATTERED = 5.0, 7.0
 """Largest ratios of strengths that parallel bonds reach, of one strength and with `pb_scatter`."""
@@ -30,8 +33,8 @@ MOST_RATIO, MOST_SCATTERED = 5.0, 7.0
 BOND = {"tension": 0.4, "ucs": 1.5}
 """Strength of samples over `pb_ten`, rather low: trials begin above, as strengths scale downwards only."""
 
-ENOUGH = 0.02
-"""Deviation of a ratio from the one asked for that is not corrected."""
+ENOUGH, MISSED = 0.02, 1.04
+"""Deviation of a ratio from the one asked for that is not corrected; excess over `RATIOS` that is out of reach."""
 
 Measure = Callable[[TestName, float, float], Statistic]
 """The strength of samples over seeds: test, `pb_ten` and `pb_coh` (Pa) -> mean and interval."""
@@ -69,7 +72,7 @@ def trials(targets: Mapping[TestName, float], cohesion: float, measure: Measure,
     """
     wanted = targets["ucs"] / targets["tension"] if len(targets) > 1 else None
     if wanted is not None:
-        _require_reachable(wanted, RATIOS[0], most, "")
+        _require_reachable(wanted, wanted, RATIOS[0], most, "")
         cohesion = float(np.interp(wanted, RATIOS, COHESIONS))
     pb_ten = max(target / BOND[test] for test, target in targets.items())
     first = _trial(targets, pb_ten, cohesion * pb_ten, measure)
@@ -78,9 +81,9 @@ def trials(targets: Mapping[TestName, float], cohesion: float, measure: Measure,
     if wanted is not None:
         scale = targets["tension"] / first.strengths["tension"].mean  # bonds that break in tension decide on it
         if abs(wanted / first.ratio - 1.0) > ENOUGH:
-            aimed = float(np.interp(cohesion, COHESIONS, RATIOS)) * wanted / first.ratio
             shift = first.ratio / float(np.interp(cohesion, COHESIONS, RATIOS))
-            _require_reachable(aimed, RATIOS[0], max(most, RATIOS[-1]), f", in this packing {RATIOS[-1] * shift:.2g}")
+            aimed, here = wanted / shift, f", in this packing {RATIOS[-1] * shift:.2g}"
+            _require_reachable(wanted, aimed, 0.0, MISSED * RATIOS[-1] if most == MOST_RATIO else np.inf, here)
             cohesion = float(np.interp(aimed, RATIOS, COHESIONS))
     yield _trial(targets, scale * first.pb_ten, scale * cohesion * first.pb_ten, measure)
 
@@ -91,18 +94,22 @@ def _trial(targets: Mapping[TestName, float], pb_ten: float, pb_coh: float, meas
     return Trial(ten, coh, {test: measure(test, ten, coh) for test in targets})
 
 
-def _require_reachable(ratio: float, least: float, most: float, here: str) -> None:
-    """Raise CaseError for a ratio of strengths that parallel bonds do not have; here : addition on this packing."""
+def _require_reachable(wanted: float, ratio: float, least: float, most: float, here: str) -> None:
+    """Raise CaseError for a ratio of strengths outside the reach of parallel bonds.
+
+    wanted : the ratio asked for; ratio : the one in `RATIOS` that gives it in this packing. here : addition to the
+    message on this packing.
+    """
     if ratio > most:
         raise CaseError(
             [
-                f"--ucs over --tension: is {ratio:.3g}, parallel bonds of one strength reach about {MOST_RATIO:g}"
+                f"--ucs over --tension: is {wanted:.3g}, parallel bonds of one strength reach about {MOST_RATIO:g}"
                 f"{here}; scatter of their strengths about {MOST_SCATTERED:g}: material.pb_scatter = "
                 '{type = "normal", deviation = 0.5}'
             ]
         )
     if ratio < least:
-        raise CaseError([f"--ucs over --tension: is {ratio:.3g}, must be {least:g} or more for parallel bonds"])
+        raise CaseError([f"--ucs over --tension: is {wanted:.3g}, must be {least:g} or more for parallel bonds"])
 
 
 def measure_in(
@@ -146,8 +153,8 @@ def in_words(trial: Trial, targets: Mapping[TestName, float]) -> Iterator[str]:
     for test, target in targets.items():
         found = trial.strengths[test]
         interval = "" if np.isnan(found.interval) else f" ± {with_unit(found.interval, 'Pa')} (95 %)"
-        deviation = 100.0 * (found.mean / target - 1.0)
+        excess = found.mean / target - 1.0
         yield (
-            f"{bonds}: {test} {with_unit(found.mean, 'Pa')}{interval} over {found.count} seeds, {deviation:+.2g} % of "
-            f"the {with_unit(target, 'Pa')} asked for"
+            f"{bonds}: {test} {with_unit(found.mean, 'Pa')}{interval} over {found.count} seeds, "
+            f"{percent(abs(excess))} {'above' if excess > 0.0 else 'below'} the {with_unit(target, 'Pa')} asked for"
         )

@@ -85,16 +85,16 @@ def test_strengths_asked_for_are_written_with_the_comments_of_the_case(dembound,
     text = "# my rock\n" + small(LATTICE).text.replace("pb_ten = 500000.0", "pb_ten = 5e5  # to be found")
     Path("rock.toml").write_text(text, encoding="utf-8")
 
-    def measured(*arguments):  # tension is 0.45 of pb_ten, compression 4.5 times as much
-        return lambda test, pb_ten, pb_coh: statistic({}, "strength", [pb_ten * {"tension": 0.45, "ucs": 2.025}[test]])
+    def measured(*arguments):  # tension is 0.45 of pb_ten, compression 4 times as much
+        return lambda test, pb_ten, pb_coh: statistic({}, "strength", [pb_ten * {"tension": 0.45, "ucs": 1.8}[test]])
 
     monkeypatch.setattr(strengths, "measure_in", measured)
-    found = dembound("material", "rock.toml", "--ucs", "90e6", "--tension", "20e6", "--seeds", 1)
+    found = dembound("material", "rock.toml", "--ucs", "80e6", "--tension", "20e6", "--seeds", 1)
 
     assert found.code == 0
-    assert "ucs 90 MPa over 1 seeds" in found.out
+    assert "ucs 80 MPa over 1 seeds" in found.out
     written = Path("rock_strengths.toml").read_text(encoding="utf-8")
     assert written.startswith("# my rock\n")
     assert "  # to be found" in written
     assert loads(written).material.pb_ten == pytest.approx(20e6 / 0.45, rel=1e-3)
-    assert "exists already" in dembound("material", "rock.toml", "--ucs", "90e6").err
+    assert "exists already" in dembound("material", "rock.toml", "--ucs", "80e6").err

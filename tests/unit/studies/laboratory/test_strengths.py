@@ -21,9 +21,9 @@ class Rock:
         return Statistic({}, "strength", 8, times * tension, 1e6, 1e6)
 
 
-@pytest.mark.parametrize("ratio", [0.9, 1.0, 1.05])
+@pytest.mark.parametrize("ratio", [0.95, 1.0, 1.05])
 def test_two_trials_give_both_strengths_from_above(ratio: float) -> None:
-    rock, targets = Rock(ratio=ratio), {"ucs": 200e6, "tension": 48e6}
+    rock, targets = Rock(ratio=ratio), {"ucs": 180e6, "tension": 48e6}
     first, second = trials(targets, 1.0, rock.measure, 5.0)
 
     assert [test for test, _, _ in rock.tested] == ["ucs", "tension"] * 2
@@ -32,7 +32,7 @@ def test_two_trials_give_both_strengths_from_above(ratio: float) -> None:
         assert second.strengths[test].mean == pytest.approx(target, rel=0.02)
     pb_ten = changes_of(second, targets)["material.pb_ten"]
     assert pb_ten == pytest.approx(second.pb_ten, rel=0.02)
-    assert "ucs 200 MPa ± 1 MPa (95 %) over 8 seeds" in next(in_words(second, targets))
+    assert "ucs 180 MPa ± 1 MPa (95 %) over 8 seeds" in next(in_words(second, targets))
 
 
 def test_one_strength_scales_both_of_the_bonds() -> None:
@@ -46,8 +46,8 @@ def test_one_strength_scales_both_of_the_bonds() -> None:
 def test_ratios_out_of_reach_are_refused() -> None:
     with pytest.raises(CaseError, match=r"is 10, parallel bonds of one strength reach about 5.*pb_scatter"):
         next(trials({"ucs": 100e6, "tension": 10e6}, 1.0, Rock().measure, 5.0))
-    with pytest.raises(CaseError, match=r"must be 3\.1 or more"):
-        next(trials({"ucs": 20e6, "tension": 10e6}, 1.0, Rock().measure, 5.0))
-    weaker = Rock(ratio=0.8)  # 4.9 becomes 3.9
-    with pytest.raises(CaseError, match=r"in this packing 3\.9"):
-        list(trials({"ucs": 45e6, "tension": 10e6}, 1.0, weaker.measure, 5.0))
+    with pytest.raises(CaseError, match=r"must be 2\.04 or more"):
+        next(trials({"ucs": 18e6, "tension": 10e6}, 1.0, Rock().measure, 5.0))
+    weaker = Rock(ratio=0.8)  # 4.15 becomes 3.3
+    with pytest.raises(CaseError, match=r"is 4, .*in this packing 3\.3"):
+        list(trials({"ucs": 40e6, "tension": 10e6}, 1.0, weaker.measure, 5.0))
