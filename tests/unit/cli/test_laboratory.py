@@ -71,6 +71,7 @@ def test_options_that_have_no_effect_or_no_meaning(dembound) -> None:
     Path("rock.toml").write_text(small(LATTICE).text, encoding="utf-8")
 
     for options, message in (
+        (["ucx"], "TEST: is ucx, must be one of ucs, tension, brazilian, biaxial"),
         (["ucs", "--pressures", "1e6"], "--pressures: is for biaxial"),
         (["biaxial", "--pressures", "1e6,1e6"], "--pressures: is 1e6,1e6, must be different numbers"),
         (["ucs", "--shares", "0.5,0.1"], "--shares: is 0.5,0.1, must be two shares"),
