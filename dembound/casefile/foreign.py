@@ -14,7 +14,7 @@ _RATIO = (
     f"there is none for disks: it follows from kratio and pb_kratio, and `dembound check` prints c_p and c_s{_MORE}"
 )
 _BAR_RATIO = "there is none: a bar moves along its axis only, at the speed √(E/ρ)"
-_DASHPOTS = f"there is none: sides of type viscous absorb, damp takes energy from the whole body{_MORE}"
+_DASHPOTS = f"is of contacts: dp_nratio and dp_sratio in [material]; sides of type viscous absorb waves{_MORE}"
 _DAMP = f"write damp, which is for bringing bodies to rest: for waves leave it 0{_MORE}"
 _BAR_DAMP = "write attenuation, 1/m: a wave fades by exp(−αx)"
 _WEIGHT = f"give [[load]] an acceleration, such as [0.0, -9.81] m/s², and [static] to settle under it{_MORE}"
