@@ -55,7 +55,10 @@ def _kinds(schema: Schema) -> list[TypeAdapter[Any]]:
 
 
 def _case(schema: Schema, tables: Mapping[int, Json], definitions: Json) -> Json:
-    """A whole file of one kind; tables : by the identity of their validators. Adds the definitions it refers to."""
+    """A whole file of one kind; tables : by the identity of their validators. Adds the definitions it refers to.
+
+    Keys that a table needs are required unless every entry of the list that may complete it gives them.
+    """
     of = {key: tables[id(kind)] for key, kind in (*schema.tables.items(), *schema.optional.items())}
     of["boundary"] = _sides(schema, "side", tables[id(schema.side)], definitions)
     definitions["wave"] = tables[id(WAVE)]
@@ -66,13 +69,19 @@ def _case(schema: Schema, tables: Mapping[int, Json], definitions: Json) -> Json
         of[key] = tables[id(kind)]
         table = definitions[of[key]["$ref"].rsplit("/", 1)[-1]]
         table["properties"]["boundary"] = _sides(schema, f"{key}_side", tables[id(side)], definitions)
-    return {
+    case: Json = {
         "type": "object",
         "description": f"a case of {schema.noun}",
         "properties": {key: TITLE if key == "title" else of[key] for key in schema.keys},
         "required": [key for key, kind in schema.tables.items() if _is_needed(kind)],
         "additionalProperties": False,
     }
+    for key, entries in schema.completing.items():
+        needed = definitions[of[key]["$ref"].rsplit("/", 1)[-1]].pop("required")
+        case["required"].remove(key)
+        case["if"] = {"properties": {entries: {"items": {"required": needed}}}, "required": [entries]}
+        case["else"] = {"properties": {key: {"required": needed}}, "required": [key]}
+    return case
 
 
 def _sides(schema: Schema, name: str, side: Json, definitions: Json) -> Json:

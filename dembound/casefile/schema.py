@@ -31,7 +31,8 @@ class Schema:
     lists : those that may occur any number of times.
     problems : finds mistakes between tables, from the tables and the file's data. optional : those that may be absent.
     staged : those that may be absent and have their own sides: the table, and the type of its boundary.SIDE.
-    completed : the tables of a file with keys that follow from other tables, and what these lack for that.
+    completed : the tables of a file with keys that follow from other tables, and what these lack for that. completing :
+    by table, the list from whose entries they follow where each gives them.
     """
 
     case: type[Case]
@@ -46,6 +47,7 @@ class Schema:
     optional: Mapping[str, TypeAdapter[Any]] = field(default_factory=dict)
     staged: Mapping[str, tuple[TypeAdapter[Any], TypeAdapter[Any]]] = field(default_factory=dict)
     completed: Callable[[Tables], tuple[Tables, list[str]]] = lambda data: (data, [])
+    completing: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def keys(self) -> list[str]:

@@ -26,6 +26,8 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS, require_linear
 from dembound.disks.contacts.breaks import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
+from dembound.errors import CaseError
+from dembound.kinds import with_changes
 
 REALISATIONS = (
     "choices differ in their random packing, and every packing is another realisation of the rock: errors beside a run "
@@ -53,12 +55,13 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         return cause_of_packing(case, motions, seeds)
 
     def notes(self, case: DiskCase, summary: Mapping[str, Any]) -> Iterator[str]:
-        """A line on the ratio of the motion to the limit of the elastic law."""
+        """A line on the ratio of the motion to the limit of the elastic law; damped ground has no load factor."""
         if not LAWS[case.material.law].is_linear:
             return
         limit = summary.get("load_factor")
         if limit is None:
-            yield "the elastic law is taken as given; output.load_factor = true finds up to which waves it holds"
+            found = "; output.load_factor = true finds up to which waves it holds" if _takes_load_factor(case) else ""
+            yield f"the elastic law is taken as given{found}"
         elif limit["factor"] is None:
             yield "the elastic law holds under waves of any size"
         else:
@@ -117,3 +120,12 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
     def quick(self, scene: DiskScene) -> Causes:
         """The continuum and walls by formula."""
         return quick_causes(scene)
+
+
+def _takes_load_factor(case: DiskCase) -> bool:
+    """Whether a case may ask for its load factor."""
+    try:
+        with_changes(case, {"output.load_factor": True})
+    except CaseError:
+        return False
+    return True

@@ -51,4 +51,5 @@ SCHEMA = Schema(
     },
     problems=problems_between,
     completed=completed_by_layers,
+    completing={"material": "layer"},
 )

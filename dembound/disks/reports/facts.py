@@ -14,8 +14,11 @@ from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
 from dembound.damping.quality import Mechanisms
 from dembound.damping.rayleigh import Rayleigh
+from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.contacts.layout import fill
+from dembound.disks.entry import MOTIONS
 from dembound.disks.loads import forces_of
+from dembound.disks.matching import sent_back
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.reports.continuum_facts import continuum_facts
 from dembound.disks.reports.incident_facts import incident_facts
@@ -31,6 +34,9 @@ BALANCED = 1e-9
 
 FOUND_DIGITS = 5
 """Digits of micro-parameters that have been found."""
+
+RETURNED = 0.01
+"""Share of the amplitude of plane waves along the normal from which on what whole cells return is said."""
 
 MICRONS = 6
 """Digits of heights in m."""
@@ -350,4 +356,23 @@ def _side_fact(scene: DiskScene, side: str) -> str:
     return (
         f"{'; '.join(words) if len(words) > 1 else side_in_words(facts)}; {facts['particles']} particles{some}, "
         f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.3g}"
+        f"{_whole_cells(scene, side)}"
     )
+
+
+def _whole_cells(scene: DiskScene, side: str) -> str:
+    """What dashpots return as their disks are not half cells, though they may be; empty if it is little."""
+    case, table = scene.case, scene.case.side(side)
+    may_halve = table.may_halve and side in case.packing.regular_sides and not (table.half_cells or table.is_interface)
+    frequency = mean_frequency(case) if may_halve else math.nan
+    if math.isnan(frequency):
+        return ""
+    found = []
+    for motion in MOTIONS:
+        share, of_factors = (sent_back(scene, side, motion, at) for at in (frequency, math.nan))
+        if share > max(RETURNED, 2.0 * of_factors):
+            found.append(f"{percent(share)} of {motion.upper()}")
+    if not found:
+        return ""
+    kinds = f"{' and '.join(found)} waves at {frequency:.3g} Hz"
+    return f"; whole cells return {kinds}, half cells (half_mass) the square of that"

@@ -10,6 +10,7 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
 from dembound.accuracy.history import History, Motions
+from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner, measure
 from dembound.casefile.disks import DiskCase
@@ -63,6 +64,24 @@ def test_the_elastic_law_replaces_another_that_is_never_needed() -> None:
     for share, remains in ((0.9, True), (1.1, False)):  # larger waves leave it at the load factor
         found = twin_of(confined({"wave.push.amplitude": share * twin.factor}))
         assert (found is not None) is remains
+
+
+def test_strengths_that_scatter_count_as_the_weakest() -> None:
+    """Factors are cut off at 1 − 3 × 0.1, and one of 1,900 bonds is within a percent or two of that."""
+    bonds_only = {"static": None, "material.contact_share": 0.0}
+    scatter = {"material.pb_scatter": {"type": "normal", "deviation": 0.1}}
+    given, scattered = twin_of(confined(bonds_only)), twin_of(confined(bonds_only | scatter))
+    assert given is not None
+    assert scattered is not None
+    assert scattered.case == given.case  # without strengths
+    assert 0.7 < scattered.factor / given.factor < 0.73
+
+
+def test_the_load_factor_is_recommended_where_the_case_takes_it() -> None:
+    still = confined({"material.law": "elastic", "material.pb_ten": None, "material.pb_coh": None})
+    damped = with_changes(still, {"material.quality_factor": 20.0, "damping": {"band": [10.0, 100.0]}})
+    found = ["output.load_factor" in "".join(judge_of(case).notes(case, {})) for case in (still, damped)]
+    assert found == [True, False]
 
 
 def test_with_larger_disks_more_is_needed() -> None:

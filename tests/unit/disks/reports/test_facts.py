@@ -1,5 +1,7 @@
 """Facts about a case of disks."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -41,6 +43,17 @@ def test_facts_are_those_of_the_scene(bar) -> None:
     )
     assert "top side" not in sides
     assert "; springs α_n = 2, α_s = 0.5, G = 1 GPa, L = 40 m; 2 particles" in sides["right side"]
+
+
+def test_what_whole_cells_return_is_said_where_half_cells_are_possible(bar) -> None:
+    """A wave of mean frequency f returns πfD/2c of this P wave; S waves are held."""
+    long = {"wave.pulse.period": 0.02}
+    said = re.search(r"cells return (.*) % of P waves at (.*) Hz", facts_of(bar(long))["right side"])
+    assert said is not None
+    share, frequency = map(float, said.groups())
+    assert share == pytest.approx(100.0 * np.pi * frequency * 0.5 / 2000.0, rel=0.02)  # of two digits
+    for changes in ({"boundary.right.half_mass": True}, {"boundary.right.beta_p": 0.5}, SLOW):
+        assert "whole cells" not in facts_of(bar(long | changes))["right side"]
 
 
 WEIGHT = {
