@@ -144,7 +144,10 @@ class DiskSystem(RecordedDisks):
             state.work[:, 4] += self._last_stored(state) + self._steady_work(state) - before
         if self.near_ties is not None:
             self.near_ties.begin(self.contacts["body"])
-        self.steady = self.load + (0.0 if self.balance is None else self.balance.force)
+        if self.balance is not None:
+            self.steady = self.load + self.balance.force
+        else:  # none where all are zero, as under the first law: kernels then read no array of them
+            self.steady = self.load.copy() if self.load.any() else np.zeros((3, 0))
         self._set_balance_in_use()
         if before is not None and self.turning is not None:
             # the next step counts the work of rotation from half a step earlier, when forces did not rotate yet
