@@ -64,7 +64,8 @@ def respond(
 ) -> None:
     """Write histories under records from a library, without a run.
 
-    They equal a direct run with the record as a file wave, to rounding, and are plotted and compared like a run.
+    They equal a direct run with the record as a file wave, to rounding (at an angle in layers to 5e-6 of the peak), and
+    are plotted and compared like a run.
     """
     from dembound.results.folder import Folder
     from dembound.results.reader import understood

@@ -75,7 +75,7 @@ def _cost(scene: DiskScene) -> float:
 
 def may_be_boxed(case: DiskCase) -> bool:
     """Whether all sources but waves from below are in one place, and the ground could go on beyond it."""
-    plain = not any(case.periodic) and not case.motion.held and (case.static is None or case.static.stress is None)
+    plain = not any(case.periodic) and not case.motion.held
     beyond = all(case.side(side).is_artificial for side in ("left", "right", "bottom"))
     at_top = case.side("top").is_free or case.side("top").is_outside
     from_below = not any(case.side(side).waves for side in ("left", "right", "top"))

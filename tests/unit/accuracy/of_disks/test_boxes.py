@@ -57,6 +57,12 @@ def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
     assert cheapest_box(scene) is None  # it is one already
 
 
+def test_a_box_begins_with_the_stress_given_to_all_the_ground() -> None:
+    case = tunnel(static={"stress": [-2e6, 0.0, 0.0]})
+    assert may_be_boxed(case)
+    assert boxed(case)[1].at_rest is not None
+
+
 def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     load = [{"name": "blow", "position": [60.0, 98.0], "force": [0.0, -1.0], "wave": "pulse"}]
     sides = dict.fromkeys(("left", "right", "bottom"), VISCOUS)

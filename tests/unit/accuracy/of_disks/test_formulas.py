@@ -15,6 +15,7 @@ from dembound.accuracy.of_disks.matched_sides import Reflected
 from dembound.accuracy.runner import measure
 from dembound.disks.entry import late_by
 from dembound.disks.scene import build
+from dembound.results.relative_error import relative_error
 from dembound.running import Progress
 
 HEIGHT, SPEED, PERIOD = 20.0, 1000.0, 0.02
@@ -236,3 +237,32 @@ def test_springs_of_a_driven_side_and_held_sides_without_an_estimate_are_named()
     tables["boundary"] = {"left": {"type": "outside"}, "right": {"type": "fixed", "artificial": False}}
     found = causes_of_run(small(tables), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
     assert [(each.name, each.of_disks) for each in found.unknown] == [("right side", True)]
+
+
+def test_single_disks_at_a_random_surface_err_as_waves_at_an_angle_strain_it() -> None:
+    """Waves of 80 diameters and 20°; eight disks from the surface down to two diameters."""
+    random = {"pattern": "B", "size": [16.0, 8.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [8.0, 8.0], "seed": 3}
+    tables = SURROUNDED | {
+        "packing": random,
+        "outside": {},
+        "incident": {"type": "sv", "angle": 20.0, "wave": "in"},
+        "wave": {"in": {"type": "cosine", "amplitude": 1.0, "period": 0.14}},
+        "monitor": [{"name": f"m{k}", "position": [4.0 + k, 8.0 - 0.5 * (k % 2)]} for k in range(8)],
+        "run": {"duration": 0.2},
+    }
+    case = small(tables)
+    scene = build(case)
+    assert scene.ground_waves is not None
+    found, expected = [], []
+    motions = {
+        name: replace(own, values={quantity: values[:, :2] for quantity, values in own.values.items()})
+        for name, own in measure(case, Progress())[0].motions.items()
+    }
+    formulas = Formulas(scene, 1e-6)  # so short that steps do not count
+    (cause,) = (each for each in formulas.causes(motions) if each.name == "surface")
+    for name, own in motions.items():
+        ground = scene.ground_waves.motion("velocity", own.time, own.place[None])[:, 0, :2]
+        column = own.component("velocity")
+        found.append(relative_error((own.velocity - ground)[:, column], ground[:, column]))
+        expected.append(cause.share(name, "velocity", own))
+    assert 1.0 / cause.factor < np.linalg.norm(found) / np.linalg.norm(expected) < cause.factor
