@@ -1,7 +1,7 @@
 """dembound: waves in bonded particles, with artificial boundaries that absorb.
 
-From Python: `load`, `case`, `change`, `run`, `estimate`, `resume`, `calibrate`, `calibrate_all` and `Results`; see
-`dembound.api` and docs/start/python.md.
+From Python: `load`, `case`, `change`, `run`, `estimate`, `resume`, `calibrate`, `calibrate_all`, `laboratory_test` and
+`Results`; see `dembound.api` and docs/start/python.md.
 """
 
 from importlib import import_module
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         case,
         change,
         estimate,
+        laboratory_test,
         load,
         loads,
         resume,
@@ -58,6 +59,7 @@ __all__ = [
     "case",
     "change",
     "estimate",
+    "laboratory_test",
     "load",
     "loads",
     "resume",

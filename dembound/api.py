@@ -32,6 +32,11 @@ from dembound.running.recorded import recorded_case
 from dembound.running.unfinished import left_of
 from dembound.studies import all_sides, calibration
 from dembound.studies.calibration import Calibration
+from dembound.studies.laboratory.sample import Ends, sample_of
+from dembound.studies.laboratory.study import SHARES, Tested, perform, specimens_of
+from dembound.studies.laboratory.tables import ratios_of, write_tables
+from dembound.studies.sweep.study import Options, Report
+from dembound.studies.sweep.tables import distinct
 from dembound.table import Table, as_toml
 
 __all__ = [
@@ -55,6 +60,7 @@ __all__ = [
     "case",
     "change",
     "estimate",
+    "laboratory_test",
     "load",
     "loads",
     "resume",
@@ -218,6 +224,58 @@ def _threads(threads: int | None) -> Iterator[None]:
         numba.set_num_threads(before)
 
 
+def laboratory_test(
+    case: Case,
+    test: str,
+    results: Path | str = "results",
+    *,
+    seeds: int = 4,
+    width: float | None = None,
+    height: float | None = None,
+    ends: Ends = "smooth",
+    damp: float = 0.7,
+    rate: float | None = None,
+    pressures: Sequence[float] | None = None,
+    shares: Sequence[float] = SHARES,
+    processes: int = 0,
+    anew: bool = False,
+    report: Report | None = None,
+) -> Tested:
+    """Test samples of a material to failure, and write ``results/<case name>_<test>/``, as ``dembound test`` does.
+
+    Parameters
+    ----------
+    case : of disks, whose packing and material count. test : "ucs", "tension", "brazilian" or "biaxial".
+    seeds : samples. width, height : m. ends : "smooth" or "grips". damp : local damping. rate : 1/s.
+    pressures : Pa at the sides, of "biaxial". shares : of the peak, between which E and ν are taken.
+    processes : samples at once, each in a process of its own; 0: one after the other in this one. Scripts need
+    ``if __name__ == "__main__":`` for others.
+    anew : whether samples that are done are repeated. report : called with the numbers of samples done and under way.
+
+    Pictures are not drawn. What makes numbers doubtful is issued as warnings of the category CaseWarning.
+
+    Raises CaseError for a case or numbers that are not valid, RunError if all samples have failed. After an interrupt
+    the same call continues what is left.
+    """
+    sample = sample_of(_of_disks(case, "samples have disks"), test, width, height, ends=ends, damp=damp, rate=rate)
+    specimens = specimens_of(sample, seeds, pressures)
+    options, told = Options(processes=processes, anew=anew), report or (lambda standing: None)
+    try:
+        found = perform(sample, specimens, options, Path(results) / f"{case.name}_{test}", told, shares)
+    except KeyboardInterrupt as stop:
+        stop.args = (f"{case.name}: stopped; the same call continues what is left",)
+        raise
+    failed = [
+        f"{each.member.name}: {state}" for each, state in zip(specimens, found.states, strict=True) if state != "done"
+    ]
+    if len(failed) == len(specimens):
+        raise RunError(failed[0])
+    write_tables(found, list(ratios_of(found, Path(results))))
+    for line in (*failed, *distinct(found.outcomes), *found.warnings):
+        _warn(f"{case.name}: {line}")
+    return found
+
+
 def calibrate(case: Case, side: str, **options: Any) -> tuple[Case, Calibration]:
     """Find the factor β of one side for P or S waves; returns the case with this β, and the record of the calibration.
 
@@ -238,9 +296,9 @@ def calibrate_all(case: Case, **options: Any) -> tuple[Case, list[Calibration]]:
     return change(case, all_sides.changes_of(found)), found
 
 
-def _of_disks(case: Case) -> DiskCase:
+def _of_disks(case: Case, why: str = "β of disks is calibrated") -> DiskCase:
     """The case, checked; raises CaseError for the case of a bar."""
-    return as_kind(kinds.checked(case), DiskCase, "is the case of a bar; β of disks is calibrated")
+    return as_kind(kinds.checked(case), DiskCase, f"is the case of a bar; {why}")
 
 
 class _Warns(Progress):

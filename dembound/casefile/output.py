@@ -10,8 +10,8 @@ MOST_SNAPSHOTS = 10_000
 Most commands go through all snapshots of a record, which takes 1 ms each and more.
 """
 
-ParaView = Literal["vtu", "vtkhdf", "both"]
-"""Formats of snapshots for ParaView: one VTU file each with a PVD file of their times, one VTKHDF file, or both."""
+ParaView = Literal["vtu", "vtkhdf", "both", "none"]
+"""Formats of snapshots for ParaView: a VTU file each with a PVD file of their times, one VTKHDF file, both, or none."""
 
 
 class Output(Table):
@@ -42,7 +42,7 @@ class Output(Table):
     paraview: ParaView = quantity(
         "vtu",
         unit="1",
-        help='snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"',
+        help='snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"; "none"',
     )
     peaks: bool = quantity(False, unit="1", help="whether the largest speed of every particle in the run is kept")
     load_factor: bool = quantity(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast, get_args
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,9 +17,11 @@ from dembound.interrupts import exit_code_of
 from dembound.words import in_one_unit, with_unit
 
 if TYPE_CHECKING:
+    from dembound.studies.laboratory.sample import Sample
     from dembound.studies.laboratory.study import Tested
     from dembound.studies.laboratory.tables import Ratio
     from dembound.studies.sweep.statistics import Statistic
+    from dembound.studies.sweep.study import Standing
 
 PRINTED = {
     "strength": "strength",
@@ -82,35 +84,25 @@ def laboratory(
 
     Complete samples are not repeated: the same command continues a test, and more seeds add samples to it.
     """
-    from dembound.results.loading_curve import TestName
     from dembound.studies.laboratory.sample import ignored, sample_of
-    from dembound.studies.laboratory.study import default_pressures, perform, specimens_of
+    from dembound.studies.laboratory.study import perform, specimens_of
     from dembound.studies.laboratory.tables import ratios_of
     from dembound.studies.sweep.study import Options
 
-    if kind not in get_args(TestName):
-        raise CaseError([f"TEST: is {kind}, must be one of {', '.join(get_args(TestName))}"])
-    named = cast("TestName", kind)
     if scheduler and processes:
         raise CaseError(["--processes: is for this machine, not allowed together with --scheduler"])
-    if pressures and kind != "biaxial":
-        raise CaseError(["--pressures: is for biaxial; other tests have free sides"])
-    between = _numbers("--shares", shares)
-    if len(between) != 2 or not 0.0 <= between[0] < between[1] <= 1.0:
-        raise CaseError([f"--shares: is {shares}, must be two shares of the peak, as 0.1,0.5"])
+    between, sides = _numbers("--shares", shares), _numbers("--pressures", pressures) if pressures else None
     loaded = load_disks(case, changes, name)
-    sample = sample_of(loaded, named, width or None, height or None, ends=ends.value, damp=damp, rate=rate or None)
+    sample = sample_of(loaded, kind, width, height, ends=ends.value, damp=damp, rate=rate)
     if unused := ignored(loaded):
         err.print(f"{loaded.name}: only [packing] and [material] count; not used: {', '.join(unused)}")
-    given = _numbers("--pressures", pressures) if pressures else None
-    sides = (given or default_pressures(sample)) if kind == "biaxial" else [0.0]
     specimens = specimens_of(sample, seeds, sides)
-    err.print(f"{loaded.name}: {named}, {sample.in_words}")
-    folder = output / f"{loaded.name}_{named}"
+    err.print(f"{loaded.name}: {kind}, {sample.in_words}")
+    folder = output / f"{loaded.name}_{kind}"
     try:
-        with shown(loaded.name) as report:
+        with shown(loaded.name, "samples", lambda standing: _under_way(sample, folder, standing)) as report:
             options = Options(processes=processes, scheduler=scheduler, anew=anew)
-            found = perform(sample, specimens, options, folder, report, (between[0], between[1]))
+            found = perform(sample, specimens, options, folder, report, between)
     except KeyboardInterrupt as stop:
         err.print(f"{loaded.name}: stopped; the same command continues what is left")
         raise typer.Exit(exit_code_of(stop)) from None
@@ -123,14 +115,22 @@ def laboratory(
 
 
 def _numbers(option: str, text: str) -> list[float]:
-    """Numbers between commas; raises CaseError for anything else, negative and duplicate ones."""
+    """Numbers between commas; raises CaseError for anything else."""
     try:
-        found = [float(each) for each in text.split(",")]
+        return [float(each) for each in text.split(",")]
     except ValueError:
-        found = []
-    if not found or min(found) < 0.0 or len(set(found)) < len(found):
-        raise CaseError([f"{option}: is {text}, must be different numbers with commas between them, none negative"])
-    return found
+        raise CaseError([f"{option}: is {text}, must be numbers with commas between them"]) from None
+
+
+def _under_way(sample: Sample, folder: Path, standing: Standing) -> str:
+    """The strains between platens that the samples under way have come to; others are packed, compiled or at rest."""
+    from dembound.studies.sweep.perform import times_in
+
+    strains = [f"{100.0 * sample.strain_at(time):.2g} %" for time in times_in(folder).values()]
+    preparing = standing.under_way - len(strains)
+    words = [f"strain {', '.join(strains)}"] if strains else []
+    words += [f"{preparing} preparing"] if preparing > 0 else []
+    return f" ({'; '.join(words)})" if words else ""
 
 
 def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
@@ -143,7 +143,7 @@ def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
     ]
     for member, state in failed:
         err.print(f"{name}: {member}: failed, {state}")
-    print_warnings(name, distinct(tested.outcomes), len(tested.specimens))
+    print_warnings(name, distinct(tested.outcomes), len(tested.specimens), "samples")
     for line in tested.warnings:
         err.print(f"{name}: warning: {line}")
     found = [each for each in tested.statistics if each.quantity in PRINTED]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
@@ -122,30 +122,38 @@ def sweep(
 
 
 @contextmanager
-def shown(name: str) -> Iterator[Report]:
-    """Shows the progress of a sweep: a bar on a terminal, else a line every ten seconds."""
+def shown(
+    name: str, members: str = "members", under_way: Callable[[Standing], str] = lambda standing: ""
+) -> Iterator[Report]:
+    """Shows the progress of a sweep: a line that changes on a terminal, else one every ten seconds.
+
+    members : what they are called. under_way : more words on those under way.
+    """
     began = said = time.monotonic()
+
+    def line(standing: Standing) -> str:
+        return f"{name}: {_in_words(standing, time.monotonic() - began, members, under_way(standing))}"
 
     def say(standing: Standing) -> None:
         nonlocal said
         if (now := time.monotonic()) - said >= INTERVAL:
             said = now
-            err.print(f"{name}: {_in_words(standing, now - began)}")
+            err.print(line(standing))
 
     if not err.is_terminal:
         yield say
         return
     with err.status(f"{name}: preparing") as status:
-        yield lambda standing: status.update(f"{name}: {_in_words(standing, time.monotonic() - began)}")
+        yield lambda standing: status.update(line(standing))
 
 
-def _in_words(standing: Standing, elapsed: float) -> str:
-    """The progress of a sweep after a number of seconds, in one line."""
+def _in_words(standing: Standing, elapsed: float, members: str = "members", more: str = "") -> str:
+    """The progress of a sweep after a number of seconds, in one line; members, more : see `shown`."""
     now = standing.done + standing.failed - standing.kept
     left = standing.members - standing.done - standing.failed
-    parts = [f"{standing.done} of {standing.members} members done"]
+    parts = [f"{standing.done} of {standing.members} {members} done"]
     parts += [f"{standing.failed} failed"] if standing.failed else []
-    parts += [f"{standing.under_way} under way"] if standing.under_way else []
+    parts += [f"{standing.under_way} under way{more}"] if standing.under_way else []
     parts += [f"about {_duration(elapsed * left / now)} left"] if now and left else []
     return ", ".join(parts)
 
@@ -175,13 +183,16 @@ def _print(swept: Swept) -> bool:
     return bool(failed)
 
 
-def print_warnings(name: str, warnings: Mapping[str, int], members: int) -> None:
-    """Print distinct warnings of a number of members, each once with the number of members that have it."""
-    for text, count in list(warnings.items())[:MOST_WARNINGS]:
-        err.print(f"{name}: warning: {text} ({count} of {members} members)")
+def print_warnings(name: str, warnings: Mapping[str, int], count: int, members: str = "members") -> None:
+    """Print distinct warnings of a number of members, each once with the number of those that have it.
+
+    members : as of `shown`.
+    """
+    for text, having in list(warnings.items())[:MOST_WARNINGS]:
+        err.print(f"{name}: warning: {text} ({having} of {count} {members})")
     if len(warnings) > MOST_WARNINGS:
         left = len(warnings) - MOST_WARNINGS
-        err.print(f"{name}: {left} more warnings are in summary.json of the members")
+        err.print(f"{name}: {left} more warnings are in summary.json of the {members}")
 
 
 def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:

@@ -25,7 +25,7 @@ class Storage(NamedTuple):
 
 def paraview_bytes(files: ParaView, vtu: float, vtkhdf: float) -> float:
     """Bytes of the requested files for ParaView, from the bytes of each format."""
-    return vtu * (files != "vtkhdf") + vtkhdf * (files != "vtu")
+    return vtu * (files in ("vtu", "both")) + vtkhdf * (files in ("vtkhdf", "both"))
 
 
 def mesh_bytes(points: float, point_data: float, cells: float, corners: int, cell_data: float) -> float:

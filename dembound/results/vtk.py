@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaView = "vtu") -> None:
-    """Write every snapshot of a run for ParaView, nothing for a run without snapshots.
+    """Write every snapshot of a run for ParaView, nothing for a run without snapshots, or if `files` is none.
 
     Parameters
     ----------
@@ -57,6 +57,8 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
 
     Raises CaseError when the record cannot be read, OSError when a file cannot be written.
     """
+    if files == "none":
+        return
     with open_record(run) as file:
         snapshots = {_number_of(snapshot): snapshot for snapshot in snapshots_of(file)}
         if not snapshots:

@@ -10,11 +10,13 @@ import numba
 import numpy as np
 import pytest
 
+from dembound.disks.kind import Disks
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import with_changes
 from dembound.motion import threads
+from dembound.motion.peak import Peak, peak_rule
 from dembound.outside.body import GridBody
 from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Layered, Medium
@@ -31,6 +33,9 @@ WEAK = {"law": "linearpbond", "fric": 0.3, "pb_ten": 0.2e6, "pb_coh": 0.2e6, "pb
 INPUT = {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}
 ENDS = {"left": INPUT, "right": "viscous"}
 FREE_FIELD = {"left": "free_field", "right": "free_field", "bottom": INPUT}
+PLATEN = {"type": "velocity", "wave_p": "pulse", "hold": ["normal"], "within": [4.0, 15.0]}
+"""Smooth, of a part of the width; the others push on the outer disks as membranes."""
+
 SETTLED = {"ratio": 0.5, "boundary": {"bottom": {"type": "fixed"}}}
 WEIGHT = [{"acceleration": [0.0, -9.81]}]
 
@@ -76,6 +81,14 @@ SCENES = {
         "load": WEIGHT,
         "layer": [{"thickness": 4.0, "density": 2000.0, "p_wave_speed": 500.0, "k0": 0.8}, {"name": "stiff"}],
     },
+    "settled, test of a sample under pressure": {
+        "size": FEW,
+        "boundary": {"bottom": {"type": "fixed", "within": PLATEN["within"]}, "top": PLATEN},
+        "material": WEAK | {"damp": 0.7, "pb_scatter": {"type": "normal", "deviation": 0.3}},
+        "static": {"ratio": 1e-2},
+        "load": [{"pressure": 2e4, "sides": ["left", "right", "bottom", "top"]}],
+        "run": {"duration": 1.0, "until": "peak", "peak_for": 0.008},
+    },
     "settled, box in the ground": {"box": (20.0, 20.0, 40.0, 40.0), "static": SETTLED, "load": WEIGHT},
 }
 
@@ -92,7 +105,7 @@ def scene_of(lab, name: str) -> tuple[DiskScene | GridScene, float]:
         scene = build(lab.window("B", words.pop("box"), hole=True, **words))
     else:
         wave = {"type": "cosine", "amplitude": 1.0, "period": 0.02}
-        more = {key: words.pop(key) for key in ("layer", "damping") if key in words}
+        more = {key: words.pop(key) for key in ("layer", "damping", "run") if key in words}
         scene = build(with_changes(lab.case("B", words.pop("size"), wave=wave, **words), more))
     return scene, choose_step(scene)[0]
 
@@ -102,11 +115,15 @@ def run_with(number: int, lab, name: str) -> dict[str, np.ndarray]:
     numba.set_num_threads(number)
     assert threads.thread_count_for(1000) == number
     scene, step = scene_of(lab, name)
-    simulation = lab.simulation(scene, settle(scene).start if name.startswith("settled") else None, step)
+    start = settle(scene).start if name.startswith("settled") else None
+    is_test = name.endswith("under pressure")
+    simulation = lab.simulation(scene, start, step, side_stride=8 * is_test)
     if name.endswith("continuum"):
         noise = np.random.default_rng(0).standard_normal((3, scene.count)) * scene.moves
         simulation.state.velocity = noise
     ledger = lab.ledger(simulation, 10)
+    if is_test:
+        simulation.track(Peak(peak_rule(scene, Disks().sources(scene)), scene, step), *Disks().trackers(simulation))
     simulation.run(STEPS)
     return simulation.state.arrays() | {"energies": ledger.columns, "time_step": np.array(step)}
 
@@ -130,6 +147,9 @@ def test_same_bits_of_motion_contacts_and_energies(lab, name, monkeypatch):
             np.testing.assert_array_equal(other[key], values, err_msg=key)
     assert np.abs(one["velocity"]).max() > 0.1  # the pulses did run
     assert (np.abs(one["energies"][1:, 1:3]) > 0.0).all()  # kinetic, and in contacts
+    if name.endswith("under pressure"):
+        assert 0 < one["step"] < STEPS
+        assert one["work/crack"][1] > 0.0
     if name.startswith("breaking"):
         assert one["work/crack"][1] > 0.0
         assert one["work/friction"][1] > 0.0

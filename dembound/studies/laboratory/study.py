@@ -9,8 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from dembound.errors import CaseError
 from dembound.kinds import loads
+from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.loading_curve import LoadingCurve, read_test
+from dembound.results.named import missing
 from dembound.studies.laboratory.envelope import Envelope, fitted
 from dembound.studies.laboratory.sample import Sample
 from dembound.studies.sweep.members import Member, key_of
@@ -96,6 +99,17 @@ class Tested:
             found.append(statistic({}, name, [getattr(fit, name) for fit in fits]))
         return found
 
+    def statistic(self, quantity: str, pressure: float | None = None) -> Statistic:
+        """Mean, spread and interval of a quantity; pressure : Pa, of the runs of a biaxial test, None: over all.
+
+        Raises NameMissingError for one that there is not.
+        """
+        group = {} if pressure is None else {"pressure": pressure}
+        own = {each.quantity: each for each in self.statistics if each.group == group}
+        if quantity not in own:
+            raise missing("quantity", quantity, own)
+        return own[quantity]
+
     @cached_property
     def envelopes(self) -> dict[int, Envelope]:
         """The Mohr-Coulomb line of every seed with two or more pressures."""
@@ -144,10 +158,20 @@ def measured(curve: LoadingCurve, shares: tuple[float, float] = SHARES) -> dict[
     return values | {"rate": curve.rate}
 
 
-def specimens_of(sample: Sample, seeds: int, pressures: Sequence[float] = (0.0,)) -> list[Specimen]:
-    """The runs of a test for a number of seeds and each pressure; raises CaseError for cases that are not valid."""
+def specimens_of(sample: Sample, seeds: int, pressures: Sequence[float] | None = None) -> list[Specimen]:
+    """The runs of a test for a number of seeds and each pressure (Pa), by default `default_pressures`.
+
+    Raises CaseError for invalid numbers, and cases that are not valid.
+    """
+    if pressures and sample.test != "biaxial":
+        raise CaseError(["--pressures: is for biaxial; other tests have free sides"])
+    if pressures and (min(pressures) < 0.0 or len(set(pressures)) < len(pressures)):
+        given = ",".join(f"{each:g}" for each in pressures)
+        raise CaseError([f"--pressures: is {given}, must be different numbers, none negative"])
+    if seeds < 1:
+        raise CaseError([f"--seeds: is {seeds}, must be 1 or more"])
     found = []
-    for pressure in pressures:
+    for pressure in pressures or default_pressures(sample):
         for by in range(seeds):
             case = loads(sample.text(by, pressure), sample.case.folder, sample.case.name)
             seed = int(sample.seeded(by).get("seed", 0))
@@ -165,15 +189,26 @@ def perform(
     options: Options,
     folder: Path,
     report: Report,
-    shares: tuple[float, float] = SHARES,
+    shares: Sequence[float] = SHARES,
 ) -> Tested:
-    """Run a test; complete runs are not repeated, see `sweep`. shares : as of `Tested`."""
+    """Run a test; complete runs are not repeated, see `sweep`. shares : as of `Tested`.
+
+    Raises CaseError for invalid shares, and as `sweep`.
+    """
+    if len(shares) != 2 or not 0.0 <= shares[0] < shares[1] <= 1.0:
+        given = ",".join(f"{each:g}" for each in shares)
+        raise CaseError([f"--shares: is {given}, must be two shares of the peak, as 0.1,0.5"])
     outcomes = sweep([each.member for each in specimens], options, folder, report)
-    return Tested(sample, specimens, outcomes, folder, shares)
+    found = Tested(sample, specimens, outcomes, folder, (shares[0], shares[1]))
+    for each in found.done:  # past its peak, so there is nothing to continue
+        found.record(each).with_name(CHECKPOINT).unlink(missing_ok=True)
+    return found
 
 
 def default_pressures(sample: Sample) -> list[float]:
-    """Pressures (Pa) of a biaxial test: none, and a tenth, a quarter and a half of a low guess of the strength."""
+    """Pressures (Pa): none, and of a biaxial test a tenth, a quarter and a half of a low guess of the strength."""
+    if sample.test != "biaxial":
+        return [0.0]
     guess = sample.peak_strain * sample.elastic[0]
     return [0.0, *(float(f"{share * guess:.2g}") for share in (0.1, 0.25, 0.5))]
 

@@ -29,6 +29,9 @@ from dembound.studies.sweep.values import values_of_calibration, values_of_run
 MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"
 """Folders of a sweep: runs, outcomes by key, stages before runs."""
 
+BETWEEN = 1.0
+"""Seconds between two entries of the time of a run under way."""
+
 ALONE = threading.Lock()
 """Lock held by a running member: workers of a cluster may have several threads, but the solver has its own."""
 
@@ -125,10 +128,11 @@ def _one_thread() -> Iterator[None]:
 
 
 class Begun(Progress):
-    """Makes a file when the first steps are done."""
+    """Makes a file when the first steps are done, and keeps the time of the run in one of its own; see `times_in`."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, key: str = "") -> None:
         self._path, self._is_made = path, False
+        self._own, self._written = path.with_name(f"{path.name}-{key}"), -math.inf
 
     def make(self) -> None:
         """Make the file, once."""
@@ -143,19 +147,38 @@ class Begun(Progress):
     def running(self, run: Run, steps: int) -> None:
         """Report the progress of the run itself."""
         self.make()
+        if (now := time.monotonic()) - self._written >= BETWEEN:
+            self._written = now
+            self._own.write_text(f"{run.time!r}", encoding="utf-8")
+
+    def end(self) -> None:
+        """The run is over."""
+        self._own.unlink(missing_ok=True)
+
+
+def times_in(folder: Path) -> dict[str, float]:
+    """The time (s) that the run of each member under way has come to, by key; members not yet stepped have none."""
+    found = {}
+    for path in folder.glob("begun-*-*"):
+        with suppress(OSError, ValueError):  # it is being written, or the run is over
+            found[path.name.rsplit("-", 1)[-1]] = float(path.read_text(encoding="utf-8"))
+    return found
 
 
 def _run(task: Task) -> tuple[dict[str, float], list[str]]:
     """Run the member, or continue it if it was left unfinished; returns its values and warnings."""
     case, results = _case_of(task), task.folder / MEMBERS
     partial = Folder(results, case.name).partial
-    shared, progress = Shared(task.folder / SETTLED), Begun(task.begun)
+    shared, progress = Shared(task.folder / SETTLED), Begun(task.begun, task.key)
     folder = None
-    if _is_unfinished(case, partial):
-        with suppress(CaseError):  # such as a checkpoint with another time step, of another machine
-            folder = resume_case(partial, progress=progress, shared=shared)
-    if folder is None:
-        folder = run_case(case, results, progress, shared=shared)
+    try:
+        if _is_unfinished(case, partial):
+            with suppress(CaseError):  # such as a checkpoint with another time step, of another machine
+                folder = resume_case(partial, progress=progress, shared=shared)
+        if folder is None:
+            folder = run_case(case, results, progress, shared=shared)
+    finally:
+        progress.end()
     failed = estimate_if_asked(case, folder)
     summary = read_summary(folder)
     return values_of_run(folder, summary), [*summary["warnings"], *([failed] if failed else [])]

@@ -6,7 +6,7 @@ import uuid
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, wait
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from dembound.interrupts import look
 from dembound.machine import cores_here
 from dembound.studies.sweep.members import Member
 from dembound.studies.sweep.perform import OUTCOMES, Outcome, Task, forget_replaced, outcome_in
-from dembound.studies.sweep.workers import Performing, Workers, cluster, processes
+from dembound.studies.sweep.workers import Here, Performing, Workers, cluster, processes
 
 LOOK = 0.2
 """Seconds between two checks of running members."""
@@ -31,8 +31,8 @@ LOCK = "sweep.lock"
 class Options:
     """Options of a sweep: action and method as in the table ``[sweep]``.
 
-    processes : on this machine; None: as many as it has cores. scheduler : address of a Dask cluster used instead.
-    anew : whether members that are done are repeated.
+    processes : on this machine; None: as many as it has cores; 0: in this process, one member after the other.
+    scheduler : address of a Dask cluster used instead. anew : whether members that are done are repeated.
     """
 
     action: Action = "run"
@@ -53,7 +53,10 @@ class Standing(NamedTuple):
 
 
 class Marks(NamedTuple):
-    """Files of a sweep under way: begun, made by the first member that is stepped; stop, which ends all members."""
+    """Files of a sweep under way: begun, made by the first member that is stepped; stop, which ends all members.
+
+    Members whose run is stepped have a file each beside begun, see `times_in`.
+    """
 
     begun: Path
     stop: Path
@@ -77,11 +80,19 @@ def sweep(members: Sequence[Member], options: Options, folder: Path, report: Rep
         if missing:
             if options.action == "run":
                 forget_replaced(folder, {member.name for member in missing})
-            count = min(options.processes or cores_here(), len(missing))
-            with cluster(options.scheduler) if options.scheduler else processes(count, marks.stop) as workers:
+            with _workers(options, len(missing), marks.stop) as workers:
                 work = _Work(members, missing, options, folder, marks, report)
                 found |= work.done_by(workers)
     return [found[member.key] for member in members]
+
+
+def _workers(options: Options, most: int, stop: Path) -> AbstractContextManager[Workers]:
+    """The workers for a number of members; stop : as of `Processes`."""
+    if options.scheduler:
+        return cluster(options.scheduler)
+    if options.processes == 0:
+        return nullcontext(Here())
+    return processes(min(options.processes or cores_here(), most), stop)
 
 
 @contextmanager
@@ -191,7 +202,7 @@ class _Work:
             workers.kill()
             raise
         if not workers.are_elsewhere:  # else members that still have to see it may be under way
-            for mark in self._marks:
+            for mark in (self._marks.stop, *self._folder.glob(f"{self._marks.begun.name}*")):
                 mark.unlink(missing_ok=True)
 
     @property

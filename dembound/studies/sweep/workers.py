@@ -1,4 +1,4 @@
-"""Workers that perform the members of a sweep: processes of this machine, or an existing Dask cluster."""
+"""Workers that perform the members of a sweep: processes of this machine, this one, or an existing Dask cluster."""
 
 from __future__ import annotations
 
@@ -163,6 +163,28 @@ def _end_with_parent(stop: Path) -> None:
         stop.touch()
     with ALONE:  # the member under way has written its checkpoint
         os._exit(1)
+
+
+class Here(Workers):
+    """The present process, which performs one task at a time: for scripts that others cannot be begun from."""
+
+    lost = ()
+    tries = 1
+
+    def has_room(self, under_way: int) -> bool:
+        """Whether none is under way."""
+        return under_way == 0
+
+    def submit(self, task: Task) -> Performing:
+        """Perform a task; raises KeyboardInterrupt if it was asked to stop."""
+        performed: Performing = Future()
+        if (outcome := perform(task)) is None:
+            raise KeyboardInterrupt
+        performed.set_result(outcome)
+        return performed
+
+    def kill(self) -> None:
+        """Nothing runs."""
 
 
 class Cluster(Workers):

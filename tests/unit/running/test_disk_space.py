@@ -25,6 +25,7 @@ def written(folder) -> dict[str, float]:
     [
         ({}, {}),
         (LAW, {"stress": True, "contacts": True, "peaks": True}),
+        (LAW, {"paraview": "none"}),
         (LAW | STATIC, {"stress": True, "paraview": "vtkhdf"}),
     ],
 )

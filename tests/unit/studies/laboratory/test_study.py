@@ -1,0 +1,92 @@
+"""A laboratory test from Python: what it returns, and a test that is stopped and continued."""
+
+import json
+from pathlib import Path
+
+import pytest
+from recorded import contents
+from small_cases import PUSHED, small
+
+import dembound
+from dembound.errors import CaseError, RunError
+from dembound.studies.sweep import perform
+
+STRENGTH = 5e5
+LATTICE = {name: table for name, table in PUSHED.items() if name != "monitor"} | {
+    "packing": {"pattern": "A", "size": [4.0, 8.0], "radius": 0.25},
+    "material": {"density": 2500.0, "law": "linearpbond", "emod": 0.0, "pb_emod": 2e9, "pb_ten": STRENGTH},
+}
+"""Square cells that are pulled until one row of bonds tears."""
+
+
+def test_a_stopped_test_is_continued_to_the_same_bits(tmp_path, monkeypatch) -> None:
+    case, seen = small(LATTICE, "rock"), []
+    whole = dembound.laboratory_test(case, "tension", tmp_path / "whole", seeds=1)
+
+    def stop_midway(self, run, steps) -> None:
+        report(self, run, steps)
+        if run.time > 0.3 * whole.curves["seed=0"].time[-1]:
+            seen.extend(perform.times_in(self._path.parent).values())
+            self._path.with_name(self._path.name.replace("begun", "stop")).touch()
+
+    report = perform.Begun.running
+    with monkeypatch.context() as patch:
+        patch.setattr(perform.Begun, "running", stop_midway)
+        with pytest.raises(KeyboardInterrupt, match="rock: stopped; the same call continues what is left"):
+            dembound.laboratory_test(case, "tension", tmp_path, seeds=1)
+    partial = tmp_path / "rock_tension/members/seed=0.partial"
+    assert (partial / "checkpoint.npz").is_file()
+    again = dembound.laboratory_test(case, "tension", tmp_path, seeds=1)
+
+    records = [found.record(found.done[0]) for found in (again, whole)]
+    assert contents(records[0]) == contents(records[1])
+    assert (again.folder / "test.csv").read_bytes() == (whole.folder / "test.csv").read_bytes()
+    assert len(json.loads(records[0].with_name("summary.json").read_text())["resumed"]) == 1
+    assert 0.0 < min(seen) <= whole.curves["seed=0"].time[-1]
+    # its time and its checkpoint are of a run under way
+    assert not perform.times_in(again.folder)
+    assert {path.name for path in records[0].parent.iterdir()} == {"run.h5", "summary.json", "paraview"}
+
+    strength = whole.statistic("strength")
+    assert (strength.count, strength.mean) == (1, pytest.approx(STRENGTH, rel=0.01))
+    assert whole.curves["seed=0"].strength == strength.mean
+    with pytest.raises(CaseError, match='quantity: is "strenght", must be one of strength'):
+        whole.statistic("strenght")
+
+
+def test_only_the_first_seed_has_a_file_for_paraview_and_failures_are_raised(tmp_path, monkeypatch) -> None:
+    packing = {"pattern": "B", "size": [6.0, 6.0], "brick": [6.0, 6.0], "radius": 0.25, "radius_ratio": 1.5}
+    case = small(LATTICE, "rock", {"packing": packing, "material.emod": 1e9})
+    tasks = []
+
+    def failed(task):
+        tasks.append(task)
+        return perform.Outcome(task.name, failure="no memory")
+
+    monkeypatch.setattr("dembound.studies.sweep.workers.perform", failed)
+    with pytest.raises(RunError, match="seed=0: no memory"):
+        dembound.laboratory_test(case, "ucs", tmp_path, seeds=3)
+
+    assert ['paraview = "vtkhdf"' in task.text for task in tasks] == [True, False, False]
+    assert all('paraview = "none"' in task.text for task in tasks[1:])
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"test": "ucx"}, "test: is ucx, must be one of ucs, tension, brazilian, biaxial"),
+        ({"ends": "rough"}, "--ends: is rough, must be one of smooth, grips"),
+        ({"seeds": 0}, "--seeds: is 0, must be 1 or more"),
+        (
+            {"test": "biaxial", "pressures": [1e6, -1.0]},
+            "--pressures: is 1e.06,-1, must be different",
+        ),
+        ({"shares": [0.5]}, "--shares: is 0.5, must be two shares of the peak"),
+        ({"rate": 0.0}, "--rate: is 0, must be more than 0"),
+        ({"damp": 1.0}, "material.damp: is 1"),
+    ],
+)
+def test_what_a_test_cannot_be_made_of(words, message) -> None:
+    with pytest.raises(CaseError, match=message):
+        dembound.laboratory_test(small(LATTICE, "rock"), **{"test": "ucs", "seeds": 1} | words)
+    assert not Path("results").exists()
