@@ -40,7 +40,7 @@ SINGLE, SINGLE_FACTOR = 1.0, 3.0
 the strain along the surface.
 
 Measured 0.5 to 2.3, RMS over the disks of each of 9 packings (B, bricks of 10 and 20 diameters; SV and P waves at 20 to
-40°, 40 to 160 diameters long), 0.4 to 1.4 at a depth of 1.5 diameters; in layers 0.5 to 2.7. Of 144 disks 5 % are
+40°, 40 to 160 diameters long), 0.4 to 1.4 at a depth of 1.5 diameters; in layers up to 3.1. Of 144 disks 5 % are
 beyond three times the size.
 """
 

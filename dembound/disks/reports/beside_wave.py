@@ -40,6 +40,9 @@ WORK = 2e7
 SAFETY = 0.9
 """Time step over the largest stable one."""
 
+REACHED = 1e-3
+"""Motion of a place over the incoming wave's, both RMS, from which on the wave has reached it."""
+
 ALONG, BESIDE = [2, 1], [0, 3]
 """The gradients of both components along the wave, and those whose stresses act on planes along it; see GRADIENTS."""
 
@@ -322,7 +325,7 @@ def _takes(scene: DiskScene, side: str) -> bool:
 
 
 def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: Sequence[str]) -> dict[str, float]:
-    """The shares at the monitors, without monitors in the middle of the body; empty where nothing moves."""
+    """The shares at the monitors that the wave reaches, without monitors in the middle of the body."""
     case, grid = scene.case, Grid.of(scene, normal_axis(driven))
     left, bottom, right, top = case.packing.box
     places = {f"monitor {monitor.name}": np.array(scene.monitored[monitor.name]) for monitor in case.monitor}
@@ -341,7 +344,7 @@ def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: S
         low = min(int(height), int(grid.cells[1]) - 1)
         moved = ground.v[:, low] + (height - low) * (ground.v[:, low + 1] - ground.v[:, low])
         whole = np.sum(moved**2, axis=0)
-        if whole.any():
+        if whole.max() > REACHED**2 * np.sum(incoming**2):
             most = int(np.argmax(whole))
             found[name] = math.sqrt(float(np.sum(error[:, number, most] ** 2)) / float(whole[most]))
     return found
