@@ -42,6 +42,23 @@ def rewritten(text: str, requested: Mapping[str, Any]) -> str:
     return text
 
 
+def commented(text: str, key: str, comments: Sequence[str], mark: str) -> str:
+    """The text with lines of comments above the value at a dotted key, without those there that begin with a mark.
+
+    Raises CaseError for a text that is not TOML, KeyError for a key that is not there.
+    """
+    page = _Page(text)
+    statement = page.value_at(tuple(key.split(".")))
+    if statement is None:
+        raise KeyError(key)
+    line = page.lines[statement.begin]
+    indent, begin = line[: len(line) - len(line.lstrip())], statement.begin
+    while begin > 0 and page.lines[begin - 1].lstrip().startswith(mark):
+        begin -= 1
+    page.lines[begin : statement.begin] = [f"{indent}{comment}{page.ending}" for comment in comments]
+    return "".join(page.lines)
+
+
 def _same(one: Any, other: Any) -> bool:
     """Whether values are equal and of the same types; the order of keys is free."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):

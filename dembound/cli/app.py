@@ -136,6 +136,9 @@ Vary = Annotated[
         "combinations are run.",
     ),
 ]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
+]
 Name = Annotated[str | None, typer.Option(help="Name of the results folder; by default the case file's.")]
 
 
@@ -155,6 +158,12 @@ def _version(
     if version:
         out.print(f"dembound {__version__}")
         raise typer.Exit
+
+
+def require_one_place(scheduler: str | None, processes: int | None) -> None:
+    """Raise CaseError if both a cluster and a number of processes are given."""
+    if scheduler and processes:
+        raise CaseError(["--processes: is for this machine, not allowed together with --scheduler"])
 
 
 def load_case(path: Path, changes: list[str] | None, name: str | None = None) -> Case:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +10,8 @@ import typer
 
 from dembound.cli.app import Name, Output, Settings, app, load_disks
 from dembound.cli.console import err, out, print_rows
+from dembound.cli.loading_options import LoadingOptions
+from dembound.cli.option_tables import with_tables
 from dembound.cli.sweep import FAILED, print_warnings, shown
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
@@ -40,41 +41,24 @@ PRINTED = {
 """Quantities that are printed, and their names there; all others are in the files."""
 
 
-class EndsKind(StrEnum):
-    """How platens hold the ends."""
-
-    smooth = "smooth"
-    grips = "grips"
-
-
 @app.command("test")
+@with_tables
 def laboratory(
     kind: Annotated[str, typer.Argument(metavar="TEST", help="ucs, tension, brazilian or biaxial.")],
     case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
+    *,
     seeds: Annotated[int, typer.Option(min=1, help="Samples, whose packings have seeds packing.seed and above.")] = 4,
-    width: Annotated[
-        float | None, typer.Option(min=0.0, help="Width of the sample (m); by default the case's.")
-    ] = None,
-    height: Annotated[float | None, typer.Option(min=0.0, help="Height (m); twice a given width by default.")] = None,
-    ends: Annotated[EndsKind, typer.Option(help="Platens hold the normal motion only, or all.")] = EndsKind.smooth,
-    damp: Annotated[float, typer.Option(min=0.0, help="Local damping; strengths depend on it.")] = 0.7,
-    rate: Annotated[float | None, typer.Option(min=0.0, help="Strain rate (1/s); by default quasi-static.")] = None,
     pressures: Annotated[
         str | None, typer.Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")
     ] = None,
     shares: Annotated[
         str, typer.Option(metavar="LOW,HIGH", help="Shares of the peak between which E is taken.")
     ] = "0.1,0.5",
-    processes: Annotated[
-        int | None, typer.Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
-    ] = None,
     anew: Annotated[bool, typer.Option("--anew", help="Also repeat samples that are done.")] = False,
     output: Output = Path("results"),
     changes: Settings = None,
     name: Name = None,
+    loading: LoadingOptions,
 ) -> None:
     """Test samples of a material: E, ν, first crack, strength.
 
@@ -84,16 +68,14 @@ def laboratory(
 
     Complete samples are not repeated: the same command continues a test, and more seeds add samples to it.
     """
-    from dembound.studies.laboratory.sample import ignored, sample_of
+    from dembound.studies.laboratory.sample import ignored
     from dembound.studies.laboratory.study import perform, specimens_of
     from dembound.studies.laboratory.tables import ratios_of
-    from dembound.studies.sweep.study import Options
 
-    if scheduler and processes:
-        raise CaseError(["--processes: is for this machine, not allowed together with --scheduler"])
+    options = loading.options(anew=anew)
     between, sides = _numbers("--shares", shares), _numbers("--pressures", pressures) if pressures else None
     loaded = load_disks(case, changes, name)
-    sample = sample_of(loaded, kind, width, height, ends=ends.value, damp=damp, rate=rate)
+    sample = loading.sample(loaded, kind)
     if unused := ignored(loaded):
         err.print(f"{loaded.name}: only [packing] and [material] count; not used: {', '.join(unused)}")
     specimens = specimens_of(sample, seeds, sides)
@@ -101,7 +83,6 @@ def laboratory(
     folder = output / f"{loaded.name}_{kind}"
     try:
         with shown(loaded.name, "samples", lambda standing: _under_way(sample, folder, standing)) as report:
-            options = Options(processes=processes, scheduler=scheduler, anew=anew)
             found = perform(sample, specimens, options, folder, report, between)
     except KeyboardInterrupt as stop:
         err.print(f"{loaded.name}: stopped; the same command continues what is left")

@@ -11,21 +11,30 @@ import typer
 from dembound.cli.app import MORE, Output, Settings, app, load_disks
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import out, print_rows
+from dembound.cli.loading_options import LoadingOptions
+from dembound.cli.option_tables import with_tables
+from dembound.errors import CaseError
+
+SEEDS = 8
+"""Samples of each test, by default."""
 
 
 @app.command("material", rich_help_panel=MORE)
+@with_tables
 def material(
     case: OneCase,
+    *,
     ucs: Annotated[
         float | None, typer.Option(min=0.0, help="Uniaxial compressive strength (Pa) to give samples of the material.")
     ] = None,
     tension: Annotated[
         float | None, typer.Option(min=0.0, help="Tensile strength (Pa) to give them, by direct tension.")
     ] = None,
-    seeds: Annotated[int, typer.Option(min=1, help="Samples of each test, for --ucs and --tension.")] = 8,
+    seeds: Annotated[int, typer.Option(min=1, help="Samples of each test, for --ucs and --tension.")] = SEEDS,
     output: Output = Path("results"),
     changes: Settings = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI units, for scripts.")] = False,
+    loading: LoadingOptions,
 ) -> None:
     """Print what contacts and bonds make of the body, without a run.
 
@@ -36,8 +45,12 @@ def material(
     if targets := {name: value for name, value in (("ucs", ucs), ("tension", tension)) if value}:
         from dembound.cli.strengths import match_strengths
 
-        match_strengths(case, load_disks(case, changes), targets, changes, seeds, output)
+        if as_json:
+            raise CaseError(["--json: is for the tables without a run, not allowed with --ucs or --tension"])
+        match_strengths(case, load_disks(case, changes), targets, changes, seeds, output, loading)
         return
+    if given := [*(["--seeds"] if seeds != SEEDS else []), *loading.given]:
+        raise CaseError([f"{', '.join(given)}: for tests of samples, give --ucs or --tension"])
     from dembound.disks.reports.micro_macro import describe_materials, material_rows, packing_line
     from dembound.disks.scene import build
 

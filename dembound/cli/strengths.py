@@ -8,20 +8,31 @@ from typing import TYPE_CHECKING, cast
 
 import typer
 
-from dembound.cli.app import settings_of
+from dembound.cli.app import text_for
 from dembound.cli.console import err, out
-from dembound.cli.sweep import shown
+from dembound.cli.sweep import FAILED, shown
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
+from dembound.words import percent
 
 if TYPE_CHECKING:
     from dembound.casefile.disks import DiskCase
+    from dembound.cli.loading_options import LoadingOptions
     from dembound.results.loading_curve import TestName
     from dembound.studies.laboratory.sample import Sample
 
+FOUND = "# found by dembound material:"
+"""Begin of the comments above the strengths that are written."""
+
 
 def match_strengths(
-    path: Path, case: DiskCase, targets: Mapping[str, float], settings: list[str] | None, seeds: int, output: Path
+    path: Path,
+    case: DiskCase,
+    targets: Mapping[str, float],
+    settings: list[str] | None,
+    seeds: int,
+    output: Path,
+    loading: LoadingOptions,
 ) -> None:
     """Find pb_ten and pb_coh with which samples of a case have strengths (Pa) by test, and write the case with them.
 
@@ -29,18 +40,19 @@ def match_strengths(
 
     Raises CaseError for a ratio that parallel bonds do not reach, and if the file to write exists.
     """
-    from dembound.casefile.edit import edited
+    from dembound.casefile.edit import commented, edited
     from dembound.results.replacing import replacing
-    from dembound.studies.laboratory.sample import LAW, sample_of
     from dembound.studies.laboratory.strengths import (
-        MOST_RATIO,
-        MOST_SCATTERED,
-        changes_of,
+        CLOSE,
+        Search,
+        excess_in_words,
         in_words,
+        keys_of,
         measure_in,
-        trials,
+        spread_of,
+        strength_in_words,
+        with_bonds,
     )
-    from dembound.studies.sweep.study import Options
 
     wanted = cast("dict[TestName, float]", dict(targets))
     target = Path(f"{case.name}_strengths.toml")
@@ -48,25 +60,32 @@ def match_strengths(
         raise CaseError([f"{target}: exists already; rename or remove it"])
 
     def make(changed: DiskCase, test: TestName) -> Sample:
-        return sample_of(changed, test)
+        sample = loading.sample(changed, test)
+        err.print(f"{case.name}: {test}, {sample.in_words}")
+        return sample
 
-    material = case.material
-    ratio = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
-    most = MOST_SCATTERED if getattr(material, "pb_scatter", None) else MOST_RATIO
+    material, options = case.material, loading.options()
+    cohesion = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
+    search, done = Search(wanted, cohesion, spread_of(material.pb_scatter)), []
     try:
         with shown(case.name) as report:
-            measure = measure_in(make, case, seeds, Options(), output / f"{case.name}_strengths", report)
-            for trial in trials(wanted, ratio, measure, most):
+            measure = measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
+            for trial in search.trials(measure):
+                done.append(trial)
                 for line in in_words(trial, wanted):
                     out.print(f"{case.name}: {line}")
     except KeyboardInterrupt as stop:
         err.print(f"{case.name}: stopped; the same command continues what is left")
         raise typer.Exit(exit_code_of(stop)) from None
-    changes = changes_of(trial, wanted)
-    for key, value in changes.items():
-        out.print(f"{case.name}: {key} = {value:g}")
-    text = path.read_bytes().decode("utf-8-sig")
-    law = {} if material.law == "linearpbond" else {"material.law": LAW}
+    best = search.best(done)
+    keys = keys_of(case, best.pb_ten, best.pb_coh)
+    tested = with_bonds(case, best.pb_ten, best.pb_coh)
+    said = [f"{FOUND} {strength_in_words(test, best)}; {loading.sample(tested, test).in_words}" for test in wanted]
+    text = edited(text_for(target, path, case, settings), keys)
     with replacing(target) as part:
-        part.write_bytes(edited(text, settings_of(settings) | law | changes).encode())
+        part.write_bytes(commented(text, "material.pb_ten", said, FOUND).encode())
     out.print(f"wrote {target}")
+    if best.deviation(wanted) > CLOSE:
+        missed = ", ".join(f"{test} is {excess_in_words(test, best, wanted)}" for test in wanted)
+        err.print(f"{case.name}: no trial of {len(done)} is within {percent(CLOSE)}; written is the best one: {missed}")
+        raise typer.Exit(FAILED)

@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, load_case
+from dembound.cli.app import (
+    Name,
+    Output,
+    PictureTitle,
+    Scheduler,
+    Settings,
+    Vary,
+    app,
+    load_case,
+    require_one_place,
+)
 from dembound.cli.calibration import CalibrationMethod
 from dembound.cli.console import INTERVAL, err, out, print_rows
 from dembound.errors import CaseError
@@ -64,9 +74,7 @@ def sweep(
     processes: Annotated[
         int | None, typer.Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
     ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
-    ] = None,
+    scheduler: Scheduler = None,
     anew: Annotated[bool, typer.Option("--anew", help="Also repeat members that are done.")] = False,
     quantity: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Column of sweep.csv to draw. May be repeated.")
@@ -87,8 +95,7 @@ def sweep(
     from dembound.studies.sweep.study import Options
     from dembound.studies.sweep.study import sweep as sweep_all
 
-    if scheduler and processes:
-        raise CaseError(["--processes: is for this machine, not allowed together with --scheduler"])
+    require_one_place(scheduler, processes)
     loaded = load_case(case, changes, name)
     table = loaded.sweep
     options = Options(

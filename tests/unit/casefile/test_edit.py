@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dembound import shipped, starting
-from dembound.casefile.edit import edited, rewritten
+from dembound.casefile.edit import commented, edited, rewritten
 from dembound.casefile.statements import Place, lines_of, statements_of
 
 SHIPPED = [(shipped.folder() / f"{name}.toml").read_text(encoding="utf-8") for name in shipped.names()]
@@ -177,6 +177,17 @@ duration = 2.0
 silent = true
 """
     )
+
+
+def test_comments_above_a_key_replace_their_kind() -> None:
+    text = "[a]\n  # mine\n  # found: 1\n  x = 1  # kept\n[b]\nc = {d = 1}"
+    once = commented(text, "a.x", ["# found: 2", "# found: 3"], "# found:")
+
+    assert once == text.replace("  # found: 1\n", "  # found: 2\n  # found: 3\n")
+    assert commented(once, "a.x", ["# found: 1"], "# found:") == text
+    assert commented("[b]\r\nc = {d = 1}", "b.c.d", ["# e"], "# e") == "[b]\r\n# e\r\nc = {d = 1}"
+    with pytest.raises(KeyError):
+        commented(text, "a.z", [], "#")
 
 
 def test_line_ends_and_a_missing_last_one_remain() -> None:

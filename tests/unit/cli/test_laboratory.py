@@ -3,6 +3,7 @@
 import csv
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from small_cases import PUSHED, small
@@ -87,17 +88,56 @@ def test_options_that_have_no_effect_or_no_meaning(dembound) -> None:
 def test_strengths_asked_for_are_written_with_the_comments_of_the_case(dembound, monkeypatch) -> None:
     text = "# my rock\n" + small(LATTICE).text.replace("pb_ten = 500000.0", "pb_ten = 5e5  # to be found")
     Path("rock.toml").write_text(text, encoding="utf-8")
+    tested, states = [], ["too few disks"]
 
-    def measured(*arguments):  # tension is 0.45 of pb_ten, compression 4 times as much
-        return lambda test, pb_ten, pb_coh: statistic({}, "strength", [pb_ten * {"tension": 0.45, "ucs": 1.8}[test]])
+    def performed(sample, specimens, options, folder, report):  # tension is 0.3 of pb_ten, compression 4 times as much
+        strength = sample.case.material.pb_ten * {"tension": 0.3, "ucs": 1.2}[sample.test]
+        tested.append(folder)
+        return SimpleNamespace(states=states, curves={}, statistics=[statistic({}, "strength", [strength])])
 
-    monkeypatch.setattr(strengths, "measure_in", measured)
-    found = dembound("material", "rock.toml", "--ucs", "80e6", "--tension", "20e6", "--seeds", 1)
+    monkeypatch.setattr(strengths, "perform", performed)
+    command = ("material", "rock.toml", "--ucs", "80e6", "--tension", "20e6", "--seeds", 1, "--damp", 0.1)
+    assert "too few disks" in dembound(*command).err
+    states[:] = ["done"]
+    found = dembound(*command)
 
     assert found.code == 0
+    loading = "4 m × 8 m, 8 × 16 diameters; smooth ends, damp 0.1, strain rate"
+    assert f"rock: ucs, {loading}" in found.err
+    assert f"rock: tension, {loading}" in found.err
     assert "ucs 80 MPa over 1 seeds" in found.out
     written = Path("rock_strengths.toml").read_text(encoding="utf-8")
     assert written.startswith("# my rock\n")
+    assert f"# found by dembound material: ucs 80 MPa over 1 seeds; {loading}" in written
     assert "  # to be found" in written
-    assert loads(written).material.pb_ten == pytest.approx(20e6 / 0.45, rel=1e-3)
+    material = loads(written).material
+    assert material.pb_ten == pytest.approx(20e6 / 0.3, rel=1e-3)
+    assert tested[-1].name == f"tension_{material.pb_ten:.4g}_{material.pb_coh:.4g}"  # what is written was tested
     assert "exists already" in dembound("material", "rock.toml", "--ucs", "80e6").err
+
+
+def test_strengths_that_are_missed_are_said(dembound, monkeypatch) -> None:
+    Path("rock.toml").write_text(small(LATTICE).text, encoding="utf-8")
+    answers = iter([2e6, 0.9e6, 1.05e6, 0.93e6])
+    monkeypatch.setattr(
+        strengths, "measure_in", lambda *arguments: lambda *bonds: statistic({}, "strength", [next(answers)])
+    )
+
+    found = dembound("material", "rock.toml", "--tension", "1e6", "--seeds", 1)
+
+    assert found.code == 3
+    assert "no trial of 4 is within 3 %; written is the best one: tension is 5 % above the 1 MPa asked for" in found.err
+    assert Path("rock_strengths.toml").exists()
+
+
+def test_options_of_strengths_and_of_tables_do_not_mix(dembound) -> None:
+    Path("rock.toml").write_text(small(LATTICE).text, encoding="utf-8")
+
+    for options, message in (
+        (["--damp", "0", "--seeds", "2"], "--seeds, --damp: for tests of samples, give --ucs or --tension"),
+        (["--ucs", "1e6", "--json"], "--json: is for the tables without a run"),
+        (["--ucs", "1e6", "-p", "2", "--scheduler", "tcp://a:1"], "--processes: is for this machine"),
+    ):
+        answer = dembound("material", "rock.toml", *options)
+        assert answer.code == 2
+        assert message in answer.err
