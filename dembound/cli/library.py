@@ -64,8 +64,7 @@ def respond(
 ) -> None:
     """Write histories under records from a library, without a run.
 
-    They equal a direct run with the record as a file wave, to rounding (at an angle in layers to 5e-6 of the peak), and
-    are plotted and compared like a run.
+    They equal a direct run with a file wave (at an angle in layers within 5e-6); plot and compare take them as runs.
     """
     from dembound.results.folder import Folder
     from dembound.results.reader import understood
