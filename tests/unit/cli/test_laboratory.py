@@ -7,11 +7,14 @@ from pathlib import Path
 import pytest
 from small_cases import PUSHED, small
 
+from dembound.cli.laboratory import _under_way
 from dembound.kinds import loads
 from dembound.running import run_case
 from dembound.studies.laboratory import strengths, study
+from dembound.studies.laboratory.sample import RISE, sample_of
 from dembound.studies.sweep.perform import MEMBERS, Outcome
 from dembound.studies.sweep.statistics import statistic
+from dembound.studies.sweep.study import Standing
 
 STRENGTH, MODULUS = 5e5, 2e9
 BONDS = {"emod": 0.0, "pb_emod": MODULUS, "pb_ten": STRENGTH, "pb_coh": 2.0 * STRENGTH}
@@ -101,3 +104,12 @@ def test_strengths_asked_for_are_written_with_the_comments_of_the_case(dembound,
     assert "  # to be found" in written
     assert loads(written).material.pb_ten == pytest.approx(20e6 / 0.45, rel=1e-3)
     assert "exists already" in dembound("material", "rock.toml", "--ucs", "80e6").err
+
+
+def test_strains_of_samples_under_way_are_shown(tmp_path) -> None:
+    sample = sample_of(small(LATTICE), "ucs", rate=2.0)
+    one, two = (0.5 * RISE * sample.travel_time + strain / 2.0 for strain in (0.001, 0.002))
+    for key, time in (("a", one), ("b", two), ("c", "")):
+        (tmp_path / f"begun-1f-{key}").write_text(str(time), encoding="utf-8")  # the last one is being written
+    assert _under_way(sample, tmp_path, Standing(8, 1, 0, 3, 0)) == " (strain 0.1 %, 0.2 %; 1 preparing)"
+    assert _under_way(sample, tmp_path / "none", Standing(8, 1, 0, 2, 0)) == " (2 preparing)"
