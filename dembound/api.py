@@ -36,7 +36,6 @@ from dembound.studies.laboratory.sample import Ends, sample_of
 from dembound.studies.laboratory.study import SHARES, Tested, perform, specimens_of
 from dembound.studies.laboratory.tables import ratios_of, write_tables
 from dembound.studies.sweep.study import Options, Report
-from dembound.studies.sweep.tables import distinct
 from dembound.table import Table, as_toml
 
 __all__ = [
@@ -271,7 +270,7 @@ def laboratory_test(
     if len(failed) == len(specimens):
         raise RunError(failed[0])
     write_tables(found, list(ratios_of(found, Path(results))))
-    for line in (*failed, *distinct(found.outcomes), *found.warnings):
+    for line in (*failed, *found.warnings_of_runs, *found.warnings):
         _warn(f"{case.name}: {line}")
     return found
 

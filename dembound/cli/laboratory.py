@@ -15,7 +15,7 @@ from dembound.cli.option_tables import with_tables
 from dembound.cli.sweep import FAILED, print_warnings, shown
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
-from dembound.words import in_one_unit, with_unit
+from dembound.words import in_one_unit, percent, with_unit
 
 if TYPE_CHECKING:
     from dembound.studies.laboratory.sample import Sample
@@ -107,7 +107,7 @@ def _under_way(sample: Sample, folder: Path, standing: Standing) -> str:
     """The strains between platens that the samples under way have come to; others are packed, compiled or at rest."""
     from dembound.studies.sweep.perform import times_in
 
-    strains = [f"{100.0 * sample.strain_at(time):.2g} %" for time in times_in(folder).values()]
+    strains = [percent(sample.strain_at(time)) for time in sorted(times_in(folder).values())]
     preparing = standing.under_way - len(strains)
     words = [f"strain {', '.join(strains)}"] if strains else []
     words += [f"{preparing} preparing"] if preparing > 0 else []
@@ -116,15 +116,13 @@ def _under_way(sample: Sample, folder: Path, standing: Standing) -> str:
 
 def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
     """Print failures, warnings, means and ratios; returns whether a run has failed."""
-    from dembound.studies.sweep.tables import distinct
-
     name = tested.sample.case.name
     failed = [
         (s.member.name, state) for s, state in zip(tested.specimens, tested.states, strict=True) if state != "done"
     ]
     for member, state in failed:
         err.print(f"{name}: {member}: failed, {state}")
-    print_warnings(name, distinct(tested.outcomes), len(tested.specimens), "samples")
+    print_warnings(name, tested.warnings_of_runs, len(tested.specimens), "samples")
     for line in tested.warnings:
         err.print(f"{name}: warning: {line}")
     found = [each for each in tested.statistics if each.quantity in PRINTED]

@@ -68,7 +68,7 @@ def match_strengths(
     cohesion = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
     search, done = Search(wanted, cohesion, spread_of(material.pb_scatter)), []
     try:
-        with shown(case.name) as report:
+        with shown(case.name, "samples") as report:
             measure = measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
             for trial in search.trials(measure):
                 done.append(trial)

@@ -41,6 +41,7 @@ class LoadingCurve:
     gauge_time : (g,) s. axial, lateral : (g,) mean strains of the middle of the sample, axial positive in the sense of
     the test, lateral positive if it widens in compression, or narrows in tension.
     crack_time : (c,) s, ascending, in the run. crack_shear : (c,) whether the bond broke in shear.
+    before : bonds that broke before the run, under the pressure alone.
     """
 
     kind: TestName
@@ -53,6 +54,7 @@ class LoadingCurve:
     lateral: np.ndarray
     crack_time: np.ndarray
     crack_shear: np.ndarray
+    before: int = 0
 
     @cached_property
     def at_peak(self) -> int:
@@ -131,6 +133,7 @@ def read_test(record: Path, kind: TestName, width: float, pressure: float = 0.0)
             lateral=lateral,
             crack_time=cracks["time"][:][during],
             crack_shear=cracks["shear"][:][during].astype(bool),
+            before=int(np.count_nonzero(~during)),
         )
 
 

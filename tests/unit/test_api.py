@@ -216,9 +216,10 @@ def test_the_documented_examples_run(tmp_path, monkeypatch, capsys) -> None:
     assert said[2:4] == ["0.1 m/s in, 0.100 m/s at 80 m", "1 m/s in, 1.000 m/s at 80 m"]
     assert said[4].startswith("β_P = ")
     # the lattice delays a wave of 160 disks by (2π/160)²/24 of its way, a wavelength: the crest keeps its 1 m/s to 1 %
-    assert said[5].endswith(" m/s at 80 m under one period of a sine")
-    assert float(said[5].split()[0]) == pytest.approx(1.0, abs=0.01)
-    assert [line.split(":")[0] for line in said[6:]] == ["run.duration", "boundary.right.beta_p"]
+    assert said[5] == "E 2.00 GPa, strength 0.50 MPa"
+    assert said[6].endswith(" m/s at 80 m under one period of a sine")
+    assert float(said[6].split()[0]) == pytest.approx(1.0, abs=0.01)
+    assert [line.split(":")[0] for line in said[7:]] == ["run.duration", "boundary.right.beta_p"]
 
 
 def test_the_package_lists_what_it_has() -> None:

@@ -60,6 +60,12 @@ AT_REST = 3e-4
 PEAK_SHARE = 0.6
 """Share of its peak to which the force falls before a test ends."""
 
+NARROW = 10.0
+"""Mean disks in the width of a random sample below which a few bonds decide on its strength."""
+
+LIKELY = (1e-5, 0.1)
+"""Strains at the peak of brittle materials; others are of a wrong unit of the strengths."""
+
 COUNTED = ("title", "packing", "material", "run")
 """Tables of a case that count for its sample, and one that every case must have."""
 
@@ -111,7 +117,8 @@ class Sample:
     @cached_property
     def elastic(self) -> tuple[float, float, float]:
         """Modulus E (Pa) along y and Poisson's ratio between free sides, and c_p along y (m/s), homogenised."""
-        tables = tomli_w.dumps({"packing": self.packing, "material": self.material, "run": {"duration": 1.0}})
+        material = {key: value for key, value in self.material.items() if key != "locked_in"}  # needs [static]
+        tables = tomli_w.dumps({"packing": self.packing, "material": material, "run": {"duration": 1.0}})
         case = loads(tables, self.case.folder, self.case.name)
         assert isinstance(case, DiskCase)
         ground = ground_of(case)
@@ -127,8 +134,7 @@ class Sample:
     @property
     def peak_strain(self) -> float:
         """A strain at which the peak is not yet reached, from the strength of the bonds."""
-        weakest = min(value for key in STRENGTH_KEYS if (value := getattr(self.case.material, key)) is not None)
-        return LOW[self.test] * weakest / self.elastic[0]
+        return LOW[self.test] * self._weakest / self.elastic[0]
 
     @property
     def rate(self) -> float:
@@ -147,6 +153,23 @@ class Sample:
     def duration(self) -> float:
         """Time (s) after which a test ends at the latest."""
         return HIGHEST * self.peak_strain / self.rate + RISE * self.travel_time
+
+    @property
+    def warnings(self) -> Iterator[str]:
+        """What makes its numbers doubtful before any test: few disks, strengths that do not go with the moduli."""
+        across = self.width / (2.0 * self.case.packing.radius)
+        if across < NARROW and self.case.packing.reseeded(1) is not None:
+            yield f"the sample is {across:.3g} diameters across, of which single bonds decide; take {NARROW:g} or more"
+        if not LIKELY[0] < self.peak_strain < LIKELY[1]:
+            yield (
+                f"material: pb_ten and pb_coh of {with_unit(self._weakest, 'Pa')} go with a strain of "
+                f"{self.peak_strain:.1g} at the peak, where rocks have 1e-4 to 1e-2; both are in Pa"
+            )
+
+    @property
+    def _weakest(self) -> float:
+        """The smaller strength of the bonds, Pa."""
+        return min(value for key in STRENGTH_KEYS if (value := getattr(self.case.material, key)) is not None)
 
     @property
     def in_words(self) -> str:
@@ -249,6 +272,8 @@ def sample_of(
             case.name,
         )
     across = packing.extent[0] if width is None else width
+    if test == "brazilian" and height is not None:
+        raise CaseError(["--height: is not of a brazilian test, whose sample is round; give --width"])
     up = height or (packing.extent[1] if width is None else 2.0 * across)
     if test == "brazilian":
         up = across

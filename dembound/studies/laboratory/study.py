@@ -20,9 +20,13 @@ from dembound.studies.sweep.members import Member, key_of
 from dembound.studies.sweep.perform import MEMBERS, Outcome
 from dembound.studies.sweep.statistics import Statistic, statistic
 from dembound.studies.sweep.study import Options, Report, sweep
+from dembound.studies.sweep.tables import distinct
 
 SHARES = (0.1, 0.5)
 """Shares of the peak between which moduli are the slopes of the curve."""
+
+MOST_NAMED = 3
+"""Largest number of samples that a warning names."""
 
 UNITS = {
     **dict.fromkeys(("strength", "first_crack", "young", "young_plane_strain", "cohesion", "uniaxial"), "Pa"),
@@ -70,6 +74,11 @@ class Tested:
     def record(self, specimen: Specimen) -> Path:
         """The record of a run."""
         return self.folder / MEMBERS / specimen.member.name / "run.h5"
+
+    @property
+    def warnings_of_runs(self) -> dict[str, int]:
+        """Distinct warnings of the runs and their numbers; those on the end of a run are in `warnings`, if any."""
+        return {line: count for line, count in distinct(self.outcomes).items() if not line.startswith("run.until:")}
 
     @cached_property
     def curves(self) -> dict[str, LoadingCurve]:
@@ -125,16 +134,23 @@ class Tested:
 
     @property
     def warnings(self) -> Iterator[str]:
-        """What makes its numbers doubtful: no peak, a rate at which inertia counts, no cracks."""
+        """What makes its numbers doubtful: see `Sample.warnings`; no peak or cracks, a rate at which inertia counts."""
+        yield from self.sample.warnings
         curves = list(self.curves.values())
         if without := [name for name, curve in self.curves.items() if not curve.has_peak]:
-            yield f"no peak in {', '.join(without[:3])}: the stress was still rising or level at the end"
+            intact = all(len(self.curves[name].crack_time) == 0 for name in without)
+            why = "no bond broke" if intact else "the stress was still rising or level at the end"
+            yield f"no peak in {_listed(without)}: {why}"
+        if early := [name for name, curve in self.curves.items() if curve.before]:
+            yield f"bonds broke under the pressure alone, before the test, in {_listed(early)}"
+        if self.sample.test == "biaxial" and curves and not self.envelopes:
+            yield "friction angle and cohesion need two or more pressures"
         fast = [(c.rate, limit) for c in curves if c.rate > (limit := self.sample.rate_limit(c.strain[c.at_peak]))]
         if fast:
             rate, limit = max(fast, key=lambda pair: pair[0] / pair[1])
             yield (
                 f"strain rate {rate:.3g} 1/s is above {limit:.3g} 1/s, ε_peak·c/(15 H), so inertia raises the peak "
-                f"({len(fast)} of {len(curves)} runs); give --rate"
+                f"({len(fast)} of {len(curves)} samples); give a lower --rate"
             )
 
 
@@ -211,6 +227,12 @@ def default_pressures(sample: Sample) -> list[float]:
         return [0.0]
     guess = sample.peak_strain * sample.elastic[0]
     return [0.0, *(float(f"{share * guess:.2g}") for share in (0.1, 0.25, 0.5))]
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The first few names, and how many more there are."""
+    more = len(names) - MOST_NAMED
+    return ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _group(sample: Sample, pressure: float) -> dict[str, float]:

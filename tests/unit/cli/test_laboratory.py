@@ -8,11 +8,14 @@ from types import SimpleNamespace
 import pytest
 from small_cases import PUSHED, small
 
+from dembound.cli.laboratory import _under_way
 from dembound.kinds import loads
 from dembound.running import run_case
 from dembound.studies.laboratory import strengths, study
+from dembound.studies.laboratory.sample import RISE, sample_of
 from dembound.studies.sweep.perform import MEMBERS, Outcome
 from dembound.studies.sweep.statistics import statistic
+from dembound.studies.sweep.study import Standing
 
 STRENGTH, MODULUS = 5e5, 2e9
 BONDS = {"emod": 0.0, "pb_emod": MODULUS, "pb_ten": STRENGTH, "pb_coh": 2.0 * STRENGTH}
@@ -141,3 +144,12 @@ def test_options_of_strengths_and_of_tables_do_not_mix(dembound) -> None:
         answer = dembound("material", "rock.toml", *options)
         assert answer.code == 2
         assert message in answer.err
+
+
+def test_strains_of_samples_under_way_are_shown(tmp_path) -> None:
+    sample = sample_of(small(LATTICE), "ucs", rate=2.0)
+    one, two = (0.5 * RISE * sample.travel_time + strain / 2.0 for strain in (0.001, 0.002))
+    for key, time in (("a", one), ("b", two), ("c", "")):
+        (tmp_path / f"begun-1f-{key}").write_text(str(time), encoding="utf-8")  # the last one is being written
+    assert _under_way(sample, tmp_path, Standing(8, 1, 0, 3, 0)) == " (strain 0.1 %, 0.2 %; 1 preparing)"
+    assert _under_way(sample, tmp_path / "none", Standing(8, 1, 0, 2, 0)) == " (2 preparing)"

@@ -60,7 +60,23 @@ def test_lattices_have_whole_cells_and_one_sample() -> None:
         lattice.text(1)
 
 
+def test_a_packing_under_stress_comes_to_rest_first() -> None:
+    locked = RANDOM | {"material.locked_in": 1e6, "static.ratio": 1e-3}
+    assert sample(changes=locked).elastic == sample().elastic
+    assert loads(sample(changes=locked).text()).static is not None
+
+
+def test_doubts_before_any_test() -> None:
+    assert list(sample().warnings) == []
+    (few,) = sample(width=4.5).warnings
+    assert "9 diameters across" in few
+    (unit,) = sample(changes=RANDOM | {"material.pb_ten": 5e2}).warnings
+    assert "pb_ten and pb_coh of 500 Pa go with a strain of" in unit
+
+
 def test_refusals_name_what_to_give() -> None:
+    with pytest.raises(CaseError, match="--height: is not of a brazilian test"):
+        sample("brazilian", height=5.0)
     with pytest.raises(CaseError, match="has no strength"):
         sample(changes={})
     with pytest.raises(CaseError, match=r"--width: is missing.*40 diameters"):

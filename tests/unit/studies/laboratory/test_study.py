@@ -1,14 +1,19 @@
 """A laboratory test from Python: what it returns, and a test that is stopped and continued."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from recorded import contents
 from small_cases import PUSHED, small
 
 import dembound
 from dembound.errors import CaseError, RunError
+from dembound.results.loading_curve import LoadingCurve
+from dembound.studies.laboratory import study
 from dembound.studies.sweep import perform
 
 STRENGTH = 5e5
@@ -50,6 +55,7 @@ def test_a_stopped_test_is_continued_to_the_same_bits(tmp_path, monkeypatch) -> 
     strength = whole.statistic("strength")
     assert (strength.count, strength.mean) == (1, pytest.approx(STRENGTH, rel=0.01))
     assert whole.curves["seed=0"].strength == strength.mean
+    assert list(whole.warnings) == []
     with pytest.raises(CaseError, match='quantity: is "strenght", must be one of strength'):
         whole.statistic("strenght")
 
@@ -90,3 +96,24 @@ def test_what_a_test_cannot_be_made_of(words, message) -> None:
     with pytest.raises(CaseError, match=message):
         dembound.laboratory_test(small(LATTICE, "rock"), **{"test": "ucs", "seeds": 1} | words)
     assert not Path("results").exists()
+
+
+def test_what_makes_curves_doubtful() -> None:
+    time, strain = np.linspace(0.0, 1.0, 101), np.linspace(0.0, 0.01, 101)
+    rising = {"kind": "biaxial", "time": time, "pressure": 1e6, "strain": strain, "stress": 1e6 + 1e9 * strain}
+    middle = {"gauge_time": time, "axial": strain, "lateral": strain}
+    intact = LoadingCurve(**rising, **middle, crack_time=np.zeros(0), crack_shear=np.zeros(0))
+    past = replace(intact, stress=np.where(strain < 0.008, rising["stress"], 1e6), crack_time=time[40:41])
+
+    def warned(*curves: LoadingCurve, limit: float = 1.0) -> list[str]:
+        sample = SimpleNamespace(warnings=(), test="biaxial", rate_limit=lambda strain: limit)
+        named = {f"s{number}": curve for number, curve in enumerate(curves)}
+        return list(study.Tested.warnings.fget(SimpleNamespace(sample=sample, envelopes={0: None}, curves=named)))
+
+    assert warned(past) == []
+    assert warned(replace(past, before=3)) == ["bonds broke under the pressure alone, before the test, in s0"]
+    assert warned(*[intact] * 5) == ["no peak in s0, s1, s2 and 2 more: no bond broke"]
+    (level,) = warned(replace(intact, crack_time=time[:1]))
+    assert level == "no peak in s0: the stress was still rising or level at the end"
+    (fast,) = warned(past, limit=0.001)
+    assert fast.startswith("strain rate 0.01 1/s is above 0.001 1/s")
