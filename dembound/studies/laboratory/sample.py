@@ -251,7 +251,8 @@ def sample_of(
     A given width makes it twice as high; a Brazilian sample is round, of this width. Lengths of lattices are rounded to
     whole cells.
 
-    Raises CaseError for a material without strength, a case of too many disks without a width, and invalid numbers.
+    Raises CaseError for a material without strength or moduli of its own, a case of too many disks without a width, and
+    invalid numbers.
     """
     for option, word, words in (("test", test, get_args(TestName)), ("--ends", ends, get_args(Ends))):
         if word not in words:
@@ -262,6 +263,9 @@ def sample_of(
     packing = case.packing
     if all(getattr(case.material, key) is None for key in STRENGTH_KEYS):
         raise CaseError(["material: has no strength, so no bond breaks; give pb_ten and pb_coh"], case.name)
+    if lacking := [key for key in case.material.given() if key not in parsed(case.text).get("material", {})]:
+        given = " ".join(f"--set material.{key}={getattr(case.material, key):g}" for key in lacking)
+        raise CaseError([f"material: a sample has no layers; give what only layers have, such as {given}"], case.name)
     if width is None and packing.expected_disks > MOST_OWN:
         diameter = 2.0 * packing.radius
         raise CaseError(

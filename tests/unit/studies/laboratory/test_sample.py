@@ -47,6 +47,13 @@ def test_grips_hold_both_components_and_other_tables_do_not_count() -> None:
     assert ignored(case) == ["boundary", "wave"]
 
 
+def test_what_only_layers_have_is_missing_in_a_sample() -> None:
+    two = {"layer": [{"thickness": 2.0, "density": 1800.0}, {"density": 2300.0}], "material.density": None}
+    with pytest.raises(CaseError, match=r"a sample has no layers; give .* --set material\.density=2300"):
+        sample(changes=RANDOM | two)
+    assert sample(changes=RANDOM | two | {"material.density": 2000.0}).material["density"] == 2000.0
+
+
 def test_an_elastic_material_with_strengths_gets_a_law_that_breaks() -> None:
     elastic = RANDOM | {"material.law": "elastic", "output.load_factor": True}
     assert loads(sample(changes=elastic).text()).material.law == "linearpbond"
