@@ -111,7 +111,7 @@ SURROUNDED: Tables = {
     "packing": {"pattern": "A", "size": [12.0, 6.0], "radius": 0.5},
     "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
     "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
-    "outside": {"element": 3.0, "order": 3, "margin": 1, "layers": 2},
+    "outside": {"element": 3.0, "margin": 1, "layers": 2},
     "monitor": [{"name": "middle", "position": [6.5, 3.5]}],
     "run": {"duration": 0.01},
 }

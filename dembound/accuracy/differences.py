@@ -9,6 +9,7 @@ from typing import Any
 from dembound.casefile import Case
 from dembound.casefile.toml import parsed
 from dembound.errors import CaseError
+from dembound.table import every_key
 
 Path = tuple[str, ...]
 
@@ -69,8 +70,9 @@ def value_at(case: Case, key: str) -> Any:
 
     Raises CaseError for a key that no such case has.
     """
-    value: Any = case.keys
-    for name in key.split("."):
+    first, *others = key.split(".")
+    value = every_key(_inner(case.tables, first, key))
+    for name in others:
         value = _inner(value, name, key)
     return value
 

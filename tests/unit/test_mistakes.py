@@ -115,7 +115,7 @@ ANGLED = LATTICE | {
     "packing": {"pattern": "A", "size": [10.0, 10.0], "radius": 0.5},
     "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
     "incident": {"type": "sv", "angle": 20.0, "wave": "push"},
-    "outside": {"element": 5.0, "order": 3, "margin": 1, "layers": 2},
+    "outside": {"element": 5.0, "margin": 1, "layers": 2},
 }
 
 OTHERS = [

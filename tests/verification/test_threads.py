@@ -22,7 +22,7 @@ from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Layered, Medium
 from dembound.outside.mesh import Around, Mesh
 
-STEPS = 300
+STEPS = 150
 
 ROWS, FEW = (40.0, 10.0), (20.0, 10.0)
 """Sizes of scenes whose copies of a brick are stepped side by side, and disk by disk."""
@@ -47,7 +47,7 @@ SCENES = {
     },
     "damped by Q": {"size": ROWS, "boundary": ENDS, "material": {"quality_factor": 10.0}},
     "Rayleigh damping": {
-        "size": ROWS,
+        "size": FEW,
         "boundary": ENDS,
         "material": {"quality_factor": 10.0},
         "damping": {"type": "rayleigh"},

@@ -121,9 +121,9 @@ def test_the_continuum_is_known_before_the_scene_is_built(bar) -> None:
 
 
 def test_a_monitor_in_a_continuum_records_the_nodes_of_an_element() -> None:
-    """An element of order 3 has 16 nodes; beside a column there is also its disk, and each monitor has a twin."""
+    """An element of order 4 has 25 nodes; beside a column there is also its disk, and each monitor has a twin."""
     places = [{"name": "in", "position": [6.5, 3.5]}, {"name": "beyond", "position": [-1.0, 3.5]}]
     waves = {"boundary.bottom.wave_s": "pulse", "wave.pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}
-    for changes, probes in (({}, 17), (waves, 20)):
+    for changes, probes in (({}, 26), (waves, 29)):
         case = small(SURROUNDED, changes={"monitor": places, **changes})
         assert SceneSizes.expected(case).probes == build(case).sizes.probes == probes

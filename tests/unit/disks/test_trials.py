@@ -98,7 +98,7 @@ def test_a_continuum_has_noise_of_its_own_but_under_a_law_with_a_history() -> No
     """As the ledger of this law has the energies of all parts, noise is then put into the body."""
     linear = small(SURROUNDED, "surrounded")
     (trial,), words = trials(linear)
-    assert words[0] == "12 m × 6 m, 72 disks and 430 nodes of a continuum"
+    assert words[0] == "12 m × 6 m, 72 disks and 741 nodes of a continuum"
     assert list(trial.parts) == ["body", "continuum"]
     full = with_changes(linear, {"material.law": "linearpbond"})
     assert [list(each.parts) for each in trials(full)[0]] == [["body", "continuum"], ["body"]]
@@ -121,7 +121,7 @@ def test_the_column_beside_a_continuum_and_its_foot_are_kept(moves: dict[str, ob
     case = small(SURROUNDED, changes=moves)
     (trial,), words = trials(case)
 
-    assert words[0] == "12 m × 6 m, 78 disks and 460 nodes of a continuum, with the free-field column"
+    assert words[0] == "12 m × 6 m, 78 disks and 793 nodes of a continuum, with the free-field column"
     assert list(trial.parts) == ["column", "body", "continuum", "foot"]
     assert not trial.scene.steady_load.any()
     assert len(trial.scene.supports.drive) == 0

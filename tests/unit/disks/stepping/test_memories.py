@@ -16,7 +16,6 @@ from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
 STEPS, STEP = 40, 1e-4
-SOFT, STIFF = fitted(5.0, (1.0, 50.0), 10.0, 3), fitted(40.0, (1.0, 50.0), 10.0, 2)
 GRAINS = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 BODY = {"boundary": {"right": {"type": "viscous"}}, "wave": {}, "monitor": [], "motion.held": []}
 
@@ -57,7 +56,8 @@ def test_a_damped_body_moves_as_its_arithmetic_says(bar, monkeypatch, size: list
     """Two layers of unlike damping, one disk after the other, are as mixed as layers can be."""
     changes = {**BODY, "boundary": {}, "packing": GRAINS | {"size": size}, "material.quality_factor": 5.0}
     scene = build(bar(changes))
-    layers = [SOFT, STIFF, None] if mixed else [SOFT]
+    soft, stiff = fitted(5.0, (1.0, 50.0), 10.0, 3), fitted(40.0, (1.0, 50.0), 10.0, 2)
+    layers = [soft, stiff, None] if mixed else [soft]
     layer = np.random.default_rng(1).integers(0, len(layers), scene.count)
     monkeypatch.setattr(damped_ground, "layers_of", lambda scene, nodes: (layers, layer[nodes].astype(np.uint8)))
     simulation = Simulation(scene, STEP)
