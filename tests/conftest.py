@@ -65,6 +65,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Search for unused objects rarely, and not among modules and collected tests: else 8 % of the time of compiling."""
+    """Search for unused objects rarely, and not among modules and tests; it would be 8 % of the time of compiling."""
     gc.freeze()
     gc.set_threshold(50_000)

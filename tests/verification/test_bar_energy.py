@@ -35,7 +35,9 @@ BARS = {
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", BARS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in ("unbroken", "fixed end") else name for name in BARS]
+)
 def test_books_close(lab, rock, name, method):
     """An entry every eleven steps, while a pulse comes in, has been at both ends, and is back."""
     words = {"load": {"pressure": 15e6}, "wave": rock.triangle(0.12e-3)} | BARS[name]

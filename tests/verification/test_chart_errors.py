@@ -64,7 +64,7 @@ def test_the_finer_reference_of_a_bar_is_its_exact_solution(rod, tmp_path) -> No
     assert max(found[1::2]) < 1e-10
 
 
-@pytest.mark.parametrize("quantity", ["displacement", "stress"])
+@pytest.mark.parametrize("quantity", ["displacement", pytest.param("stress", marks=pytest.mark.slow)])
 def test_finite_differences_are_of_second_order(rod, tmp_path, quantity: str) -> None:
     # the leading error is Δx² times a constant; the next, of fourth order, is (2π/25)² = 6 % of it at the coarse one
     coarse, fine = errors_of(rod, {"bar.spacing": [0.01, 0.005], "run.courant": [0.5]}, tmp_path, quantity)

@@ -23,7 +23,9 @@ def restitution(ratio: float) -> float:
     return float(np.exp(-ratio / root * (np.pi - np.arctan2(2.0 * ratio * root, 1.0 - 2.0 * ratio**2))))
 
 
-@pytest.mark.parametrize(("ratio", "expected"), [(0.1, 0.744), (0.2, 0.572), (0.5, 0.298)])
+@pytest.mark.parametrize(
+    ("ratio", "expected"), [(0.1, 0.744), pytest.param(0.2, 0.572, marks=pytest.mark.slow), (0.5, 0.298)]
+)
 def test_two_disks_rebound_as_in_closed_form(lab, ratio, expected):
     """At the step of a run, some six in an impact, in the mean over places in the step at which contacts close."""
     assert restitution(ratio) == pytest.approx(expected, abs=5e-4)

@@ -63,7 +63,9 @@ def taken(part: BarPart) -> np.ndarray:
     return 0.5 * opening["whole"] * opening["limit"] * opening["apart"] * (1.0 - opening.left)
 
 
-@pytest.mark.parametrize(("name", "cells"), [(name, 10) for name in METHODS] + [("three", 41)])
+@pytest.mark.parametrize(
+    ("name", "cells"), [(name, 10) for name in METHODS] + [pytest.param("three", 41, marks=pytest.mark.slow)]
+)
 def test_one_crack(name, cells):
     """The plane takes G_fA to the rounding of coverage; all of the bar 2 % more at most.
 

@@ -23,7 +23,9 @@ def case(spacing: float, wave: dict, bar: dict, **tables) -> Case:
     return loads(tomli_w.dumps({"bar": whole, "method": method, "wave": {"w": wave}, "run": run} | tables))
 
 
-@pytest.mark.parametrize(("weaker", "side"), [("left", (0.0, 0.1)), ("right", (0.1, 0.2))])
+@pytest.mark.parametrize(
+    ("weaker", "side"), [("left", (0.0, 0.1)), pytest.param("right", (0.1, 0.2), marks=pytest.mark.slow)]
+)
 def test_the_weaker_range_breaks_and_takes_its_own_energy(weaker, side):
     """Pulled apart slowly. Up to 2 % more for the waves of the pulling end, 2ρc·0.05 m/s or 5 % of the strength.
 

@@ -64,7 +64,7 @@ def largest(motion, columns):
     return np.abs(motion[..., columns]).max()
 
 
-@pytest.mark.parametrize("amplitude", [WEAK, STRONG])
+@pytest.mark.parametrize("amplitude", [pytest.param(WEAK, marks=pytest.mark.slow), STRONG])
 def test_small_displacements_agree_to_rounding(lab, amplitude):
     case = sheared(lab, "reference", amplitude)
     full, expected, _ = run(lab, case, elastic=False)

@@ -39,7 +39,11 @@ HALF_SPACE: Tables = {
 }
 
 
-@pytest.mark.parametrize("side", [{"type": "viscous"}, SPRINGS], ids=["viscous", "viscoelastic"])
+@pytest.mark.parametrize(
+    "side",
+    [pytest.param({"type": "viscous"}, marks=pytest.mark.slow), SPRINGS],  # which have dashpots as well
+    ids=["viscous", "viscoelastic"],
+)
 def test_estimated_errors_are_the_true_ones(side: Tables) -> None:
     case = small(HALF_SPACE | {"boundary": {"left": {"type": "symmetry"}, "right": side, "bottom": side}})
     run = measure(case, Progress())[0]

@@ -64,7 +64,9 @@ def test_a_wrong_place_of_the_gauge_is_seen(tmp_path):
     assert "has --scale the wrong sign" in evaluate(replace(gauge, stress=-gauge.stress)).warnings[0]
 
 
-@pytest.mark.parametrize(("frequency", "level"), [(200.0, 0.02), (1200.0, 0.05), (3500.0, 0.02)])
+@pytest.mark.parametrize(
+    ("frequency", "level"), [pytest.param(200.0, 0.02, marks=pytest.mark.slow), (1200.0, 0.05), (3500.0, 0.02)]
+)
 def test_an_attenuation_is_never_wrong_without_a_warning(frequency, level, tmp_path):
     """Oscillations in the band of the pulse, of which peaks are taken for returns: c and α come from the same peaks."""
     record = Record("oscillation", (hum(level, frequency), noise(0.002)))

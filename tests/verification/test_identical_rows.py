@@ -63,7 +63,11 @@ def record_of(case, folder: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]
     return data, json.loads((done / "summary.json").read_text())
 
 
-@pytest.mark.parametrize("name", CASES)
+LATE = ("half cells along the bar", "springs", "damping")
+"""Cases with ``-m slow``: two rows of half cells, other dashpots and layers do as much with the bookkeeping of rows."""
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in LATE else n for n in CASES])
 def test_the_record_is_the_same(lab, tmp_path, name):
     words, rows = CASES[name]
     words = {"pattern": "A", "size": (20.0, 4.0)} | words

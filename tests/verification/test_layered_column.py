@@ -98,7 +98,8 @@ PACKINGS = {
 
 
 @pytest.mark.parametrize(
-    ("pattern", "quality"), [("A", None), pytest.param("B", None, marks=pytest.mark.slow), ("C", None), ("B", 10.0)]
+    ("pattern", "quality"),
+    [("A", None), *(pytest.param(each, None, marks=pytest.mark.slow) for each in "BC"), ("B", 10.0)],
 )
 def test_a_body_beside_free_fields_follows_its_column(pattern, quality) -> None:
     """Both have the same layers: nothing but rounding drives them apart. quality : Q of the upper layer."""

@@ -31,7 +31,7 @@ def ricker(times: np.ndarray) -> np.ndarray:
     return (1.0 - 2.0 * a) * np.exp(-a)
 
 
-@pytest.mark.parametrize(("component", "faster"), [(0, 1.0), (1, 2.0)])
+@pytest.mark.parametrize(("component", "faster"), [(0, 1.0), pytest.param(1, 2.0, marks=pytest.mark.slow)])
 def test_surface_over_a_wave_from_below(component: int, faster: float) -> None:
     """S and P. Forces 2ρcv on the top of the lowest layer send the wave v up and down; the latter is absorbed."""
     media = tuple(Medium.isotropic(rho, 2.0 * c, c) for rho, c in zip(DENSITIES, SPEEDS, strict=True))

@@ -48,7 +48,7 @@ def deviations(kind: str, frequency: float) -> tuple[float, float]:
     return off / peak, grid / peak
 
 
-@pytest.mark.parametrize("kind", ["sv", "p"])
+@pytest.mark.parametrize("kind", ["sv", pytest.param("p", marks=pytest.mark.slow)])
 def test_nothing_is_scattered_beyond_errors_of_second_order(kind: str) -> None:
     """At 40 D in the shortest wave, and 20 D."""
     fine, coarse = (max(deviations(kind, frequency)) for frequency in (2.0, 4.0))

@@ -84,7 +84,7 @@ def cases() -> list[Any]:
             small(tables),
             0.06 if name == "continuum" else 1e-9,
             id=name,
-            marks=[pytest.mark.slow] if name in ("springs", "strong", "random") else [],
+            marks=[pytest.mark.slow] if name in ("springs", "strong", "random", "hole") else [],
         )
         for name, tables in SCENES.items()
     ]

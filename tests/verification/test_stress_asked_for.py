@@ -45,7 +45,7 @@ def test_where_all_contacts_slide_they_slide_alike(lab):
     assert found.uniformity.deviation == found.uniformity.beyond < UNEVEN
 
 
-@pytest.mark.parametrize("fric", [0.3, 0.5])
+@pytest.mark.parametrize("fric", [0.3, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_nothing_moves_afterwards_nor_after_an_excavation(lab, fric):
     scene, found = settled(lab, "A", 20.0, fric, hole=[HOLE])
     assert found.before.uniformity.deviation < UNEVEN

@@ -73,8 +73,14 @@ def test_a_stress_is_there_from_the_start(lab, name: str, law: str) -> None:
     assert speed(lab, scene, found) < 1e-9
 
 
-@pytest.mark.parametrize("name", SIDES)
-@pytest.mark.parametrize("geometry", ["updated", "reference"])
+@pytest.mark.parametrize(
+    ("geometry", "name"),
+    [
+        *(("updated", name) for name in SIDES),
+        ("reference", "column"),
+        *(pytest.param("reference", name, marks=pytest.mark.slow) for name in ("continuum", "wrapped")),
+    ],
+)
 def test_contacts_that_slide_under_a_stress_begin_with_what_they_bear(lab, name: str, geometry: str) -> None:
     """Random disks, of whose contacts half slide: the stress is that of their endless packing, and nothing moves."""
     material = STRONG | {"fric": 0.3, "geometry": geometry}

@@ -40,7 +40,10 @@ def part(difference: np.ndarray, of: np.ndarray) -> np.ndarray:
 # docs/evidence/ground_boxes.md
 @pytest.mark.parametrize(
     ("pattern", "within", "wave"),
-    [("A", 6e-3, "wave_s"), ("B", 4.5e-2, "wave_p"), pytest.param("C", 3.5e-2, "wave_s", marks=pytest.mark.slow)],
+    [
+        ("A", 6e-3, "wave_s"),
+        *(pytest.param(*each, marks=pytest.mark.slow) for each in (("B", 4.5e-2, "wave_p"), ("C", 3.5e-2, "wave_s"))),
+    ],
 )
 def test_it_does(lab, pattern: str, within: float, wave: str) -> None:
     expected, free = motion(lab.window(pattern, WHOLE, wave=wave, hole=True))

@@ -53,7 +53,10 @@ def test_laplace_transform_is_the_solution_in_wave_numbers(solid: Solid, x: floa
     np.testing.assert_allclose(transform + rest, expected, rtol=0.0, atol=1e-5 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize(("solid", "x", "z"), [(SOLIDS[0], 7.0, 4.0), (SOLIDS[1], 0.0, 3.0), (SOLIDS[2], 12.0, 25.0)])
+@pytest.mark.parametrize(
+    ("solid", "x", "z"),
+    [pytest.param(SOLIDS[0], 7.0, 4.0, marks=pytest.mark.slow), (SOLIDS[1], 0.0, 3.0), (SOLIDS[2], 12.0, 25.0)],
+)
 def test_interior_obeys_newtons_law(solid: Solid, x: float, z: float) -> None:
     """It tends to the motion of the surface, by which both reflected waves are known."""
     h, step = 0.05, 0.25e-3

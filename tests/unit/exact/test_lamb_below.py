@@ -16,7 +16,9 @@ def decaying(t: np.ndarray) -> np.ndarray:
     return (t / 0.02) ** 3 * np.exp(-t / 0.02)
 
 
-@pytest.mark.parametrize(("ratio", "depth"), [(0.5, 0.25), (0.5, 8.0), (0.25, 3.0), (0.25, 20.0)])
+@pytest.mark.parametrize(
+    ("ratio", "depth"), [pytest.param(0.5, 0.25, marks=pytest.mark.slow), (0.5, 8.0), (0.25, 3.0), (0.25, 20.0)]
+)
 def test_laplace_transform_is_the_solution_in_wave_numbers(ratio: float, depth: float) -> None:
     """With a head wave, and at 20 m without; ratio : (c_s/c_p)²."""
     solid, rate = Solid(DENSITY, P_SPEED, P_SPEED * math.sqrt(ratio)), 20.0

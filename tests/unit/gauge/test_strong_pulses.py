@@ -85,17 +85,17 @@ SHORT = {**GIVEN, "spall": 1.0}
 @pytest.mark.parametrize(
     ("changes", "pulse", "given"),
     [
-        ((), triangle, GIVEN),
-        ((), bell, GIVEN),
+        pytest.param((), triangle, GIVEN, marks=pytest.mark.slow),
+        pytest.param((), bell, GIVEN, marks=pytest.mark.slow),
         ((), rectangle, SHORT),  # breaks where the pulse has just its full length: 120 µs · c/2 = 0.21 m
         ((), blast, NARROW),
         ((), stepped, NARROW),
         ((returns(1.0),), triangle, GIVEN),
-        ((returns(0.5),), triangle, GIVEN),
+        pytest.param((returns(0.5),), triangle, GIVEN, marks=pytest.mark.slow),
         ((offset(0.1),), triangle, GIVEN),
         ((drift(0.05),), bell, GIVEN),
         ((hum(0.05),), triangle, GIVEN),
-        ((noise(0.01),), triangle, GIVEN),
+        pytest.param((noise(0.01),), triangle, GIVEN, marks=pytest.mark.slow),
         ((noise(0.005), bits(8)), bell, GIVEN),
     ],
 )

@@ -33,7 +33,10 @@ def exact_share(x: float, power: int) -> float:
     return float(energy[y > x].sum() / energy.sum())
 
 
-@pytest.mark.parametrize(("signal", "power", "share"), [(moved, 0, 1e-2), (moved, 0, 1e-6), (pushed, 1, 1e-3)])
+@pytest.mark.parametrize(
+    ("signal", "power", "share"),
+    [pytest.param(moved, 0, 1e-2, marks=pytest.mark.slow), (moved, 0, 1e-6), (pushed, 1, 1e-3)],
+)
 def test_the_cut_off_of_the_cosine_pulse_is_that_of_its_spectrum(signal, power: int, share: float) -> None:
     found = sizing.cutoff(signal(pulse(0.5)), share)
 

@@ -100,7 +100,7 @@ def test_rows_are_straight_equal_and_touching(edged_brick, recipe):
     assert core.mean() == pytest.approx(recipe.radius, rel=2e-3)
 
 
-@pytest.mark.parametrize("pressure", [1e-5, 1e-4])
+@pytest.mark.parametrize("pressure", [1e-5, pytest.param(1e-4, marks=pytest.mark.slow)])
 def test_looser_packings_have_hardly_more_contacts_than_they_need(recipe, pressure):
     """Frictionless disks at rest need four contacts each, on average."""
     brick = pack_dense(replace(recipe, pressure=pressure, radius_ratio=1.66))

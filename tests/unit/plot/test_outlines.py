@@ -35,7 +35,9 @@ ALONE = {"boundary": {side: {"type": "viscous"} for side in ("left", "right", "b
 SHAPES = [(name, name == "canyon") for name in HOLES] + [("floor", True)]
 """Names of holes, with whether a continuum is around the disks."""
 COARSE = [("canyon", True), ("floor", False)]
-"""Cases also drawn with means in place of disks; the others, and every second one with disks, are slow."""
+"""Cases also drawn with means in place of disks; the others are slow."""
+WITH_DISKS = [("circle", False), ("canyon", True)]
+"""Cases drawn with disks; the others are slow."""
 
 
 def hollow_run(path, name, in_a_box):
@@ -61,7 +63,7 @@ def away(points, line):
 
 @pytest.mark.parametrize(
     ("name", "in_a_box", "dots"),
-    [pytest.param(*shape, 150, marks=pytest.mark.slow if k % 2 else []) for k, shape in enumerate(SHAPES)]
+    [pytest.param(*shape, 150, marks=[] if shape in WITH_DISKS else pytest.mark.slow) for shape in SHAPES]
     + [pytest.param(*shape, 12, marks=[] if shape in COARSE else pytest.mark.slow) for shape in SHAPES],
 )
 def test_outlines_are_those_of_the_case(name, in_a_box, dots, run, monkeypatch):

@@ -25,12 +25,30 @@ EXTENDED = [
 ]
 
 
+LATE = (
+    "finite differences, ν = 0.5",
+    "m = 1, soft ends",
+    "m = 8, corrected ends",
+    "ricker",
+    "fine bar, m = 3",
+    "viscous end",
+    "viscous end, β = 0.7",
+    "viscous soft end, m = 8",
+    "matched layer, m = 8",
+    "input",
+    "attenuation, m = 3, viscous end",
+)
+"""Scenes with ``-m slow``: others have each of their methods, ends and waves."""
+
+
 def share(causes: Causes, cause: str, monitor: str, quantity: str) -> np.ndarray:
     (found,) = [each for each in causes.found if each.name == cause]
     return found.parts[monitor][quantity][:, 0]
 
 
-@pytest.mark.parametrize("name", sorted(SCENES))
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LATE else name for name in sorted(SCENES)]
+)
 def test_estimated_errors_are_the_true_ones(name: str) -> None:
     # The finer reference has 1/8² = 1.6 % of the error of the bar. Elsewhere the exact motion is summed from samples an
     # eighth of a step apart, which miss the corners of a triangle that rises in 18 steps by 0.1/(18·8) of its crest:
@@ -75,7 +93,9 @@ def test_a_load_that_stays(name: str) -> None:
         assert Budget(recorded, causes).total(monitor, "velocity").value == pytest.approx(error, rel=0.1)
 
 
-@pytest.mark.parametrize("name", EXTENDED)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if "m = 3, viscous" in name else name for name in EXTENDED]
+)
 def test_the_error_of_ends_is_the_difference_from_a_longer_bar(name: str) -> None:
     # both are linear bars in the same steps: precursors in the longer one are 1e-9, what comes after the window 1e-6
     case = scene(name)
@@ -90,7 +110,9 @@ def test_the_error_of_ends_is_the_difference_from_a_longer_bar(name: str) -> Non
             assert np.linalg.norm(rest) < 1e-5 * np.linalg.norm(values)
 
 
-@pytest.mark.parametrize("name", ["m = 3, corrected ends", "m = 8, soft ends", "viscous end, β = 0.7"])
+@pytest.mark.parametrize(
+    "name", ["m = 3, corrected ends", pytest.param("m = 8, soft ends", marks=pytest.mark.slow), "viscous end, β = 0.7"]
+)
 def test_the_error_of_the_time_step_is_the_difference_from_shorter_ones(name: str) -> None:
     # of second order: steps 16 times shorter leave 1/256 of it, and of short waves, for which it is not, some more; the
     # pulse is smooth, as both bars have to see the same one in their steps

@@ -163,7 +163,15 @@ def test_what_waves_that_start_everywhere_or_jump_do_is_not_estimated():
     ("bottom", "top", "kind", "end"),
     [
         ({"type": "velocity", "wave_s": "q"}, {"type": "free"}, "s", 0.6),  # τ = 5 · 2 · 0.63 D/c = 22 ms
-        ({"type": "velocity", "wave_s": "q"}, {"type": "roller", "artificial": False}, "s", 0.6),  # free along itself
+        pytest.param(
+            *(
+                {"type": "velocity", "wave_s": "q"},
+                {"type": "roller", "artificial": False},
+                "s",
+                0.6,
+            ),  # free along itself
+            marks=pytest.mark.slow,
+        ),
         (
             {"type": "velocity", "wave_s": "q"},
             {"type": "fixed", "artificial": False},

@@ -43,7 +43,7 @@ LATTICE: Tables = SOIL | {
 """Short waves without reflections at the bottom: errors are those of the disks."""
 
 
-@pytest.mark.parametrize(("tables", "within"), [(COLUMN, 2.0), (LATTICE, 1.5)])
+@pytest.mark.parametrize(("tables", "within"), [pytest.param(COLUMN, 2.0, marks=pytest.mark.slow), (LATTICE, 1.5)])
 def test_estimates_of_a_column_are_near_its_errors_beside_the_exact_motion(tables: Tables, within: float) -> None:
     case = small(tables)
     scene = build(case)

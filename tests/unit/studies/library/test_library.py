@@ -91,6 +91,7 @@ def test_layers_respond_as_in_a_direct_run(tmp_path):
     assert [each.limits.tension for each in found] == [1e5, 2e5]
 
 
+@pytest.mark.slow
 def test_a_measured_record_is_the_same_function_as_in_a_direct_run(tmp_path):
     """At a sixteenth of its step, and within the loss by lines at an eighth, of which there is a warning."""
     spacing, count = 2e-4, 25

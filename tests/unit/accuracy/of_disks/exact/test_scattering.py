@@ -61,7 +61,7 @@ duration = 0.3
 SOLID = Solid(2500.0, 1000.0, 1000.0 / math.sqrt(2.0))
 
 
-@pytest.mark.parametrize(("kind", "angle"), [("sv", 30.0), ("p", -20.0)])
+@pytest.mark.parametrize(("kind", "angle"), [("sv", 30.0), pytest.param("p", -20.0, marks=pytest.mark.slow)])
 def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, angle, monkeypatch) -> None:
     """Direction, polarisation, and the delay from the point to the hole."""
     monkeypatch.setattr(module, "SAMPLES", 300)  # times
