@@ -130,18 +130,20 @@ class DiskSystem(RecordedDisks):
 
     def switch(self, state: State, fresh: bool = True) -> None:
         """Use the history-dependent law from now on; fresh: with contacts as the elastic law leaves them."""
-        before = self._last_stored(state) + self._steady_work(state) if state.laws else None
+        before = self._potential(state) if state.laws else None
         if fresh and self.disks.geometry_follows and turns_freely(self.scene):
             state.displacement, state.velocity = turned_as_a_whole(
                 self.scene, state.displacement, state.velocity, state.datum
             )
         self.disks.use_history()
-        if fresh:  # with the contacts of the step before, as the first push adds this step
-            self.disks.adopt(state.displacement - self._time_step * state.velocity)
+        if fresh:
+            self.disks.adopt(state.displacement)
         if self.balance is not None:
             self.balance.count_breaks_from(self.disks.parts)
         if before is not None:
-            state.work[:, 4] += self._last_stored(state) + self._steady_work(state) - before
+            state.work[:, 4] += self._potential(state) - before
+        if fresh:
+            self.disks.adopt(state.displacement - self._time_step * state.velocity)  # its first push adds this step
         if self.near_ties is not None:
             self.near_ties.begin(self.contacts["body"])
         if self.balance is not None:
@@ -211,10 +213,7 @@ class DiskSystem(RecordedDisks):
         follows = self.uses_history and self.disks.geometry_follows
         self.turning = balance.followers if balance is not None and follows else None
 
-    def _last_stored(self, state: State) -> float:
-        """Energy (J) stored in contacts and bonds one step earlier, where the last forces of the law in use acted."""
-        return sum(self.stored(state.u - self._time_step * state.v))
-
-    def _steady_work(self, state: State) -> float:
-        """Work (J), as spent, of steady and balancing forces since the start."""
-        return -float(np.sum(self.load * (state.displacement - state.datum))) - self.balancing_work(state.u)
+    def _potential(self, state: State) -> float:
+        """Energy (J) stored in contacts and bonds less the work of steady and balancing forces since the start."""
+        steady = float(np.sum(self.load * (state.displacement - state.datum)))
+        return sum(self.stored(state.u)) - steady - self.balancing_work(state.u)
