@@ -91,7 +91,8 @@ def _tables(schema: Mapping[str, Any]) -> st.SearchStrategy[dict[str, Any]]:
     keys, required = schema.get("properties", {}), schema.get("required", ())
     inner = {key: of_schema(value) for key, value in keys.items()}
     table = st.fixed_dictionaries(
-        {key: inner[key] for key in required}, optional={key: inner[key] for key in inner if key not in required}
+        {key: inner[key] for key in required if key in inner},  # conditions name keys of other schemas
+        optional={key: inner[key] for key in inner if key not in required},
     )
     if not isinstance(others := schema.get("additionalProperties"), Mapping):
         return table

@@ -71,6 +71,7 @@ def test_sides_that_send_back_for_one_reason_share_a_line(bar) -> None:
 def test_sides_along_a_wave_are_warned_of(bar) -> None:
     plate = {
         "packing.size": [20.0, 10.0],
+        "run.duration": 0.05,
         **TWO_WAYS,
         "boundary.left": {"type": "viscous"},
         "boundary.bottom": {"type": "viscous_input", "wave_s": "pulse"},

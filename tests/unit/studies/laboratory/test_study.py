@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -92,10 +91,10 @@ def test_only_the_first_seed_has_a_file_for_paraview_and_failures_are_raised(tmp
         ({"damp": 1.0}, "material.damp: is 1"),
     ],
 )
-def test_what_a_test_cannot_be_made_of(words, message) -> None:
+def test_what_a_test_cannot_be_made_of(words, message, tmp_path) -> None:
     with pytest.raises(CaseError, match=message):
-        dembound.laboratory_test(small(LATTICE, "rock"), **{"test": "ucs", "seeds": 1} | words)
-    assert not Path("results").exists()
+        dembound.laboratory_test(small(LATTICE, "rock"), results=tmp_path, **{"test": "ucs", "seeds": 1} | words)
+    assert not list(tmp_path.iterdir())
 
 
 def test_what_makes_curves_doubtful() -> None:
