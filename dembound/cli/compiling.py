@@ -6,6 +6,7 @@ from functools import cache
 
 from numba.core import event
 from rich.status import Status
+from rich.text import Text
 
 from dembound.cli.console import err
 
@@ -13,7 +14,7 @@ MESSAGE = "compiling the solver: 10 to 40 s, once per installation, less for a n
 
 
 class Compilation(event.Listener):
-    """Prints the message when the first kernel is compiled, and on a terminal shows for how long that has taken.
+    """Prints the message when the first kernel is compiled; on a terminal also what is compiled, and for how long.
 
     Kernels that are loaded from the disk, and functions of other packages, are not counted.
 
@@ -28,12 +29,20 @@ class Compilation(event.Listener):
 
     def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
         self.now, self.beside_bar = now, False
-        self._printed, self._open, self._began, self._spent = False, 0, 0.0, 0.0
+        self._printed, self._began, self._spent = False, 0.0, 0.0
+        self._open: list[str] = []
+        """Names of the functions that are being compiled, each within the one before."""
         self._shown: Status | None = None
 
     def note(self) -> str:
-        """A note with the seconds of compiling up to now; empty if nothing is being compiled."""
-        return f"compiling the solver, {self._spent + self.now() - self._began:.0f} s" if self._open else ""
+        """Seconds of compiling up to now, and the function that is being compiled; empty if there is none."""
+        if not self._open:
+            return ""
+        return f"compiling for {self._spent + self.now() - self._began:.0f} s: {self._open[-1]}"
+
+    def __rich__(self) -> Text:
+        """The note at the time at which it is drawn."""
+        return Text(self.note(), no_wrap=True, overflow="ellipsis")
 
     def on_start(self, event: event.Event) -> None:
         """Numba begins to compile a function, perhaps within another one."""
@@ -42,19 +51,19 @@ class Compilation(event.Listener):
         if not self._printed:
             self._printed = True
             err.print(MESSAGE)
-        if self._open == 0:
+        if not self._open:
             self._began = self.now()
-        self._open += 1
-        if err.is_terminal and not self.beside_bar and self._open == 1:
-            self._shown = err.status(self.note())
+        self._open.append(event.data["dispatcher"].py_func.__name__.strip("_").replace("_", " "))
+        if err.is_terminal and not self.beside_bar and len(self._open) == 1:
+            self._shown = err.status(self)
             self._shown.start()
 
     def on_end(self, event: event.Event) -> None:
         """Numba has compiled it."""
         if not _is_own(event):
             return
-        self._open -= 1
-        if self._open == 0:
+        self._open.pop()
+        if not self._open:
             self._spent += self.now() - self._began
             if self._shown is not None:
                 self._shown.stop()

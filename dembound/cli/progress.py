@@ -104,7 +104,7 @@ class _Compiling(ProgressColumn):
 
     def render(self, task: Task) -> Text:
         """The note of the process."""
-        return Text(COMPILATION.note())
+        return COMPILATION.__rich__()
 
 
 def print_warning(name: str, message: str) -> None:

@@ -32,27 +32,29 @@ def test_only_the_first_kernel_compiled_is_reported(tmp_path) -> None:
     assert printed() == ""  # loaded
 
 
-def compiled(module: str, status: event.EventStatus) -> event.Event:
+def compiled(module: str, status: event.EventStatus, name: str = "advance") -> event.Event:
     """What numba sends when it begins or ends to compile a function of a module."""
-    dispatcher = SimpleNamespace(py_func=SimpleNamespace(__module__=module))
+    dispatcher = SimpleNamespace(py_func=SimpleNamespace(__module__=module, __name__=name))
     return event.Event("numba:compile", status, {"dispatcher": dispatcher})
 
 
-def test_on_a_terminal_the_time_of_compiling_is_shown_until_it_is_over(monkeypatch) -> None:
+def test_on_a_terminal_what_is_compiled_is_shown_and_for_how_long(monkeypatch) -> None:
     shown = []
     status = SimpleNamespace(start=lambda: shown.append("begins"), stop=lambda: shown.append("ends"))
     monkeypatch.setattr(compiling.err, "_force_terminal", True)
-    monkeypatch.setattr(compiling.err, "status", lambda note: status)
-    clock = iter([10.0, 10.0, 13.0, 14.0, 20.0, 20.0, 21.5])
+    monkeypatch.setattr(compiling.err, "status", lambda note: shown.append(note) or status)
+    clock = iter([10.0, 12.0, 13.0, 14.0, 20.0, 21.5])
     listener = Compilation(lambda: next(clock))
-    begin, end = (compiled("dembound.kernels.loop", each) for each in (event.EventStatus.START, event.EventStatus.END))
-    for each in (begin, begin, end):  # one function within another
-        listener.notify(each)
-    assert (shown, listener.note()) == (["begins"], "compiling the solver, 3 s")
-    listener.notify(end)
-    assert (shown, listener.note()) == (["begins", "ends"], "")
-    listener.notify(begin)
-    assert listener.note() == "compiling the solver, 6 s"  # 4 s before, 1.5 s now
+    begins, ends = event.EventStatus.START, event.EventStatus.END
+    listener.notify(compiled("dembound.kernels.loop", begins))
+    listener.notify(compiled("dembound.kernels.loop", begins, "_move_blocks"))  # a function within another
+    assert str(shown[0].__rich__()) == "compiling for 2 s: move blocks"
+    listener.notify(compiled("dembound.kernels.loop", ends, "_move_blocks"))
+    assert (shown[1:], listener.note()) == (["begins"], "compiling for 3 s: advance")
+    listener.notify(compiled("dembound.kernels.loop", ends))
+    assert (shown[2:], listener.note()) == (["ends"], "")
+    listener.notify(compiled("dembound.kernels.loop", begins))
+    assert listener.note() == "compiling for 6 s: advance"  # 4 s before, 1.5 s now
 
 
 def test_functions_of_other_packages_are_not_reported(capsys) -> None:
