@@ -6,10 +6,11 @@ from typing import Any, ClassVar, Literal
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Drivable
 from dembound.boundaries.free import Free
+from dembound.boundaries.intact import Keeping
 from dembound.boundaries.sides import OPPOSITE, SIDES
 
 
-class Outside(Drivable):
+class Outside(Keeping, Drivable):
     """Continues as an elastic continuum that absorbs, see `[outside]`; waves may enter through a bottom of this type.
 
     Notes

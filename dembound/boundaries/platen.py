@@ -7,11 +7,12 @@ from pydantic import field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import Edge
+from dembound.boundaries.intact import Keeping
 from dembound.boundaries.sides import axis_of_motion, normal_axis
 from dembound.table import Box, quantity
 
 
-class Holding(Boundary):
+class Holding(Keeping):
     """A side that prescribes motion, of all its particles or, as a platen or jaw, of those `within` a range."""
 
     within: tuple[float, float] | None = quantity(

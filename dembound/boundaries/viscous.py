@@ -13,16 +13,17 @@ from pydantic import Field, model_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
+from dembound.boundaries.intact import Keeping
 from dembound.boundaries.rock import Rock
 from dembound.boundaries.sides import Factor, Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
-from dembound.table import quantity
+from dembound.table import Table, quantity
 
 Given = Annotated[float, Field(ge=0.0)] | Literal["matched"]
 """A factor β in a case file."""
 
 
-class Dashpots(Boundary):
+class Dashpots(Keeping):
     """A side with dashpots: their two calibration factors, and whether the particles have half their mass."""
 
     may_halve: ClassVar[bool] = True
@@ -113,7 +114,43 @@ class Dashpots(Boundary):
         return np.outer(medium.impedances(factors["p"], factors["s"], edge.axis), edge.widths)
 
 
-class Viscous(Dashpots):
+class Bearing(Table):
+    """Springs of a bottom on the motion of its particles relative to the ground beyond, beside its dashpots.
+
+    F = −(αG/L)D·(u − u_g), counted from rest: u_g is the motion of the particle's twin in the free-field column or,
+    without a column, the mean motion of the bottom; L is the length of the bottom, G = ρc_s² of the dashpots' medium.
+    """
+
+    alpha_n: float = quantity(
+        1.0, unit="1", means="factor of springs", help="factor α of the springs along the normal", ge=0.0
+    )
+    alpha_s: float = quantity(
+        0.5, unit="1", means="factor of springs", help="factor α of the springs across the normal", ge=0.0
+    )
+
+
+class BearingDashpots(Dashpots):
+    """Dashpots that, at the bottom, may have springs on relative motion beside them."""
+
+    bearing: bool | Bearing | None = quantity(
+        None,
+        unit="1",
+        help="whether a bottom has springs on the motion relative to the ground beyond it, which bear what its weight "
+        "at rest does not; a table gives their factors alpha_n and alpha_s; absent: where the side has an intact zone",
+    )
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Springs of another side than the bottom."""
+        yield from super().problems(side, tables)
+        if self.bearing not in (None, False) and (side != "bottom" or "bar" in tables):
+            yield f"boundary.{side}.bearing: is for the bottom of disks"
+
+    def dashpots_alone(self) -> Self:
+        """The side without springs."""
+        return self.model_copy(update={"bearing": False}) if self.bearing not in (None, False) else self
+
+
+class Viscous(BearingDashpots):
     """Absorbs by dashpots: F = −βρcD·v (Z eq. 4), D the diameter of a particle; of a bar F = −βρcA·v."""
 
     for_bars: ClassVar[bool] = True
@@ -126,7 +163,7 @@ class Viscous(Dashpots):
             supports.add(edge.nodes, component, damping=damping)
 
 
-class ViscousInput(Dashpots, Driven):
+class ViscousInput(BearingDashpots, Driven):
     """Absorbs and transmits an incident wave: F = −βρcD·v + 2βρcD·v_i (Z eq. 6), v_i the incident wave's velocity."""
 
     for_bars: ClassVar[bool] = True
@@ -135,7 +172,7 @@ class ViscousInput(Dashpots, Driven):
 
     def at_rest(self) -> Boundary:
         """A viscous side with the same dashpots and without a wave."""
-        return Viscous(type="viscous", **self.own_keys(Dashpots))
+        return Viscous(type="viscous", **self.own_keys(BearingDashpots))
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """The absorbing dashpots, plus the force that introduces the incident wave."""

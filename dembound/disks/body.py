@@ -10,10 +10,12 @@ import numpy as np
 from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
+from dembound.disks.bearing import Springs
 from dembound.disks.beyond.layered_waves import Undisturbed
 from dembound.disks.beyond.recorded import RecordedContinuum
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.contacts.layout import Rows
+from dembound.disks.intact import intact_disks, intact_zones
 from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.motion.between import Between
@@ -44,6 +46,7 @@ class DiskBody(Scene):
     foot : the continuum below the free-field column, whose nodes come last; None for none.
     between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
+    all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
     """
 
     case: DiskCase
@@ -59,6 +62,7 @@ class DiskBody(Scene):
     foot: Surroundings | None = None
     between: Mapping[str, Between] = field(default_factory=dict)
     ground_waves: Undisturbed | None = None
+    all_intact: bool = False
 
     kind = "disks"
     energy_unit = "J/m"
@@ -213,6 +217,23 @@ class DiskBody(Scene):
         for each in self.continua:
             moves[:2, each.nodes] &= ~each.body.mesh.held
         return moves
+
+    @property
+    def bearing(self) -> Springs | None:
+        """The springs of the bottom on relative motion; None without any."""
+        return None
+
+    @cached_property
+    def intact_zones(self) -> dict[str, np.ndarray]:
+        """The disks (k,) of each zone beside a side in which bonds do not break, by side."""
+        return intact_zones(self.case, self.ground.brick, self.assembly, self.edges, self.column_count)
+
+    @cached_property
+    def intact(self) -> np.ndarray | None:
+        """Whether the bonds of each disk (m,) never break; None if all may."""
+        if self.all_intact:
+            return np.ones(self.disk_count, dtype=np.bool_)
+        return intact_disks(self.case, self.intact_zones, self.disk_count, self.column_count)
 
     @cached_property
     def at_rest(self) -> StressAtRest | None:

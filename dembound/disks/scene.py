@@ -9,7 +9,9 @@ import numpy as np
 from dembound.boundaries import Periodic, is_far
 from dembound.boundaries.half_mass import half_edges, mass_factor, with_shares
 from dembound.boundaries.support import Edge, SupportBuilder, Waves
+from dembound.boundaries.viscous import BearingDashpots
 from dembound.casefile.disks import DiskCase
+from dembound.disks.bearing import Springs, bearing_springs
 from dembound.disks.beyond.edges import edges_beside_column, find_edges, require_held
 from dembound.disks.beyond.hollowed import hollowed
 from dembound.disks.beyond.layered_waves import undisturbed
@@ -21,6 +23,7 @@ from dembound.disks.body_sides import sides_of, tied_of
 from dembound.disks.contact_types import with_half_contacts, with_layers
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
+from dembound.disks.intact import require_room
 from dembound.disks.loads import steady
 from dembound.disks.material.layered import layered
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
@@ -28,7 +31,7 @@ from dembound.disks.membrane import in_run
 from dembound.disks.monitors import monitors_of
 from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
-from dembound.disks.side_media import boundary_medium
+from dembound.disks.side_media import boundary_medium, medium_of_side
 from dembound.disks.stepping.stress import particle_stress
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.support_rows import supports_of
@@ -69,6 +72,20 @@ class DiskScene(DiskBody):
     def tied(self) -> dict[str, np.ndarray]:  # type: ignore[override]  # computed once
         """Nodes (k,) that ties act on, by side: particles beside a free field or a continuum, nodes of continua."""
         return tied_of(self)
+
+    @cached_property
+    def bearing(self) -> Springs | None:  # type: ignore[override]  # computed once
+        """The springs of the bottom on relative motion; None without any."""
+        bearing, table = self.case.bearing, self.case.side("bottom")
+        if bearing is None:
+            return None
+        assert isinstance(table, BearingDashpots)
+        return bearing_springs(bearing, table, self.sides["bottom"], medium_of_side(self, "bottom"), self.twin)
+
+    @property
+    def borne(self) -> Mapping[str, np.ndarray]:
+        """Disks (k,) of the bottom with springs on relative motion, by side."""
+        return {} if self.bearing is None else {"bottom": self.bearing.node}
 
     @cached_property
     def steady_load(self) -> np.ndarray:
@@ -210,6 +227,7 @@ def _scene(
         between=between,
         ground_waves=waves,
     )
+    require_room(case, scene.intact_zones, scene.disk_count - scene.column_count)
     return with_waves(scene, case.wave)
 
 
@@ -247,7 +265,9 @@ def column_alone(scene: DiskScene) -> DiskScene:
     everywhere = tuple(load for load in case.load if load.is_everywhere)
     alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
     column = tile(brick, (1, case.column_rows[1]), UPRIGHT, case.box[:2])
-    return _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
+    alone_scene = _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
+    intact = scene.intact is not None and bool(scene.intact[: scene.column_count].all())
+    return replace(alone_scene, all_intact=intact)
 
 
 def ground_of(case: DiskCase) -> PackedMaterial:

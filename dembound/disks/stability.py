@@ -159,12 +159,16 @@ def filling_forces(scene: DiskScene, change: Filling | None = None) -> Filling:
     acting = np.flatnonzero(supports.prescribed | (supports.stiffness != 0.0))
     place = supports.component[acting], scene.layout.slot[supports.node[acting]]
     stiffness, prescribed = supports.stiffness[acting], supports.prescribed[acting]
+    # relative springs are never stiffer than springs on the motion itself
+    bearing = None if scene.bearing is None else (scene.layout.slot[scene.bearing.node], scene.bearing.stiffness.T)
 
     def fill(u: np.ndarray, force: np.ndarray) -> None:
         for rows in scene.rows:
             contact_forces(u, rows, force)
         if change is not None:
             change(u, force)
+        if bearing is not None:
+            force[:2, bearing[0]] -= bearing[1] * u[:2, bearing[0]]
         force[place] = np.where(prescribed, 0.0, force[place] - stiffness * u[place])
 
     return fill

@@ -26,6 +26,9 @@ from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
 """States of a pair: without bond, bonded, bond broken in tension, bond broken in shear."""
 
+MAY_BREAK, KEPT, REACHED = 0, 1, 2
+"""Whether a bond may break, never breaks, or never breaks and has reached its strength."""
+
 UPDATED, BONDED, REFERENCE, SLID = 0, 1, 2, 3
 """Geometries of normals and arms.
 
@@ -123,6 +126,9 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
         Fs = constants[k, U(8)] * shear
         M = constants[k, U(9)] * turn
         state[c] = _bond_state(c, Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits, k)
+        if state[c] != INTACT and contacts.kept[c] != MAY_BREAK:
+            state[c] = INTACT
+            contacts.kept[c] = REACHED
         if state[c] == INTACT:
             pull += Fn
             S += Fs

@@ -16,7 +16,7 @@ from dembound.kernels.common import FAST, FASTMATH, U
 _REORDERED: Any = FAST | {"fastmath": FASTMATH | {"reassoc"}}
 """Compiler options of sums whose order of terms depends only on their number."""
 
-PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED, POWER = range(7)
+PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED, POWER, BORNE = range(8)
 """Kinds of elements, see `tables.Sides`."""
 
 
@@ -74,7 +74,7 @@ def _springs(c, first, last, sides, nodes, u):
 
 @njit(**FAST, inline="always")
 def _exerted(kind, c, first, last, sides, old, new, push, across, step):
-    """Force and power of a batch of prescribed motion (the needed force, without ties), drives, or seams."""
+    """Force and power of a batch of prescribed motion (the needed force, without ties), drives, seams, or bearing."""
     force = 0.0
     power = 0.0
     before = 0.0
@@ -82,8 +82,10 @@ def _exerted(kind, c, first, last, sides, old, new, push, across, step):
         s = U(sides.line[U(e)])
         if kind == DRIVE:
             f = sides.constant[U(e)] * sides.signals[step, U(sides.column[U(e)])]
+        elif kind == PRESCRIBED:
+            f = sides.constant[U(e)] * (push[c, s] - across[s, c])
         else:
-            f = sides.constant[U(e)] * (push[c, s] - across[s, c] if kind == PRESCRIBED else across[s, c])
+            f = sides.constant[U(e)] * (sides.borne[s, c] if kind == BORNE else across[s, c] - sides.borne[s, c])
         force += f
         power += f * 0.5 * (old[c, s] + new[c, s])
         before += f * old[c, s]

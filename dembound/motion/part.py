@@ -168,6 +168,10 @@ class System:
         """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""
         return None
 
+    def borne(self, supported: np.ndarray) -> np.ndarray:
+        """Forces (s, 3) N of springs on relative motion on the nodes (s,) of the support table; by default none."""
+        return np.zeros((len(supported), 3))
+
     def saved(self, state: State) -> tuple[str, ...]:
         """A line for each cheaper law used, with its number of steps."""
         return ()

@@ -246,6 +246,11 @@ class Scene(ABC):
         """Nodes (k,) on which ties act, by the side they belong to; by default none."""
         return {}
 
+    @property
+    def borne(self) -> Mapping[str, np.ndarray]:
+        """Nodes (k,) with springs on their motion relative to the ground beyond, by their side; by default none."""
+        return {}
+
     def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:
         """Smallest and largest velocity (k, 3, 2) of the nodes of a side of the whole scene.
 

@@ -95,6 +95,7 @@ class NodeSides:
             table, offset = self._bearing(table), self._borne(-system.load)
         elif system.balancing_force is not None:
             offset = self._borne(system.balancing_force)
+        table = table._replace(borne=system.borne(self._nodes))
         every, first, record = samples
         return table._replace(offset=offset, signals=signals, every=every, first=first, record=record, work=work)
 
@@ -146,6 +147,9 @@ class NodeSides:
             batches: list[_Batch] = []
             if shares is not None:
                 batches += self._of_supports(number, edge, np.union1d(edge.nodes, tied), shares)
+            borne = self._whole.borne.get(name, np.zeros(0, dtype=np.int64))
+            for component in range(2):
+                batches += self._split(kinds.BORNE, number, component, -1, borne, np.ones(len(borne)))
             for component in range(3):
                 batches += self._split(kinds.TIED, number, component, -1, tied, np.ones(len(tied)))
             if shares is not None and name in shares.power:

@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks.damping import Damping
 from dembound.casefile.disks.floors import floors, lowered
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
+from dembound.casefile.disks.intact import bearing_of, intact_depths
 from dembound.casefile.disks.layer import Layer, bottoms
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
@@ -135,6 +137,16 @@ class DiskCase(Case):
     def entering(self) -> set[str]:
         """Names of the waves that enter through driven sides, or at an angle."""
         return super().entering | (set() if self.incident is None else {self.incident.wave})
+
+    @cached_property
+    def intact(self) -> dict[str, int]:
+        """Number of disks from each side, counted by bonds, whose bonds do not break; see `intact_depths`."""
+        return intact_depths(self)
+
+    @property
+    def bearing(self) -> Bearing | None:
+        """The springs of the bottom on the motion relative to the ground beyond it; None without any."""
+        return bearing_of(self)
 
     @property
     def free_field_sides(self) -> tuple[str, ...]:

@@ -33,6 +33,8 @@ class Pairs:
 class ContactHistory(NamedTuple):
     """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds.
 
+    kept : None where all bonds may break.
+
     drag (b, 2), see `Dashed`; None without dashpots, or before they have acted.
     """
 
@@ -41,6 +43,7 @@ class ContactHistory(NamedTuple):
     slip: np.ndarray
     closed: np.ndarray
     cracked: np.ndarray
+    kept: np.ndarray | None = None
     place: np.ndarray | None = None
     drag: np.ndarray | None = None
 
@@ -105,6 +108,7 @@ def in_places(
         closed=placed(history.closed[order]),
         cracked=placed(history.cracked[order], -1),
         place=np.zeros((count, 2)) if history.place is None else placed(history.place[order]),
+        kept=np.zeros(count, dtype=np.uint8) if history.kept is None else placed(history.kept[order]),
         force=aligned_zeros(4, count),
         start=start,
         end=end[np.lexsort((end, owner))],
@@ -146,6 +150,7 @@ def plain_contacts(
         closed=np.zeros(0, dtype=np.uint8),
         cracked=np.zeros(0, dtype=np.int64),
         place=np.zeros((0, 2)),
+        kept=np.zeros(0, dtype=np.uint8),
         force=np.zeros((4, 0)),
         start=first[:0],
         end=first[:0],

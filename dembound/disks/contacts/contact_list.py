@@ -32,7 +32,7 @@ SKIN = 0.05
 The list is renewed once a particle has moved by half of it.
 """
 
-_HISTORY = ("state", "shear", "slip", "closed", "cracked")
+_HISTORY = ("state", "shear", "slip", "closed", "cracked", "kept")
 """The arrays of the pairs' history variables, in the order of `ContactHistory`."""
 
 _KEPT = ("first", "second", "contact_type", *_HISTORY)
@@ -59,6 +59,7 @@ class ContactList(PairList):
         (m,) of each particle, for those that meet later.
     at_rest : the stress with which contacts begin; None: without forces.
     factors : of the strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
+    intact : (m,) bool, particles whose bonds never break; None: all may break.
 
     Attributes
     ----------
@@ -85,6 +86,7 @@ class ContactList(PairList):
         at_rest: StressAtRest | None = None,
         factors: BondFactors | None = None,
         dashpots: Dashpots | None = None,
+        intact: np.ndarray | None = None,
     ) -> None:
         super().__init__(assembly, periods, begin, layout)
         self.ground, self.factors, self.dashpots = ground, factors, dashpots
@@ -106,7 +108,10 @@ class ContactList(PairList):
         self.own_types = len(self.bonds)
         self._constants = self.bonds
         slip = self._begun_slip[self.kind]
-        self._list(pairs, ContactHistory(bonded, zero, slip, none, np.full(len(first), -1)))
+        self._intact = np.zeros(len(assembly.radii), dtype=np.bool_) if intact is None else intact
+        self._list(
+            pairs, ContactHistory(bonded, zero, slip, none, np.full(len(first), -1), self._kept(first, second, none))
+        )
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         self.arms = np.zeros(self.layout.count)
         self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
@@ -190,10 +195,17 @@ class ContactList(PairList):
             np.concatenate([self.of("slip")[kept], np.zeros(len(met.first))]),
             np.concatenate([self.of("closed")[kept], np.zeros(len(met.first), dtype=np.uint8)]),
             np.concatenate([self.of("cracked")[kept], np.full(len(met.first), -1)]),
+            np.concatenate([self.of("kept")[kept], np.zeros(len(met.first), dtype=np.uint8)]),
             drag=self._drag_of(kept, len(met.first)),
         )
         self._list(pairs, history)
         self._set_origin(displacement[:2, self.nodes])
+
+    def _kept(self, first: np.ndarray, second: np.ndarray, kept: np.ndarray) -> np.ndarray:
+        """Whether the bonds between particles (b,) may break, (b,) uint8, if it was kept (b,) before."""
+        return np.maximum(
+            kept, np.where(self._intact[first] | self._intact[second], kernel.KEPT, kernel.MAY_BREAK)
+        ).astype(np.uint8)
 
     def _drag_of(self, kept: np.ndarray, more: int) -> np.ndarray | None:
         """Last forces of the dashpots of the pairs kept (b,) bool, and of more pairs without any; None: no dashpots."""
@@ -244,8 +256,10 @@ class ContactList(PairList):
         left = (first >= 0) & (second >= 0)
         self._constants = other._constants
         self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
-        pairs = Pairs(first[left], second[left], other.image[left], other.of("contact_type")[left])
-        self._list(pairs, ContactHistory(*(other.of(name)[left] for name in (*_HISTORY, "place"))))
+        first, second = first[left], second[left]
+        pairs = Pairs(first, second, other.image[left], other.of("contact_type")[left])
+        history = ContactHistory(*(other.of(name)[left] for name in (*_HISTORY, "place")))
+        self._list(pairs, history._replace(kept=self._kept(first, second, other.of("kept")[left])))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
         """Copy the history of each pair's twin from a settled free-field column, at displacements (3, n).
@@ -285,6 +299,10 @@ class ContactList(PairList):
         self.note_cracks()
         noted, self._cracks = self._cracks, []
         return joined(noted)
+
+    def reached(self) -> int:
+        """Number of bonds that have reached their strength so far, but never break."""
+        return int(np.count_nonzero(self.arrays.kept == kernel.REACHED))
 
     def freshly_torn(self) -> np.ndarray:
         """Particles (m,) bool with a bond that has broken since cracks were last recorded."""

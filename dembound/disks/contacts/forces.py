@@ -105,7 +105,7 @@ def _acting_ones(piece: Piece) -> tuple[np.ndarray, ...]:
 
 def _cut(contacts: Contacts, piece: slice) -> Contacts:
     """A slice of the pairs, without the rows of contact ends."""
-    names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place")
+    names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place", "kept")
     columns = {name: getattr(contacts, name)[piece] for name in names}
     return contacts._replace(**columns, force=contacts.force[:, piece])
 

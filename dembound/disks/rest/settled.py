@@ -107,6 +107,8 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
         keys["outside_sides"] = scene.outside.sides
         if scene.ground.is_layered:
             keys["outside_rows"] = [float(height) for height in scene.outside.body.mesh.heights]
+    if case.intact:
+        keys["intact"] = case.intact
     if case.layer:
         keys["layer"] = case.layer
     if scene.ground.is_damped:

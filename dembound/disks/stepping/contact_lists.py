@@ -40,6 +40,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         scene.at_rest,
         bond_factors(scene.case, scene.ground, part, alike=name == "column"),
         Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
+        None if scene.intact is None else scene.intact[nodes],
     )
 
 

@@ -99,6 +99,9 @@ class LoadFactor(Every):
             own = in_columns(constants[:, 15:], limits.geometry) if scene.ground.is_layered else limits
             bonds = bond_factors(scene.case, scene.ground, part.assembly, alike=part.name == "column")
             strength = 1.0 if bonds is None else bonds.at(part.assembly.pairs[:, 0], part.assembly.contact_type)
+            if scene.intact is not None:  # bonds that do not break have no limit
+                kept = scene.intact[part.nodes][part.assembly.pairs].any(axis=1)
+                strength = np.where(kept, np.inf, strength)
             self._pairs.append((pairs, (*limit_lines(pairs.constants, own), strength)))
         self._least, self._where = np.empty(CHUNKS), np.empty((CHUNKS, 2), dtype=np.int64)
         self._rest = np.zeros((3, 0))

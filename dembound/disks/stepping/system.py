@@ -7,6 +7,7 @@ import numpy as np
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.balance import Balance
+from dembound.disks.stepping.bearing import BearingTie
 from dembound.disks.stepping.continuum_ties import grids, walls
 from dembound.disks.stepping.damped_ground import drag_rates
 from dembound.disks.stepping.disk_parts import DiskParts
@@ -53,6 +54,9 @@ class DiskSystem(RecordedDisks):
         ties = [*walls(scene), *disks.seams]
         if disks.damped_ties is not None:
             ties.append(disks.damped_ties)
+        self._bearing = None if settling or scene.bearing is None else BearingTie(scene.bearing, scene.layout)
+        if self._bearing is not None:
+            ties.append(self._bearing)
         super().__init__(
             scene,
             disks,
@@ -93,6 +97,8 @@ class DiskSystem(RecordedDisks):
         else:
             self.balance, steady = balanced(law, self.scene, self.disks, self.forces, self.load, state.datum)
         self._begin_at_rest()
+        if self._bearing is not None:
+            self._bearing.rest_at(state.datum)
         if steady.any():
             self.steady = steady.copy()
         if law.has_history:
@@ -198,6 +204,12 @@ class DiskSystem(RecordedDisks):
             self.near_ties.restore(within(saved, "near_ties"))
         self._set_balance_in_use()
         self._begin_at_rest()
+        if self._bearing is not None and self.balance is not None:
+            self._bearing.rest_at(self.balance.datum)
+
+    def borne(self, supported: np.ndarray) -> np.ndarray:
+        """Forces (s, 3) N of the springs of the bottom on the nodes (s,) of the support table."""
+        return super().borne(supported) if self._bearing is None else self._bearing.force_on(supported)
 
     def _begin_at_rest(self) -> None:
         """Let nothing be remembered of the forces at rest, if these are balanced."""

@@ -8,7 +8,7 @@ from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, Dashed, 
 from dembound.kernels.tables.motion import Body, Followers, Log, Supports
 from dembound.kernels.tables.sides import NO_SIDES, Sides
 from dembound.kernels.tables.softening import Softening
-from dembound.kernels.tables.ties import Repeats, Seam, SeamEnds, WallTies
+from dembound.kernels.tables.ties import Bearings, Repeats, Seam, SeamEnds, WallTies
 
 __all__ = [
     "ALONG",
@@ -17,6 +17,7 @@ __all__ = [
     "BarBonds",
     "BarContacts",
     "BarLayers",
+    "Bearings",
     "Blocks",
     "Body",
     "Bonded",

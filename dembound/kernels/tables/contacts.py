@@ -61,7 +61,8 @@ class Contacts(NamedTuple):
     state : (b,) uint8, see kernels/contacts.py; shear, slip : (b,) m, the tangential displacement since the start, not
     kept up to date for pairs in the geometry of the start, and the part of it that slid; closed : (b,) uint8, 1 if the
     contact has closed in the last step; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m,
-    mean displacement of the two disks in that step; force : (4, b).
+    mean displacement of the two disks in that step; kept : (b,) uint8, whether the bond may break, see
+    kernels/contacts.py; force : (4, b).
     start, end : rows of contact ends, one per particle, those before number `begin` empty, end (e,) uint32 = 2·contact
     + (0 first, 1 second).
     """
@@ -79,6 +80,7 @@ class Contacts(NamedTuple):
     closed: np.ndarray
     cracked: np.ndarray
     place: np.ndarray
+    kept: np.ndarray
     force: np.ndarray
     start: np.ndarray
     end: np.ndarray

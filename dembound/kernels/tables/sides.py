@@ -17,6 +17,7 @@ class Sides(NamedTuple):
     member_start : (s + 1,) members of each side in member (m,), nodes; weight (m,) of their displacements in the mean.
     offset : (s, 2) N, added to the force on each side. bearer_start : (s + 1,) nodes of each side in bearer (q,) whose
     steady forces are added too, times share (2, q); none if these do not change.
+    borne : (k, 3) N on the lines of the support table by springs on relative motion, see `Bearings`.
     record : (rows, s, 5) mean displacement, m and rad, and force, N, at the start of each `every`-th step, of which
     `first` came before; every is 0 where nothing is recorded. work : (2, s, 2) J that came in and were absorbed,
     without springs; row 0 up to the half step reached, row 1 up to the last whole step, after the last step of a call.
@@ -40,6 +41,7 @@ class Sides(NamedTuple):
     bearer_start: np.ndarray
     bearer: np.ndarray
     share: np.ndarray
+    borne: np.ndarray
     every: int
     first: int
     record: np.ndarray
@@ -68,6 +70,7 @@ class Sides(NamedTuple):
             bearer_start=np.zeros(1, dtype=np.int64),
             bearer=number,
             share=np.zeros((2, 0)),
+            borne=np.zeros((0, 3)),
             every=0,
             first=0,
             record=np.zeros((0, 0, 5)),

@@ -72,3 +72,20 @@ class Repeats(NamedTuple):
 
     source: np.ndarray
     target: np.ndarray
+
+
+class Bearings(NamedTuple):
+    """Springs of k nodes on their motion relative to the ground beyond; see kernels/bearing.py.
+
+    node, twin, line : (k,) each node, its twin, −1 for none, and its line in the support table. weight : (k,) in the
+    mean motion of all. stiffness : (k, 2) N/m along x and y; rest : (k, 2) m, displacement relative to the ground
+    without force. force : (s, 3) N of each line of the support table, work space.
+    """
+
+    node: np.ndarray
+    twin: np.ndarray
+    line: np.ndarray
+    weight: np.ndarray
+    stiffness: np.ndarray
+    rest: np.ndarray
+    force: np.ndarray

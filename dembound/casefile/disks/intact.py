@@ -1,0 +1,85 @@
+"""The zones beside the sides of a body in which bonds do not break, and the springs of its bottom."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from dembound.boundaries import OPPOSITE, Boundary, normal_axis
+from dembound.boundaries.intact import INTACT, Keeping
+from dembound.boundaries.viscous import Bearing, BearingDashpots
+from dembound.casefile.disks.material import STRENGTH_KEYS, Material
+from dembound.casefile.disks.static import Static
+from dembound.casefile.types import LAWS
+
+if TYPE_CHECKING:
+    from dembound.casefile.disks.model import DiskCase
+
+
+def intact_depths(case: "DiskCase") -> dict[str, int]:
+    """Number of disks from each side, counted by bonds, whose bonds do not break; sides without any are left out.
+
+    By default `INTACT` where forces of the static stage go on acting in a run in which bonds can break, and the side
+    stands for ground beyond it or drives the ground. Not in samples, of which no side absorbs, is periodic, drives
+    waves or says that it is artificial, nor on platens within a range.
+    """
+    if not can_break(case.materials):
+        return {}
+    depths = {}
+    for side, table in case.boundary.items():
+        if isinstance(table, Keeping) and (depth := _depth(case, side, table)) > 0:
+            depths[side] = depth
+    return depths
+
+
+def bearing_of(case: "DiskCase") -> Bearing | None:
+    """The springs of the bottom on relative motion; None without any."""
+    table = case.side("bottom")
+    if not isinstance(table, BearingDashpots):
+        return None
+    if table.bearing is None:
+        return Bearing() if LAWS[case.material.law].has_history and "bottom" in case.intact else None
+    if isinstance(table.bearing, Bearing):
+        return table.bearing
+    return Bearing() if table.bearing else None
+
+
+def can_break(materials: Sequence[Material]) -> bool:
+    """Whether bonds of some of the materials have a strength; only laws with a history, and load factors, use it."""
+    return any(getattr(each, key) is not None for each in materials for key in STRENGTH_KEYS)
+
+
+def keeps_forces(static: Static | None, side: str, table: Boundary) -> bool:
+    """Whether forces of the static stage go on acting at a side with this table in the run."""
+    if static is None or table.is_periodic:
+        return False
+    given = static.stress is not None or static.k0 is not None
+    return given or side in static.boundary or table.needs_column or table.is_outside
+
+
+def _depth(case: "DiskCase", side: str, table: Keeping) -> int:
+    """The number of disks of one side, as given or by default."""
+    if table.intact is not None:
+        return table.intact
+    beyond = table.is_artificial or table.is_interface or _drives(side, table, case.boundary)
+    whole = table.on_whole_side() == table
+    return INTACT if whole and beyond and keeps_forces(case.static, side, table) and _is_ground(case.boundary) else 0
+
+
+def _is_ground(boundary: Mapping[str, Boundary]) -> bool:
+    """Whether the body is a part of the ground, and no sample, by its sides."""
+    return any(
+        table.absorbs
+        or table.is_periodic
+        or _drives(side, table, boundary)
+        or (table.is_artificial and "artificial" in table.model_fields_set)
+        for side, table in boundary.items()
+    )
+
+
+def _drives(side: str, table: Boundary, boundary: Mapping[str, Boundary]) -> bool:
+    """Whether waves enter through a side: not at a platen, if the opposite side holds the same motion."""
+    if not table.waves:
+        return False
+    axis = normal_axis(side)
+    across = boundary.get(OPPOSITE[side])
+    held = set() if across is None else {*across.prescribed(axis)}
+    return not set(table.prescribed(axis)) & held
