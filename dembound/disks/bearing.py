@@ -9,7 +9,7 @@ from dembound.boundaries.viscous import Bearing, BearingDashpots
 
 
 class Springs(NamedTuple):
-    """Springs of k nodes: node (k,) ascending, twin (k,) or −1, weight (k,) in the mean motion, stiffness (k, 2) N/m."""
+    """Springs of nodes (k,), ascending: twin (k,) or −1, weight (k,) in the mean motion, stiffness (k, 2) N/m."""
 
     node: np.ndarray
     twin: np.ndarray

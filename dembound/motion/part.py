@@ -168,6 +168,12 @@ class System:
         """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""
         return None
 
+    def look(self, u: np.ndarray, step: int, supplied: float, stored: float) -> None:  # few use it
+        """Look at displacements (3, slots) of a step for which the ledger is written; by default nothing.
+
+        supplied, stored : J, supplied so far, and stored at rest. Raises RunError where something has gone wrong.
+        """
+
     def borne(self, supported: np.ndarray) -> np.ndarray:
         """Forces (s, 3) N of springs on relative motion on the nodes (s,) of the support table; by default none."""
         return np.zeros((len(supported), 3))

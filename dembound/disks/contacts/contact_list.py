@@ -300,13 +300,22 @@ class ContactList(PairList):
         noted, self._cracks = self._cracks, []
         return joined(noted)
 
-    def reached(self) -> int:
-        """Number of bonds that have reached their strength so far, but never break."""
-        return int(np.count_nonzero(self.arrays.kept == kernel.REACHED))
+    def reached(self) -> tuple[np.ndarray, np.ndarray]:
+        """First and second particle (b,) of the bonds that have reached their strength, but never break."""
+        at = self.arrays.kept == kernel.REACHED
+        if not at.any():
+            return self.pairs[0][:0], self.pairs[1][:0]
+        own = self.of("kept") == kernel.REACHED
+        first, second = self.pairs
+        return first[own], second[own]
 
     def freshly_torn(self) -> np.ndarray:
         """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
         return self._counted(self.of("cracked") >= 0) > 0
+
+    def bonds_left(self) -> np.ndarray:
+        """Number (m,) of intact bonds of every particle."""
+        return self._counted(self.of("state") == INTACT)
 
     def coordination(self, geometry: int) -> np.ndarray:
         """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""

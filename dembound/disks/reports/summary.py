@@ -25,6 +25,7 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
         "packing": describe_packing(scene),
         "layers": describe_layers(scene),
         "load_factor": _describe_load_factor(run),
+        "forces_at_rest": _describe_forces_at_rest(run),
         "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
     }
 
@@ -33,6 +34,14 @@ def _describe_load_factor(run: Run) -> dict[str, Any] | None:
     """The load factor and where it is reached, see `LoadFactor.describe`; None if it has not been asked for."""
     found = load_factor_of(run)
     return None if found is None else found.describe(run) or {"factor": None}
+
+
+def _describe_forces_at_rest(run: Run) -> dict[str, Any] | None:
+    """What the forces at rest did at the sides, see `SideWatch.describe`; None without a static stage."""
+    system = run.system
+    if not isinstance(system, DiskSystem) or system.balance is None:
+        return None
+    return system.side_watch.describe()
 
 
 def asked_stress(scene: DiskScene) -> list[float] | None:

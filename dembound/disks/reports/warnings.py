@@ -24,6 +24,7 @@ from dembound.disks.reports.wave_warnings import wave_warnings
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.disks.stepping.near_ties import near_tie_warnings
+from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
 from dembound.meanings import MEANINGS
 from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import energy_warnings, still_moving
@@ -293,6 +294,8 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
             *moving,
             *_not_elastic(summary.get("load_factor")),
             *near_tie_warnings(scene, summary, cracks),
+            *lasting_force_warnings(summary["forces_at_rest"]),
+            *reach_warnings(summary["forces_at_rest"]),
             *energy_warnings(scene, summary["energy"]),
         ]
 

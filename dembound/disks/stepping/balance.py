@@ -1,6 +1,7 @@
 """The constant forces that balance the stress of a settled body: Z's unbalanced forces F_eq with opposite sign.
 
-Under ``geometry = "updated"`` they rotate with the side they act on. On debris they end.
+Under ``geometry = "updated"`` they rotate with the side they act on. On debris they end, and the disks that remain at
+its side carry them.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy as np
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.body import DiskBody
+from dembound.disks.stepping.carriers import carried, carriers_of, relative_work
 from dembound.disks.stepping.part import DiskPart
 from dembound.kernels.follower import GONE, side_rotations
 from dembound.kernels.fragments import pieces
@@ -34,7 +36,8 @@ class Balance:
     Attributes
     ----------
     force : (3, n) N and N·m, in the directions of the datum. datum : (3, n), as given.
-    followers : arrays with which the kernels rotate them.
+    followers : arrays with which the kernels rotate them. let_go : (n,) disks that have broken off or lost all their
+    bonds, on which the free field beyond no longer acts.
     """
 
     def __init__(
@@ -45,8 +48,11 @@ class Balance:
         self.datum = datum
         self._scene, self._steady, self._across = scene, steady, across
         self._of_ended = 0.0
-        self._ended = np.zeros(scene.count, dtype=np.bool_)
-        self._torn = np.zeros(scene.count, dtype=np.bool_)
+        self._ended, self._torn, self.let_go = np.zeros((3, scene.count), dtype=np.bool_)
+        self._begun = force.copy()
+        self._bears = _bears(force + across)
+        self._carriers = carriers_of(scene)
+        self._relative = np.zeros(len(self._carriers))
 
     def work(self, displacement: np.ndarray) -> float:
         """Work (J) done up to displacements (3, n), without the work of their rotation, which the kernels count."""
@@ -60,6 +66,7 @@ class Balance:
         """All arrays that change during a run, by name."""
         kept = {name: getattr(self, f"_{name}") for name in ("steady", "across", *_EVOLVING)}
         kept |= {"datum": self.datum, "force": self.force, "of_ended": np.array(self._of_ended)}
+        kept["let_go"] = self.let_go
         return kept | {f"follower_{name}": getattr(self.followers, name) for name in _FOLLOWING}
 
     @classmethod
@@ -68,7 +75,9 @@ class Balance:
         balance = cls(scene, saved["force"].copy(), *(saved[name].copy() for name in _FIXED))
         for name in _EVOLVING:
             setattr(balance, f"_{name}", saved[name].copy())
+        balance._bears = _bears(balance._begun + balance._across)
         balance._of_ended = float(saved["of_ended"])
+        balance.let_go = saved["let_go"].copy()
         for name in _FOLLOWING:
             getattr(balance.followers, name)[...] = saved[f"follower_{name}"]
         return balance
@@ -80,44 +89,93 @@ class Balance:
             part.contacts.note_cracks()
 
     def end_on_debris(
-        self, parts: Sequence[DiskPart], displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
+        self,
+        parts: Sequence[DiskPart],
+        displacement: np.ndarray,
+        velocity: np.ndarray,
+        step: float,
+        load: np.ndarray,
+        intact: np.ndarray | None,
     ) -> None:
-        """End the forces on pieces that have broken off, and apply their resultant to the rest of the body.
+        """End the forces on pieces that have broken off, and the moments on disks without bonds; others carry them.
 
-        A piece has broken off if neither bonds nor closed contacts connect it to the largest piece and one of its bonds
-        has broken since the start. Ground that was loose at the start therefore keeps its confining forces.
-        displacement (3, n) and velocity (3, n) : after a step (s). The ended forces are removed from load (3,
-        n), all steady forces; forces that still act through a seam are cancelled by their constant part.
+        A piece has broken off if neither bonds nor closed contacts connect it to disks of an intact zone or, without
+        such zones, to the largest piece, and one of its bonds has broken since the start. Ground that was loose at the
+        start therefore keeps its confining forces. Disks that have broken off or lost all bonds are no longer held by
+        a free field, see `let_go`.
+
+        displacement (3, n) and velocity (3, n) : after a step (s). The ended forces are removed from load (3, n), all
+        steady forces. intact : (m,) disks whose bonds never break; None: there are none.
         """
-        loose = np.zeros(len(self._ended), dtype=np.bool_)
+        debris, alone = np.zeros((2, len(self._ended)), dtype=np.bool_)
         for part in parts:
-            if part.contacts is not None:
-                self._torn[part.nodes] |= part.contacts.freshly_torn()  # called in the step of every break: all of them
             body = part.nodes
+            if part.contacts is not None:
+                fresh = part.contacts.freshly_torn()  # called in the step of every break: all of them
+                self._torn[body] |= fresh
+                alone[body] = fresh & (part.contacts.bonds_left() == 0)
             slot = part.layout.slot[body]
             piece = pieces(part.pairs, slot.min(), slot.max() + 1)[slot - slot.min()]
-            largest = np.argmax(np.bincount(piece))
-            loose[body] = (piece != largest) & np.isin(piece, piece[self._torn[body]])
-        loose &= ~self._ended
-        if not loose.any():
+            held = np.array([np.argmax(np.bincount(piece))]) if intact is None else piece[intact[body]]
+            debris[body] = ~np.isin(piece, held) & np.isin(piece, piece[self._torn[body]])
+        debris &= ~self._ended
+        alone = (alone | debris) & ~self.let_go
+        if not (debris.any() or alone.any()):
             return
-        self._ended |= loose
-        change = np.where(loose, -self._across - self.force, 0.0)
+        moved = displacement - self.datum
+        before = self.relative_work(displacement)
+        change = np.where(debris, -self.force, 0.0)
+        change[2] -= np.where(alone & ~debris, self.force[2], 0.0)
+        lost = np.where(alone, self._across, 0.0) - change
+        self._ended |= debris
+        self.let_go |= alone
         followers = self.followers
-        turned = loose[followers.node]
+        turned, apart = debris[followers.node], alone[followers.node]
         load[:2, followers.node[turned]] -= followers.extra[:, turned]
+        share = _shares(followers.side)
+        followers.force[...] -= np.where(apart, share[:, None, :] * self._across[:2, followers.node], 0.0)
         followers.force[..., turned] = 0.0
         followers.extra[:, turned] = 0.0
         self._leave_sides()
-        for part in parts:
-            change[:, part.nodes] += self._borne_by_the_rest(change, part.nodes)
+        places = self._scene.positions.T + self.datum[:2]
+        change += carried(self._carriers, lost, places, self._ended, self.let_go, self._scene.parts)
         # the force of the last step acted until half a step before the present displacements
-        self._of_ended -= float(np.sum(change * (displacement - 0.5 * step * velocity - self.datum)))
+        self._of_ended -= float(np.sum(change * (moved - 0.5 * step * velocity)))
         self.force += change
         load += change
-        share = _shares(followers.side)
         followers.force[...] += np.where(turned, 0.0, share[:, None, :] * change[:2, followers.node])
         followers.steady[...] += change[:2, followers.node]
+        self._relative += before - self.relative_work(displacement)
+
+    def relative_work(self, displacement: np.ndarray) -> np.ndarray:
+        """Work (J) of the forces up to displacements (3, n), by carrier, less that on the mean motion of its side.
+
+        Forces at rest that come through a free-field seam are included.
+        """
+        moved = displacement - self.datum
+        force = self.force + np.where(self.let_go, 0.0, self._across)
+        return self._relative + relative_work(self._carriers, force, moved, self._ended)
+
+    def share_of_ended(self) -> float:
+        """Sum of the sizes of the forces that acted at the start on disks that have broken off since, over all."""
+        size = np.hypot(*(self._begun + self._across)[:2])
+        return float(size[self._ended].sum() / size.sum()) if size.any() else 0.0
+
+    def largest_turn(self, displacement: np.ndarray) -> tuple[float, int]:
+        """The largest rotation (rad) of a disk that bears a force at rest at a side, and the number of its carrier."""
+        acts = self._bears & ~self.let_go
+        found = 0.0, 0
+        for number, each in enumerate(self._carriers):
+            nodes = each.nodes[acts[each.nodes]]
+            if len(nodes):
+                turn = float(np.abs(displacement[2, nodes] - self.datum[2, nodes]).max())
+                found = max(found, (turn, number))
+        return found
+
+    @property
+    def sides(self) -> list[str]:
+        """The side of each carrier."""
+        return [each.side for each in self._carriers]
 
     def _leave_sides(self) -> None:
         """Compute the rotation of each side from its remaining particles."""
@@ -128,36 +186,26 @@ class Balance:
             if len(left):
                 followers.arm[:, left] -= followers.arm[:, left].mean(axis=1, keepdims=True)
 
-    def _borne_by_the_rest(self, change: np.ndarray, body: slice) -> np.ndarray:
-        """Forces (3, m) on the sides of the remaining body that replace the ended forces, torque included.
-
-        change (3, n) N and N·m is the change of the forces by ending. In the ground the medium beyond would carry it;
-        without a replacement the remaining forces would push the body away.
-        """
-        borne = np.zeros((3, body.stop - body.start))
-        node = self.followers.node
-        node = node[(node >= body.start) & (node < body.stop) & ~self._ended[node]]
-        if len(node) < 2:
-            return borne
-        places = self._scene.positions.T + self.datum[:2]
-        middle = places[:, node].mean(axis=1, keepdims=True)
-        arm, lost = places - middle, change[:, body]
-        x, y = arm[:, body]
-        torque = np.sum(x * lost[1] - y * lost[0]) + lost[2].sum()
-        turn = np.stack([-arm[1, node], arm[0, node]])
-        at = node - body.start
-        borne[:2, at] = -lost[:2].sum(axis=1)[:, None] / len(node) - torque / np.sum(turn**2) * turn
-        return borne
-
 
 _FIXED = ("steady", "datum", "across")
 """The arguments of a balance other than its forces."""
 
-_EVOLVING = ("ended", "torn")
-"""Arrays about particles that have broken off."""
+_EVOLVING = ("ended", "torn", "begun", "relative")
+"""Arrays about particles that have broken off, and of what acted on them."""
 
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")
 """The arrays of its followers that change."""
+
+
+BEARS = 1e-3
+"""Force at rest on a disk, over the largest one, below which it is what the static stage has left over."""
+
+
+def _bears(force: np.ndarray) -> np.ndarray:
+    """Which disks (n,) bear forces at rest, of (3, n)."""
+    size = np.hypot(*force[:2])
+    bears: np.ndarray = size > BEARS * size.max(initial=0.0)
+    return bears
 
 
 def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:

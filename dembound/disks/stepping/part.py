@@ -196,11 +196,17 @@ class FreeFieldSeam(Tie):
     def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
         self.seam = seam
         self.column = column
+        self._let_go = np.zeros(len(seam.twin), dtype=np.bool_)
         self._constants, row_of = elastic_constants(column.ground)
         slot = column.layout.slot
         self._row = row_of[2 * seam.contact_type + seam.twin_is_second].astype(np.uint32)
         self._neighbour = slot[seam.neighbour].astype(np.uint32)
         self._ends: tuple[Contacts, np.ndarray] | None = None
+
+    def let_go(self, disks: np.ndarray) -> None:
+        """Exert no forces from now on on the disks (n,) bool that have broken off or lost all their bonds."""
+        if (disks[: len(self._let_go)] != self._let_go).any():
+            self._let_go, self._ends = disks[: len(self._let_go)].copy(), None
 
     @property
     def nodes(self) -> np.ndarray:
@@ -211,7 +217,7 @@ class FreeFieldSeam(Tie):
         """The rows of contacts across the seam, under the law in use in the column."""
         seam = self.seam
         counts = np.zeros(len(supported), dtype=np.uint32)
-        counts[np.searchsorted(supported, seam.node)] = seam.contact_counts
+        counts[np.searchsorted(supported, seam.node)] = np.where(self._let_go[seam.node], 0, seam.contact_counts)
         start = np.zeros(len(supported) + 1, dtype=np.uint32)
         np.cumsum(counts, out=start[1:])
         if not self.column.uses_history:
@@ -234,6 +240,7 @@ class FreeFieldSeam(Tie):
     def last_forces(self, contacts: ContactList) -> np.ndarray:
         """Forces and moments (3, k) on its nodes from the last forces of the column's pairs."""
         force = np.zeros((len(self.nodes), 3))
+        assert not self._let_go.any()
         ends = SeamEnds(self.seam.start, self.ends(contacts).astype(np.uint32), contacts.arrays.force)
         bonded.seam_ends_forces(ends, np.zeros((3, 0)), np.zeros((3, 0)), force)
         return force.T
@@ -245,5 +252,6 @@ class FreeFieldSeam(Tie):
             _, pair = contacts.find(owner, near, vectors)
             image = contacts.images(owner, near, vectors)
             turned = (contacts.pairs[0][pair] != owner) | (contacts.image[pair] != image).any(axis=1)
-            self._ends = contacts.arrays, 2 * contacts.live[pair] + turned
+            acting = ~np.repeat(self._let_go[self.seam.node], self.seam.contact_counts)
+            self._ends = contacts.arrays, (2 * contacts.live[pair] + turned)[acting]
         return self._ends[1]

@@ -16,6 +16,7 @@ from dembound.disks.stepping.first_law import balanced, first_law, not_balanced
 from dembound.disks.stepping.near_ties import NearTies
 from dembound.disks.stepping.rest_forces import RestForces
 from dembound.disks.stepping.rotation import turned_as_a_whole, turns_freely
+from dembound.disks.stepping.side_watch import SideWatch
 from dembound.disks.stepping.start import Start
 from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.follower import turn_forces
@@ -71,6 +72,7 @@ class DiskSystem(RecordedDisks):
         self.is_elastic_again = False
         self._time_step, self._start, self._settling = time_step, start, settling
         watches = scene.outside is not None and scene.has_history and not settling
+        self.side_watch = SideWatch(scene, time_step)
         self.near_ties = NearTies(scene, self.contacts["body"]) if watches else None
 
     @property
@@ -128,8 +130,9 @@ class DiskSystem(RecordedDisks):
             self.switch(state)
         elif self.balance is not None and self.uses_history and why in (BROKE, LIST_ENDS):
             self.balance.end_on_debris(
-                self.disks.parts, state.displacement, state.velocity, self._time_step, self.steady
+                self.disks.parts, state.displacement, state.velocity, self._time_step, self.steady, self.scene.intact
             )
+            self._let_go()
         super().react(why, steps, state)
         if self.near_ties is not None and self.uses_history:
             self.near_ties.look(state, self.contacts["body"])
@@ -191,7 +194,8 @@ class DiskSystem(RecordedDisks):
     def saved_arrays(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
         saved = dict(super().saved_arrays())
-        for owner, kept in (("balance", self.balance), ("near_ties", self.near_ties)):
+        watches = ("near_ties", self.near_ties), ("side_watch", self.side_watch)
+        for owner, kept in (("balance", self.balance), *watches):
             saved |= {} if kept is None else {f"{owner}/{name}": values for name, values in kept.saved_arrays().items()}
         return saved
 
@@ -202,10 +206,24 @@ class DiskSystem(RecordedDisks):
         self.balance = Balance.restored(self.scene, kept) if kept else None
         if self.near_ties is not None:
             self.near_ties.restore(within(saved, "near_ties"))
+        self.side_watch.restore(within(saved, "side_watch"))
         self._set_balance_in_use()
+        self._let_go()
         self._begin_at_rest()
         if self._bearing is not None and self.balance is not None:
             self._bearing.rest_at(self.balance.datum)
+
+    def look(self, u: np.ndarray, step: int, supplied: float, stored: float) -> None:
+        """Look at the forces at rest at displacements (3, slots) of a step, see `SideWatch.look`."""
+        if self.balance is not None and self.scene.has_history:
+            displacement = self.scene.layout.gather(u)
+            self.side_watch.look(self.balance, self.contacts, displacement, step, supplied, stored)
+
+    def _let_go(self) -> None:
+        """Let the free field exert no forces on disks that have broken off or lost all their bonds."""
+        for seam in self.disks.seams if self.balance is not None else ():
+            assert self.balance is not None
+            seam.let_go(self.balance.let_go)
 
     def borne(self, supported: np.ndarray) -> np.ndarray:
         """Forces (s, 3) N of the springs of the bottom on the nodes (s,) of the support table."""

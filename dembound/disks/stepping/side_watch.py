@@ -1,0 +1,182 @@
+"""Watches forces at rest at the sides of a body in which bonds break: they must not become a motor.
+
+The ledger counts the work of these constant forces as supplied, so its error says nothing about them. They do work on
+ground that moves with its side, as by waves. On disks that leave their side or turn there they would do work without
+end, for which there is nothing in the ground beyond.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from dembound.disks.body import DiskBody
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.stepping.balance import Balance
+from dembound.errors import RunError
+from dembound.motion.state import Arrays
+from dembound.words import percent
+
+WARNS, STOPS = 0.05, 0.5
+"""Work of forces at rest relative to the mean motion of their side, over the larger of the supplied energy and that
+stored at rest, above which a run is warned of, and stopped.
+
+Ten scenes whose sides held had at most WORK_OF_GOOD, ten whose sides did not at least WORK_OF_BAD.
+"""
+
+ENDED = 0.01
+"""Share of the forces at rest that acted on disks which have broken off, above which a run is warned of."""
+
+TURNED = 0.15
+"""Rotation (rad) of a disk that bears a force at rest, above which a run is warned of."""
+
+COLUMN = "free-field column"
+"""Name of the column among the places that cracks would have reached."""
+
+
+class SideWatch:
+    """Measures, when the ledger is written, what forces at rest do at the sides.
+
+    Attributes
+    ----------
+    work : largest share of work so far, see `WARNS`, with its side and time. ended : share of forces on disks that have
+    broken off. turn : largest rotation so far (rad), with its side and time. reached : by side, number of bonds of its
+    intact zone that have reached their strength, and time (s) at which the first was found.
+    """
+
+    def __init__(self, scene: DiskBody, time_step: float) -> None:
+        self._scene, self._time_step = scene, time_step
+        self._work, self._turn = np.zeros(3), np.zeros(3)  # size, number of the carrier, step
+        self.ended = 0.0
+        self._places = [*scene.intact_zones, COLUMN]
+        self._reached = np.full((len(self._places), 2), -1)  # count, step of the first
+        self._reached[:, 0] = 0
+        self._sides: list[str] = []
+
+    def look(
+        self,
+        balance: Balance,
+        contacts: Mapping[str, ContactList],
+        displacement: np.ndarray,
+        step: int,
+        supplied: float,
+        stored: float,
+    ) -> None:
+        """Measure at displacements (3, n) of a step; supplied and stored : J, so far, and at rest.
+
+        Raises RunError if forces at rest have done more than `STOPS` of the larger of these two.
+        """
+        self._sides = balance.sides
+        self._note_reached(contacts, step)
+        self.ended = balance.share_of_ended()
+        turn, at = balance.largest_turn(displacement)
+        if turn > self._turn[0]:
+            self._turn[:] = turn, at, step
+        work, energy = balance.relative_work(displacement), max(supplied, stored)
+        if energy <= 0.0 or len(work) == 0:
+            return
+        most = int(np.argmax(work))
+        if work[most] / energy > self._work[0]:
+            self._work[:] = work[most] / energy, most, step
+        if self._work[0] > STOPS:
+            raise RunError(
+                f"{self._worked()}, {percent(float(self._work[0]))} of the energy that came in or was stored at rest: "
+                f"the ground at this side has broken, and what the static stage left there has become a motor; {CURE}"
+            )
+
+    def _note_reached(self, contacts: Mapping[str, ContactList], step: int) -> None:
+        """Count the bonds of each zone that have reached their strength."""
+        for part, pairs in contacts.items():
+            first, second = pairs.reached()
+            if len(first) == 0:
+                continue
+            for row, place in enumerate(self._places):
+                if part == "column" or place == COLUMN:
+                    count = len(first) if part == "column" and place == COLUMN else 0
+                else:
+                    zone = self._scene.intact_zones[place] - pairs.nodes.start
+                    count = int(np.count_nonzero(np.isin(first, zone) | np.isin(second, zone)))
+                if count > 0:
+                    before = self._reached[row, 1]
+                    self._reached[row] = count, step if before < 0 else before
+
+    def _worked(self) -> str:
+        """The work of forces at rest in words."""
+        _, at, step = self._work
+        return (
+            f"boundary.{self._sides[int(at)]}: until t = {step * self._time_step:.4g} s forces at rest have done work "
+            "on disks that moved away from this side, or turned there"
+        )
+
+    def describe(self) -> dict[str, Any]:
+        """The findings as plain JSON values, for a summary; times in s."""
+        return {
+            "work": self._described(self._work),
+            "turn": self._described(self._turn),
+            "ended": self.ended,
+            "reached": {
+                place: {"bonds": int(count), "time": float(step * self._time_step)}
+                for place, (count, step) in zip(self._places, self._reached.tolist(), strict=True)
+                if count > 0
+            },
+        }
+
+    def _described(self, found: np.ndarray) -> dict[str, Any] | None:
+        """Size, side and time of a finding; None for none."""
+        size, at, step = found.tolist()
+        return {"size": size, "side": self._sides[int(at)], "time": step * self._time_step} if size > 0.0 else None
+
+    def saved_arrays(self) -> Arrays:
+        """The findings so far."""
+        return {"work": self._work, "turn": self._turn, "reached": self._reached, "ended": np.array(self.ended)}
+
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        self._work, self._turn, self._reached = (saved[name].copy() for name in ("work", "turn", "reached"))
+        self.ended = float(saved["ended"])
+
+
+CURE = "give it a wider zone of unbroken ground, intact = 4, or a larger body, so that cracks stay away from it"
+"""What to change where forces at rest have become a motor."""
+
+
+def lasting_force_warnings(found: Mapping[str, Any] | None) -> Iterator[str]:
+    """Warnings about forces at rest that have become a motor; found : of the summary, see `SideWatch.describe`."""
+    if found is None:
+        return
+    work, turn = found["work"], found["turn"]
+    if work is not None and work["size"] > WARNS:
+        yield (
+            f"boundary.{work['side']}: until t = {work['time']:.4g} s forces at rest have done "
+            f"{percent(work['size'])} of the energy that came in or was stored at rest, on disks that moved away from "
+            f"this side or turned there, as the ground there has broken; {CURE}"
+        )
+    if turn is not None and turn["size"] > TURNED:
+        yield (
+            f"boundary.{turn['side']}: a disk on which forces at rest act has turned by {turn['size']:.2g} rad by "
+            f"t = {turn['time']:.4g} s: it is no longer held by the ground beside it; {CURE}"
+        )
+    if found["ended"] > ENDED:
+        yield (
+            f"static: disks that bore {percent(found['ended'])} of the forces at rest have broken off, and the others "
+            f"of their sides bear these now; {CURE}"
+        )
+
+
+def reach_warnings(found: Mapping[str, Any] | None) -> Iterator[str]:
+    """A warning about sides that cracks would have reached without their intact zone; found : as of the summary."""
+    reached = {} if found is None else found["reached"]
+    if not reached:
+        return
+    places = [
+        f"the {place if place == COLUMN else f'{place} side'} (at least {each['bonds']:,} bonds, from t = "
+        f"{each['time']:.4g} s)"
+        for place, each in reached.items()
+    ]
+    keys = " and ".join(f"boundary.{place}" for place in reached if place != COLUMN) or "boundary"
+    yield (
+        f"{keys}: cracks would have reached {', '.join(places)}, whose bonds do not break, as they stand for ground "
+        "that goes on unbroken; take a larger packing.size"
+    )
