@@ -10,6 +10,7 @@ from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts.breaks import first_break
 from dembound.disks.entry import all_late_by
+from dembound.disks.far import FarDisks
 from dembound.disks.following import Membranes
 from dembound.disks.material.wave_front import front_of
 from dembound.disks.membrane import follows, in_run
@@ -90,12 +91,14 @@ class Disks(Kind[DiskCase, DiskScene]):
         )
 
     def trackers(self, run: Run) -> list[Tracker]:
-        """The membranes of pressures on sides, if there are any, and the load factor, if the case asks for it."""
+        """Membranes of pressures on sides, far disks of laws with a history, and a load factor, if there are any."""
         scene, case, system = run.scene, run.scene.case, run.system
         assert isinstance(case, DiskCase)
         assert isinstance(system, DiskSystem)
         assert isinstance(scene, DiskScene)
         found: list[Tracker] = [Membranes(scene)] if follows(scene) else []
+        if scene.has_history:
+            found.append(FarDisks(scene, retires=case.run.far == "retire"))
         return [*found, LoadFactor(case, system)] if case.output.load_factor else found
 
     def trials(self, case: DiskCase, *, full: bool = False) -> tuple[list[Trial], list[str]]:

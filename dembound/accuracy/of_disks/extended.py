@@ -11,7 +11,7 @@ from dembound.boundaries import SIDES, is_far, normal_axis, plane_of
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.monitor import Monitor
-from dembound.casefile.run import Run
+from dembound.casefile.disks.run import DiskRun
 from dembound.disks.loads import forces_of
 from dembound.disks.material.wave_front import front_of
 from dembound.disks.scene import DiskScene, build
@@ -85,7 +85,7 @@ def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
     )
 
 
-def _run_of(scene: DiskScene) -> Run:
+def _run_of(scene: DiskScene) -> DiskRun:
     """The ``[run]`` table of an enlarged scene; its step beside a continuum has its own limit."""
     case = scene.case
     return case.run if case.outside_sides else same_step(case.run, choose_step(scene)[0])

@@ -17,6 +17,7 @@ from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.reduce import Reduce
+from dembound.casefile.disks.run import DiskRun
 from dembound.casefile.disks.static import Static, begins_stressed
 from dembound.casefile.model import Case
 from dembound.holes import Hole
@@ -31,11 +32,12 @@ class DiskCase(Case):
 
     Attributes
     ----------
-    ground, packing, material, damping, motion, outside, reduce : the tables of these names.
+    run, ground, packing, material, damping, motion, outside, reduce : the tables of these names.
     static, incident : the tables of these names; None: no static stage, no wave at an angle.
     layer : from the surface down; none: the ground is uniform. hole : in the order of the file.
     """
 
+    run: DiskRun
     packing: Packing
     material: Material
     damping: Damping = field(default_factory=Damping)

@@ -15,9 +15,9 @@ from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.problems import problems_between
 from dembound.casefile.disks.reduce import Reduce
+from dembound.casefile.disks.run import DiskRun
 from dembound.casefile.disks.static import Static
 from dembound.casefile.output import Output
-from dembound.casefile.run import Run
 from dembound.casefile.schema import Schema
 from dembound.casefile.sweep import Sweep
 from dembound.casefile.types import BoundaryTable, HoleTable, PackingTable, StaticSide
@@ -35,7 +35,7 @@ SCHEMA = Schema(
         "motion": TypeAdapter(Motion),
         "outside": TypeAdapter(OutsideTable),
         "reduce": TypeAdapter(Reduce),
-        "run": TypeAdapter(Run),
+        "run": TypeAdapter(DiskRun),
         "output": TypeAdapter(Output),
         "chart": TypeAdapter(Chart),
         "sweep": TypeAdapter(Sweep),

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from dembound.disks.far import FarDisks
 from dembound.disks.material.layered import Joint, LayeredGround
 from dembound.disks.rest.block_stress import Uniformity
 from dembound.disks.rest.settled import Settled
@@ -26,6 +27,7 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
         "layers": describe_layers(scene),
         "load_factor": _describe_load_factor(run),
         "forces_at_rest": _describe_forces_at_rest(run),
+        "far": _describe_far(run),
         "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
     }
 
@@ -42,6 +44,12 @@ def _describe_forces_at_rest(run: Run) -> dict[str, Any] | None:
     if not isinstance(system, DiskSystem) or system.balance is None:
         return None
     return system.side_watch.describe()
+
+
+def _describe_far(run: Run) -> dict[str, Any] | None:
+    """Disks that have fallen far below the scene, see `FarDisks.describe`; None if there are none."""
+    found = run.state.owners.get(FarDisks.name)
+    return found.describe(run.time_step) if isinstance(found, FarDisks) else None
 
 
 def asked_stress(scene: DiskScene) -> list[float] | None:

@@ -13,6 +13,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import MODULI_KEYS, with_history
 from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
+from dembound.disks.far import far_warnings
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.reports.continuum_facts import continuum_warnings
 from dembound.disks.reports.load_warnings import load_warnings
@@ -296,6 +297,7 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
             *near_tie_warnings(scene, summary, cracks),
             *lasting_force_warnings(summary["forces_at_rest"]),
             *reach_warnings(summary["forces_at_rest"]),
+            *far_warnings(summary["far"]),
             *energy_warnings(scene, summary["energy"]),
         ]
 

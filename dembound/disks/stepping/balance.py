@@ -62,6 +62,12 @@ class Balance:
         """Add forces (3, n) N to the steady ones beside those that rotate."""
         self.followers.steady[...] += change[:2, self.followers.node]
 
+    def leave_alone(self, disks: np.ndarray) -> None:
+        """Have no steady force on disks (k,) from now on, which do not move any more."""
+        followers = self.followers
+        at = np.isin(followers.node, disks)
+        followers.steady[:, at], followers.force[..., at], followers.extra[:, at] = 0.0, 0.0, 0.0
+
     def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name."""
         kept = {name: getattr(self, f"_{name}") for name in ("steady", "across", *_EVOLVING)}

@@ -213,6 +213,25 @@ class DiskSystem(RecordedDisks):
         if self._bearing is not None and self.balance is not None:
             self._bearing.rest_at(self.balance.datum)
 
+    def retire(self, disks: np.ndarray, state: State, step: float) -> None:
+        """Put disks (m,) bool that touch nothing to rest for good; their energy counts as taken by damping.
+
+        step : Δt in s; velocities are half a step behind.
+        """
+        chosen = np.flatnonzero(disks)
+        if len(chosen) == 0:
+            return
+        slots, inertia = state.layout.slot[chosen], np.stack([self.scene.mass, self.scene.mass, self.scene.inertia])
+        v = state.v[:, slots]
+        force = self.steady[:, chosen] if self.steady.size else np.zeros_like(v)
+        force = force - self.scene.damp * np.abs(force) * np.sign(v)
+        state.work[:, 1] += float(np.sum(0.5 * v * (inertia[:, chosen] * v + step * force)))
+        state.v[:, slots] = 0.0
+        if self.steady.size:
+            self.steady[:, chosen] = 0.0
+        if self.balance is not None:
+            self.balance.leave_alone(chosen)
+
     def look(self, u: np.ndarray, step: int, supplied: float, stored: float) -> None:
         """Look at the forces at rest at displacements (3, slots) of a step, see `SideWatch.look`."""
         if self.balance is not None and self.scene.has_history:
