@@ -17,6 +17,7 @@ from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.contacts.layout import Rows
 from dembound.disks.intact import intact_disks, intact_zones
 from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
+from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.motion.between import Between
 from dembound.motion.layout import Layout
@@ -217,6 +218,13 @@ class DiskBody(Scene):
         for each in self.continua:
             moves[:2, each.nodes] &= ~each.body.mesh.held
         return moves
+
+    @cached_property
+    def bonded(self) -> np.ndarray:
+        """Whether each disk (m,) has a bond as built."""
+        constants = brick_constants(self.ground, gaps_close=False, locked_in=0.0)
+        bonds = self.assembly.pairs[constants[self.assembly.contact_type, 7] > 0.0]
+        return np.bincount(bonds.ravel(), minlength=self.disk_count) > 0
 
     @property
     def bearing(self) -> Springs | None:

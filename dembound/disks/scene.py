@@ -227,7 +227,8 @@ def _scene(
         between=between,
         ground_waves=waves,
     )
-    require_room(case, scene.intact_zones, scene.disk_count - scene.column_count)
+    if scene.has_history:  # under other laws they matter to load factors only
+        require_room(case, scene.intact_zones, scene.disk_count - scene.column_count)
     return with_waves(scene, case.wave)
 
 

@@ -19,6 +19,8 @@ import numpy as np
 
 from dembound.accuracy.of_disks.equal_sides import equal_sides, with_whole_cells
 from dembound.accuracy.of_disks.waves import is_square_lattice
+from dembound.boundaries import Boundary
+from dembound.boundaries.intact import Keeping
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.layer import Layer
@@ -96,8 +98,18 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
         output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
         name=f"{case.name}_coarser",
     )
+    larger = replace(larger, boundary={side: _as_deep(case, side, scene, cell) for side in case.boundary})
     boundary, weight = equal_sides(larger, scene, time_step)
     return Coarser(replace(larger, boundary=boundary), weight)
+
+
+def _as_deep(case: DiskCase, side: str, scene: DiskScene, cell: float) -> Boundary:
+    """A side whose bonds do not break as deep as in the case, in larger cells (m) that are fewer."""
+    table = case.boundary[side]
+    if not isinstance(table, Keeping) or side not in case.intact:
+        return table
+    depth = case.intact[side] * scene.ground.brick.mean_diameter / cell
+    return table.model_copy(update={"intact": max(1, round(depth))})
 
 
 def _cells(size: tuple[float, float], diameter: float) -> tuple[int, int, float]:

@@ -69,6 +69,7 @@ class ContactList(PairList):
     kind : (b,) types of the contacts as built, rows of `bonds`.
     skin : m, gap up to which the list is complete.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
+    retired : (m,) bool, particles that meet no others any more.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
     """
 
@@ -117,6 +118,7 @@ class ContactList(PairList):
         self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
         self._cracks: list[Cracks] = []
         self._held = held
+        self.retired = np.zeros(len(assembly.radii), dtype=np.bool_)
         if self.searches:
             self.search(np.zeros((3, len(self.layout.slot))))
         if plan is not None:
@@ -218,7 +220,7 @@ class ContactList(PairList):
         kept = (self.of("state") == INTACT) | (np.hypot(*vectors.T) - radii[first] - radii[second] <= self.skin)
         if self._held is not None:
             kept[self.find(*self._held)[1]] = True
-        return kept
+        return kept & ~(self.retired[first] | self.retired[second])
 
     def _met(self, moved: np.ndarray, kept: np.ndarray) -> tuple[Pairs, np.ndarray]:
         """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m.
@@ -230,6 +232,7 @@ class ContactList(PairList):
         first, second = (particles[kept] for particles in self.pairs)
         keys = pair_keys(first, second, self.image[kept], len(radii))
         fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, len(radii)), keys)
+        fresh &= ~self.retired[near].any(axis=1)
         (first, second), image = near[fresh].T, image[fresh]
         vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
         zone = self.ground.zone_of(positions[:, 1])
@@ -328,6 +331,7 @@ class ContactList(PairList):
         saved |= {"image": self.image, "constants": self._constants, "origin": self.origin}
         if self.dashpots is not None:
             saved["drag"] = self.drag[self.live]
+        saved["retired"] = self.retired
         saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
         return saved | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
@@ -337,6 +341,7 @@ class ContactList(PairList):
         self._constants = saved["constants"]
         self._set_origin(saved["origin"][:, self._slot - self._slots.start])
         self.keeps_slip = bool(saved["keeps_slip"])
+        self.retired = saved["retired"].copy()
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])

@@ -22,6 +22,7 @@ from dembound.disks.matching import sent_back
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.reports.continuum_facts import continuum_facts
 from dembound.disks.reports.incident_facts import incident_facts
+from dembound.disks.reports.intact import intact_facts
 from dembound.disks.reports.materials import Own, materials_of
 from dembound.disks.reports.summary import describe_layers, describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
@@ -54,6 +55,7 @@ def disk_facts(scene: DiskScene) -> Entries:
     yield from _damping_facts(scene)
     yield from _hole_facts(case)
     yield from _static_facts(scene)
+    yield from intact_facts(scene)
     if scene.outside is not None:
         yield from continuum_facts(scene)
     if scene.ground_waves is not None:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from dembound.disks.stepping.load_factor import load_factor_in_words
+from dembound.disks.stepping.side_watch import WARNS
 from dembound.motion.cracks import MANY
 from dembound.results.reader import laws_in_words
 from dembound.words import percent, with_unit
@@ -26,10 +27,18 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
         facts += _broken(summary["cracks"], static)
         if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
-            facts.append(f"largest error of the energy balance: {percent(error)}")
+            facts.append(f"largest error of the energy balance: {percent(error)}{_worked(summary['forces_at_rest'])}")
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts
+
+
+def _worked(found: Mapping[str, Any] | None) -> str:
+    """Work of forces at rest, which the error of the ledger does not include, if it is more than waves explain."""
+    work = None if found is None else found["work"]
+    if work is None or work["size"] <= WARNS:
+        return ""
+    return f"; forces at rest did {percent(work['size'])} of what came in or was stored, on ground that left its side"
 
 
 def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list[str]:

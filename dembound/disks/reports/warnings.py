@@ -16,6 +16,7 @@ from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.far import far_warnings
 from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.reports.continuum_facts import continuum_warnings
+from dembound.disks.reports.intact import intact_warnings
 from dembound.disks.reports.load_warnings import load_warnings
 from dembound.disks.reports.materials import Own, materials_of
 from dembound.disks.reports.outcome import SHOWN, block_in_words
@@ -76,6 +77,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_of_each_layer(scene, _settles_in_tension),
         *wave_warnings(scene, time_step),
         *side_warnings(scene),
+        *intact_warnings(scene),
         *spring_warnings(scene),
         *load_warnings(scene),
         *_of_each_layer(scene, _speed_of_the_packing),

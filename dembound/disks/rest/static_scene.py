@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.boundaries.support import SupportBuilder, Supports
+from dembound.boundaries import Boundary
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.rest.tractions import Tractions
@@ -26,7 +27,7 @@ class StaticScene:
         for side, table in (free_field | dict(static.boundary)).items():
             if side in scene.edges:
                 for part, medium in media_of(scene, side):
-                    table.support(part, medium, case.wave, builder)
+                    _support(scene, table, part, medium, builder)
         self.static = static
         stressed = scene.at_rest is not None
         self._tractions = None if static.stress is None or stressed else Tractions(scene, static.stress)
@@ -76,6 +77,21 @@ class StaticScene:
         pair = np.concatenate([np.hypot(*pairs.arrays.force[:2]) for pairs in contacts.values()])
         acting = pair > 0.0
         return float(unbalanced / pair[acting].mean()) if acting.any() else (np.inf if unbalanced > 0.0 else 0.0)
+
+
+def _support(scene: DiskScene, table: Boundary, edge: Edge, medium: BoundaryMedium, builder: SupportBuilder) -> None:
+    """Add the rows of a side; disks without bonds are not kept from turning.
+
+    The moment that kept them would go on acting in the run, where nothing but friction holds such a disk.
+    """
+    held, alone = builder.held, ~scene.bonded[edge.nodes]
+    if 2 not in table.prescribed(edge.axis) or not alone.any():
+        table.support(edge, medium, scene.case.wave, builder)
+        return
+    for chosen, components in ((~alone, held), (alone, (*held, 2))):
+        builder.held = components
+        table.support(edge.only(chosen, edge.length), medium, scene.case.wave, builder)
+    builder.held = held
 
 
 def without_own_continua(scene: DiskScene) -> DiskScene:

@@ -13,7 +13,7 @@ import numpy as np
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.body import DiskBody
-from dembound.disks.stepping.carriers import carried, carriers_of, relative_work
+from dembound.disks.stepping.carriers import carried, carriers_of, on_side, relative_work, standing
 from dembound.disks.stepping.part import DiskPart
 from dembound.kernels.follower import GONE, side_rotations
 from dembound.kernels.fragments import pieces
@@ -50,9 +50,10 @@ class Balance:
         self._of_ended = 0.0
         self._ended, self._torn, self.let_go = np.zeros((3, scene.count), dtype=np.bool_)
         self._begun = force.copy()
-        self._bears = _bears(force + across)
+        self._note_begin()
         self._carriers = carriers_of(scene)
         self._relative = np.zeros(len(self._carriers))
+        self._stands = np.ones(len(self._carriers), dtype=np.bool_)
 
     def work(self, displacement: np.ndarray) -> float:
         """Work (J) done up to displacements (3, n), without the work of their rotation, which the kernels count."""
@@ -81,7 +82,7 @@ class Balance:
         balance = cls(scene, saved["force"].copy(), *(saved[name].copy() for name in _FIXED))
         for name in _EVOLVING:
             setattr(balance, f"_{name}", saved[name].copy())
-        balance._bears = _bears(balance._begun + balance._across)
+        balance._note_begin()
         balance._of_ended = float(saved["of_ended"])
         balance.let_go = saved["let_go"].copy()
         for name in _FOLLOWING:
@@ -134,6 +135,10 @@ class Balance:
         change[2] -= np.where(alone & ~debris, self.force[2], 0.0)
         lost = np.where(alone, self._across, 0.0) - change
         self._ended |= debris
+        stands = standing(self._carriers, self._ended)
+        for number in np.flatnonzero(self._stands & ~stands):
+            change -= on_side(self._carriers[number], self.force + change)
+        self._stands = stands
         self.let_go |= alone
         followers = self.followers
         turned, apart = debris[followers.node], alone[followers.node]
@@ -144,7 +149,7 @@ class Balance:
         followers.extra[:, turned] = 0.0
         self._leave_sides()
         places = self._scene.positions.T + self.datum[:2]
-        change += carried(self._carriers, lost, places, self._ended, self.let_go, self._scene.parts)
+        change += carried(self._carriers, lost, places, self._ended, self.let_go, self._size, stands)
         # the force of the last step acted until half a step before the present displacements
         self._of_ended -= float(np.sum(change * (moved - 0.5 * step * velocity)))
         self.force += change
@@ -159,17 +164,17 @@ class Balance:
         Forces at rest that come through a free-field seam are included.
         """
         moved = displacement - self.datum
-        force = self.force + np.where(self.let_go, 0.0, self._across)
+        force = np.where(self._scene.moves, self.force + np.where(self.let_go, 0.0, self._across), 0.0)
         return self._relative + relative_work(self._carriers, force, moved, self._ended)
 
     def share_of_ended(self) -> float:
         """Sum of the sizes of the forces that acted at the start on disks that have broken off since, over all."""
-        size = np.hypot(*(self._begun + self._across)[:2])
+        size = self._size
         return float(size[self._ended].sum() / size.sum()) if size.any() else 0.0
 
     def largest_turn(self, displacement: np.ndarray) -> tuple[float, int]:
         """The largest rotation (rad) of a disk that bears a force at rest at a side, and the number of its carrier."""
-        acts = self._bears & ~self.let_go
+        acts = (self._size > 0.0) & ~self.let_go
         found = 0.0, 0
         for number, each in enumerate(self._carriers):
             nodes = each.nodes[acts[each.nodes]]
@@ -182,6 +187,12 @@ class Balance:
     def sides(self) -> list[str]:
         """The side of each carrier."""
         return [each.side for each in self._carriers]
+
+    def _note_begin(self) -> None:
+        """Note the sizes (n,) N of the forces at the start, without those that a side takes or that are left over."""
+        force = (self._begun + self._across)[:2]
+        size = np.hypot(*np.where(self._scene.moves[:2], force, 0.0))
+        self._size = np.where(size > BEARS * np.hypot(*force).max(initial=0.0), size, 0.0)
 
     def _leave_sides(self) -> None:
         """Compute the rotation of each side from its remaining particles."""
@@ -196,7 +207,7 @@ class Balance:
 _FIXED = ("steady", "datum", "across")
 """The arguments of a balance other than its forces."""
 
-_EVOLVING = ("ended", "torn", "begun", "relative")
+_EVOLVING = ("ended", "torn", "begun", "relative", "stands")
 """Arrays about particles that have broken off, and of what acted on them."""
 
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")
@@ -205,13 +216,6 @@ _FOLLOWING = ("twin", "arm", "force", "steady", "extra")
 
 BEARS = 1e-3
 """Force at rest on a disk, over the largest one, below which it is what the static stage has left over."""
-
-
-def _bears(force: np.ndarray) -> np.ndarray:
-    """Which disks (n,) bear forces at rest, of (3, n)."""
-    size = np.hypot(*force[:2])
-    bears: np.ndarray = size > BEARS * size.max(initial=0.0)
-    return bears
 
 
 def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:

@@ -10,16 +10,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.sides import OPPOSITE, SIDES, normal_axis
 from dembound.disks.body import DiskBody
 from dembound.packings.cut import cut_contacts
+
+STANDS = 0.5
+"""Share of the disks of a side that must be left for these to carry what the others did."""
 
 
 class Carrier(NamedTuple):
     """The disks of one part at one of its sides.
 
-    side, part : names. nodes : (k,) ascending; share : (k,) of the force on each that belongs to this side, one over
-    the number of its sides. turns : whether the part can turn, so that torques about the middle of a side are carried.
+    side, part : names. nodes : (k,) ascending; share : (3, k) of the force and moment on each that belongs to this
+    side: at a corner each side has the force along its normal. turns : whether the part can turn, so that torques about
+    the middle of a side are carried.
     """
 
     side: str
@@ -27,6 +31,7 @@ class Carrier(NamedTuple):
     nodes: np.ndarray
     share: np.ndarray
     turns: bool
+    disks: slice
 
 
 def carriers_of(scene: DiskBody) -> list[Carrier]:
@@ -43,8 +48,26 @@ def carriers_of(scene: DiskBody) -> list[Carrier]:
             own = np.unique(np.concatenate([own[(own >= nodes.start) & (own < nodes.stop)], beyond]))
             if len(own):
                 at[side] = own
-        sides = np.bincount(np.concatenate([np.zeros(0, np.int64), *at.values()]), minlength=nodes.stop)
-        found += [Carrier(side, name, own, 1.0 / sides[own], not any(periodic)) for side, own in at.items()]
+        found += [
+            Carrier(side, name, own, share, not any(periodic), nodes)
+            for (side, own), share in zip(at.items(), _shares(at, nodes.stop), strict=True)
+        ]
+    return found
+
+
+def _shares(at: dict[str, np.ndarray], count: int) -> list[np.ndarray]:
+    """Shares (3, k) of each side in the forces and moments on its disks, see `Carrier`; at : disks (k,) by side."""
+    along = np.zeros((2, count))  # sides of each disk by the axis of their normal
+    for side, own in at.items():
+        along[normal_axis(side), own] += 1.0
+    found = []
+    for side, own in at.items():
+        axis, every = normal_axis(side), along[:, own].sum(axis=0)
+        share = np.repeat(1.0 / every[None], 3, axis=0)
+        corner = every > along[axis, own]
+        share[axis, corner] = 1.0 / along[axis, own][corner]
+        share[1 - axis, corner] = 0.0
+        found.append(share)
     return found
 
 
@@ -54,56 +77,72 @@ def carried(
     places: np.ndarray,
     ended: np.ndarray,
     loose: np.ndarray,
-    parts: dict[str, slice],
+    size: np.ndarray,
+    stands: np.ndarray,
 ) -> np.ndarray:
     """Forces and moments (3, n) on the remaining disks of each side in place of those lost (3, n) at that side.
 
-    places : (2, n) m. ended : (n,) disks that carry nothing any more; loose : (n,) disks that carry no moments. What
-    disks carried inside the body, or at a side without remaining disks, goes to those of all other sides of their part.
+    places : (2, n) m. ended : (n,) disks that carry nothing any more; loose : (n,) disks that carry no moments; size :
+    (n,) N of the forces at the start. What disks carried inside the body goes to the remaining ones of all sides of
+    their part. stands : (c,) whether each carrier still carries, see `standing`.
     """
     change = np.zeros_like(lost)
-    for name, part in parts.items():
-        own = [each for each in carriers if each.part == name]
-        if not own or not lost[:, part].any():
-            continue
-        left = np.zeros_like(lost)
-        left[:, part] = lost[:, part]
-        left[:, np.concatenate([each.nodes for each in own])] = 0.0
-        for each in own:
-            here = np.zeros_like(lost)
-            here[:, each.nodes] = each.share * lost[:, each.nodes]
-            if ended[each.nodes].all():
-                left += here
-            else:
-                _share_out(change, here, each.nodes, places, ended, loose, turns=each.turns)
+    for part in dict.fromkeys(each.part for each in carriers):
+        own = [each for each in carriers if each.part == part]
         everywhere = np.unique(np.concatenate([each.nodes for each in own]))
-        if left.any() and not ended[everywhere].all():
-            _share_out(change, left, everywhere, places, ended, loose, turns=own[0].turns)
+        inside = np.zeros_like(lost)
+        inside[:, own[0].disks] = lost[:, own[0].disks]
+        inside[:, everywhere] = 0.0
+        carry = [
+            (each.nodes, on_side(each, lost))
+            for each, is_there in zip(carriers, stands, strict=True)
+            if each.part == part and is_there
+        ]
+        for nodes, left in [*carry, (everywhere, inside)]:
+            held = nodes[~ended[nodes]]
+            if left.any() and len(held) > 0:
+                steady = held[~loose[held]]
+                most = float(size[nodes].mean())
+                change += _share_out(left, held, steady, places, most if own[0].turns else 0.0)
     return change
 
 
-def _share_out(
-    change: np.ndarray,
-    lost: np.ndarray,
-    nodes: np.ndarray,
-    places: np.ndarray,
-    ended: np.ndarray,
-    loose: np.ndarray,
-    *,
-    turns: bool,
-) -> None:
-    """Add to change (3, n) equal forces on nodes (k,) that have not ended, with the sum and torque of those lost."""
-    nodes, steady = nodes[~ended[nodes]], nodes[~loose[nodes]]
-    force, moment = lost[:2].sum(axis=1), float(lost[2].sum())
-    change[:2, nodes] += force[:, None] / len(nodes)
-    arm = places - places[:, nodes].mean(axis=1, keepdims=True)
-    turn = np.stack([-arm[1, nodes], arm[0, nodes]])
+def standing(carriers: list[Carrier], ended: np.ndarray) -> np.ndarray:
+    """Whether each carrier (c,) still carries: enough of its disks have not ended (n,), and of the opposite side.
+
+    On few disks the forces of a side would be a motor, and those of the opposite side, with which they were in balance,
+    would push the body away.
+    """
+    enough = [int(np.count_nonzero(~ended[each.nodes])) >= STANDS * len(each.nodes) for each in carriers]
+    fallen = {(each.part, each.side) for each, is_there in zip(carriers, enough, strict=True) if not is_there}
+    lost = [{(each.part, each.side), (each.part, OPPOSITE[each.side])} & fallen for each in carriers]
+    return np.array([not each for each in lost], dtype=np.bool_)
+
+
+def on_side(carrier: Carrier, force: np.ndarray) -> np.ndarray:
+    """The share of a carrier in forces (3, n), at its disks."""
+    own = np.zeros_like(force)
+    own[:, carrier.nodes] = carrier.share * force[:, carrier.nodes]
+    return own
+
+
+def _share_out(lost: np.ndarray, held: np.ndarray, steady: np.ndarray, places: np.ndarray, most: float) -> np.ndarray:
+    """Equal forces on disks held (k,) with the sum of those lost (3, n), and their torque as far as `most` (N) allows.
+
+    In a part that cannot turn, where most is 0, moments alone are shared out, on disks steady (m,).
+    """
+    change = np.zeros_like(lost)
+    change[:2, held] = lost[:2].sum(axis=1, keepdims=True) / len(held)
+    moment = float(lost[2].sum())
+    arm = places - places[:, held].mean(axis=1, keepdims=True)
+    turn = np.stack([-arm[1, held], arm[0, held]])
     size = float(np.sum(turn**2))
-    if turns and size > 0.0:
+    if most > 0.0 and size > 0.0:
         torque = float(np.sum(arm[0] * lost[1] - arm[1] * lost[0])) + moment
-        change[:2, nodes] += torque / size * turn
+        change[:2, held] += np.clip(torque / size, *(np.array([-most, most]) / np.hypot(*turn).max())) * turn
     elif len(steady):
-        change[2, steady] += moment / len(steady)
+        change[2, steady] = moment / len(steady)
+    return change
 
 
 def relative_work(carriers: list[Carrier], force: np.ndarray, moved: np.ndarray, ended: np.ndarray) -> np.ndarray:
@@ -112,7 +151,7 @@ def relative_work(carriers: list[Carrier], force: np.ndarray, moved: np.ndarray,
     moved : (3, n) m and rad since the forces began to act; the mean is that of disks that have not ended, (n,).
     """
     work = np.zeros(len(carriers))
-    for number, (_, _, nodes, share, _) in enumerate(carriers):
+    for number, (_, _, nodes, share, *_) in enumerate(carriers):
         held = nodes[~ended[nodes]]
         if len(held):
             apart = moved[:, nodes].copy()

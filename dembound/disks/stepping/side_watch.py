@@ -138,7 +138,7 @@ class SideWatch:
         self.ended = float(saved["ended"])
 
 
-CURE = "give it a wider zone of unbroken ground, intact = 4, or a larger body, so that cracks stay away from it"
+CURE = 'keep cracks away from it, by intact = 2 or more or a larger body, or end the run sooner, a test of a sample by run.until = "peak"'
 """What to change where forces at rest have become a motor."""
 
 
@@ -160,8 +160,8 @@ def lasting_force_warnings(found: Mapping[str, Any] | None) -> Iterator[str]:
         )
     if found["ended"] > ENDED:
         yield (
-            f"static: disks that bore {percent(found['ended'])} of the forces at rest have broken off, and the others "
-            f"of their sides bear these now; {CURE}"
+            f"static: disks that bore {percent(found['ended'])} of the forces at rest have broken off; the others of "
+            f"their sides bear these while half of a side is left; {CURE}"
         )
 
 

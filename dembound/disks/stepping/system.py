@@ -214,9 +214,9 @@ class DiskSystem(RecordedDisks):
             self._bearing.rest_at(self.balance.datum)
 
     def retire(self, disks: np.ndarray, state: State, step: float) -> None:
-        """Put disks (m,) bool that touch nothing to rest for good; their energy counts as taken by damping.
+        """Put disks (m,) bool that touch nothing to rest for good, where others pass them without touching.
 
-        step : Δt in s; velocities are half a step behind.
+        Their energy counts as taken by damping. step : Δt in s; velocities are half a step behind.
         """
         chosen = np.flatnonzero(disks)
         if len(chosen) == 0:
@@ -231,6 +231,10 @@ class DiskSystem(RecordedDisks):
             self.steady[:, chosen] = 0.0
         if self.balance is not None:
             self.balance.leave_alone(chosen)
+        displacement = state.displacement
+        for pairs in self.contacts.values():
+            pairs.retired |= disks[pairs.nodes]
+            pairs.search(displacement)
 
     def look(self, u: np.ndarray, step: int, supplied: float, stored: float) -> None:
         """Look at the forces at rest at displacements (3, slots) of a step, see `SideWatch.look`."""
