@@ -135,7 +135,7 @@ class Balance:
         change[2] -= np.where(alone & ~debris, self.force[2], 0.0)
         lost = np.where(alone, self._across, 0.0) - change
         self._ended |= debris
-        stands = standing(self._carriers, self._ended)
+        stands = standing(self._carriers, self._ended, self._size)
         for number in np.flatnonzero(self._stands & ~stands):
             change -= on_side(self._carriers[number], self.force + change)
         self._stands = stands

@@ -15,7 +15,7 @@ from dembound.disks.body import DiskBody
 from dembound.packings.cut import cut_contacts
 
 STANDS = 0.5
-"""Share of the disks of a side that must be left for these to carry what the others did."""
+"""Share of the forces at a side that acted on disks which are left, for these to carry what the others did."""
 
 
 class Carrier(NamedTuple):
@@ -107,13 +107,15 @@ def carried(
     return change
 
 
-def standing(carriers: list[Carrier], ended: np.ndarray) -> np.ndarray:
-    """Whether each carrier (c,) still carries: enough of its disks have not ended (n,), and of the opposite side.
+def standing(carriers: list[Carrier], ended: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Whether each carrier (c,) still carries: enough of it has not ended (n,), and of the opposite side.
+
+    Enough is `STANDS` of its forces, by their sizes (n,) N at the start; sides without forces always stand.
 
     On few disks the forces of a side would be a motor, and those of the opposite side, with which they were in balance,
     would push the body away.
     """
-    enough = [int(np.count_nonzero(~ended[each.nodes])) >= STANDS * len(each.nodes) for each in carriers]
+    enough = [size[each.nodes[~ended[each.nodes]]].sum() >= STANDS * size[each.nodes].sum() for each in carriers]
     fallen = {(each.part, each.side) for each, is_there in zip(carriers, enough, strict=True) if not is_there}
     lost = [{(each.part, each.side), (each.part, OPPOSITE[each.side])} & fallen for each in carriers]
     return np.array([not each for each in lost], dtype=np.bool_)
