@@ -243,6 +243,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
         np.zeros(b, np.uint8),
         np.full(b, -1),
         np.full((b, 2), np.nan),
+        np.zeros(b, np.uint8),
         np.zeros((4, b)),
         np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count))]).astype(np.uint32),
         end[np.argsort(owner, kind="stable")].astype(np.uint32),

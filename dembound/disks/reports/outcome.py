@@ -27,7 +27,9 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
         facts += _broken(summary["cracks"], static)
         if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
-            facts.append(f"largest error of the energy balance: {percent(error)}{_worked(summary['forces_at_rest'])}")
+            facts.append(
+                f"largest error of the energy balance: {percent(error)}{_worked(summary.get('forces_at_rest'))}"
+            )
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts

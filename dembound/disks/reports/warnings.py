@@ -297,9 +297,9 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
             *moving,
             *_not_elastic(summary.get("load_factor")),
             *near_tie_warnings(scene, summary, cracks),
-            *lasting_force_warnings(summary["forces_at_rest"]),
-            *reach_warnings(summary["forces_at_rest"]),
-            *far_warnings(summary["far"]),
+            *lasting_force_warnings(summary.get("forces_at_rest")),
+            *reach_warnings(summary.get("forces_at_rest")),
+            *far_warnings(summary.get("far")),
             *energy_warnings(scene, summary["energy"]),
         ]
 

@@ -93,11 +93,12 @@ def carried(
         inside = np.zeros_like(lost)
         inside[:, own[0].disks] = lost[:, own[0].disks]
         inside[:, everywhere] = 0.0
-        carry = [
-            (each.nodes, on_side(each, lost))
-            for each, is_there in zip(carriers, stands, strict=True)
-            if each.part == part and is_there
-        ]
+        carry = []
+        for each, is_there in zip(carriers, stands, strict=True):
+            if each.part == part and is_there and ended[each.nodes].all():  # a side without forces at rest
+                inside += on_side(each, lost)
+            elif each.part == part and is_there:
+                carry.append((each.nodes, on_side(each, lost)))
         for nodes, left in [*carry, (everywhere, inside)]:
             held = nodes[~ended[nodes]]
             if left.any() and len(held) > 0:

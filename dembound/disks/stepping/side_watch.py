@@ -138,7 +138,10 @@ class SideWatch:
         self.ended = float(saved["ended"])
 
 
-CURE = 'keep cracks away from it, by intact = 2 or more or a larger body, or end the run sooner, a test of a sample by run.until = "peak"'
+CURE = (
+    "keep cracks away from it, by intact = 2 or more or a larger body, or end the run sooner, a test of a sample by "
+    'until = "peak"'
+)
 """What to change where forces at rest have become a motor."""
 
 
