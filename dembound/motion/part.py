@@ -168,10 +168,11 @@ class System:
         """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""
         return None
 
-    def look(self, u: np.ndarray, step: int, supplied: float, stored: float) -> None:  # few use it
+    def look(self, u: np.ndarray, step: int, balance: float, energy: float) -> None:
         """Look at displacements (3, slots) of a step for which the ledger is written; by default nothing.
 
-        supplied, stored : J, supplied so far, and stored at rest. Raises RunError where something has gone wrong.
+        balance : J, work of forces at rest, less what they have done against steady loads; energy : J, the larger of
+        the supplied energy and that stored at rest. Raises RunError where something has gone wrong.
         """
 
     def borne(self, supported: np.ndarray) -> np.ndarray:

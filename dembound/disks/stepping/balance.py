@@ -13,7 +13,7 @@ import numpy as np
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.body import DiskBody
-from dembound.disks.stepping.carriers import carried, carriers_of, on_side, relative_work, standing
+from dembound.disks.stepping.carriers import BEARS, carried, carriers_of, on_side, relative_work, standing
 from dembound.disks.stepping.part import DiskPart
 from dembound.kernels.follower import GONE, side_rotations
 from dembound.kernels.fragments import pieces
@@ -135,7 +135,7 @@ class Balance:
         change[2] -= np.where(alone & ~debris, self.force[2], 0.0)
         lost = np.where(alone, self._across, 0.0) - change
         self._ended |= debris
-        stands = standing(self._carriers, self._ended, self._size)
+        stands = standing(self._carriers, self._ended, self._begun + self._across)
         for number in np.flatnonzero(self._stands & ~stands):
             change -= on_side(self._carriers[number], self.force + change)
         self._stands = stands
@@ -212,10 +212,6 @@ _EVOLVING = ("ended", "torn", "begun", "relative", "stands")
 
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")
 """The arrays of its followers that change."""
-
-
-BEARS = 1e-3
-"""Force at rest on a disk, over the largest one, below which it is what the static stage has left over."""
 
 
 def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:

@@ -17,6 +17,9 @@ from dembound.packings.cut import cut_contacts
 STANDS = 0.5
 """Share of the forces at a side that acted on disks which are left, for these to carry what the others did."""
 
+BEARS = 1e-3
+"""Force at rest, over the largest one, below which it is what the static stage has left over."""
+
 
 class Carrier(NamedTuple):
     """The disks of one part at one of its sides.
@@ -108,18 +111,25 @@ def carried(
     return change
 
 
-def standing(carriers: list[Carrier], ended: np.ndarray, size: np.ndarray) -> np.ndarray:
+def standing(carriers: list[Carrier], ended: np.ndarray, begun: np.ndarray) -> np.ndarray:
     """Whether each carrier (c,) still carries: enough of it has not ended (n,), and of the opposite side.
 
-    Enough is `STANDS` of its forces, by their sizes (n,) N at the start; sides without forces always stand.
+    Enough is `STANDS` of the forces (3, n) N that acted at the start; sides without forces always stand.
 
     On few disks the forces of a side would be a motor, and those of the opposite side, with which they were in balance,
     would push the body away.
     """
-    enough = [size[each.nodes[~ended[each.nodes]]].sum() >= STANDS * size[each.nodes].sum() for each in carriers]
+    left, all_of = np.array([_sizes(each, ended, begun) for each in carriers]).reshape(-1, 2).T
+    enough = (left >= STANDS * all_of) | (all_of <= BEARS * all_of.max(initial=0.0))
     fallen = {(each.part, each.side) for each, is_there in zip(carriers, enough, strict=True) if not is_there}
     lost = [{(each.part, each.side), (each.part, OPPOSITE[each.side])} & fallen for each in carriers]
     return np.array([not each for each in lost], dtype=np.bool_)
+
+
+def _sizes(carrier: Carrier, ended: np.ndarray, force: np.ndarray) -> tuple[float, float]:
+    """Sums of the sizes of forces (3, n) at a side: on disks that have not ended (n,), and on all."""
+    size = np.hypot(*(carrier.share * force[:, carrier.nodes])[:2])
+    return float(size[~ended[carrier.nodes]].sum()), float(size.sum())
 
 
 def on_side(carrier: Carrier, force: np.ndarray) -> np.ndarray:
