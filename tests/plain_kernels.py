@@ -292,7 +292,7 @@ def copied(pairs: tables.Contacts) -> tables.Contacts:
 
 def alone(pairs: tables.Contacts, c: int) -> tables.Contacts:
     """Pair c of several, with columns of its own."""
-    names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place")
+    names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place", "kept")
     one = {name: getattr(pairs, name)[c : c + 1].copy() for name in names}
     return pairs._replace(**one, force=pairs.force[:, c : c + 1].copy())
 

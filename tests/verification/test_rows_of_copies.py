@@ -91,6 +91,17 @@ def assert_same_breaking(scene, steps):
     return expected, after.state.work
 
 
+def test_bonds_that_are_kept_beside_others_that_break(lab):
+    strength = {"pb_ten": 4e5, "pb_coh": 4e5, "fric": 0.5}
+    law = {"law": "linearpbond", "geometry": "reference", "elastic_start": False, **strength}
+    sides = {"left": SIDES["left"], "right": "viscous", "bottom": {"type": "viscous", "intact": 3}}
+    scene = lab.scene("A", (20.0, 20.0), held=(), boundary=sides, wave=lab.pulse(0.01), material=law)
+    cracks, _ = assert_same_breaking(scene, 300)
+    assert len(cracks) > 50
+    assert not scene.intact[cracks.pair].any()
+    assert scene.positions[cracks.pair, 1].min() < 2.5  # they reach the zone of three rows of 0.5 m
+
+
 @pytest.mark.parametrize(("pattern", "geometry"), [("A", "reference"), ("B", "updated")])
 def test_bonds_that_break_and_contacts_that_slide(lab, pattern, geometry):
     # pulses of ρcv = 1.25 MPa against a strength of some tenths of that

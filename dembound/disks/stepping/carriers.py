@@ -92,22 +92,19 @@ def carried(
     change = np.zeros_like(lost)
     for part in dict.fromkeys(each.part for each in carriers):
         own = [each for each in carriers if each.part == part]
-        everywhere = np.unique(np.concatenate([each.nodes for each in own]))
+        nodes = np.unique(np.concatenate([each.nodes for each in own]))
+        everywhere = own[0]._replace(nodes=nodes, share=np.ones((3, len(nodes))))
         inside = np.zeros_like(lost)
-        inside[:, own[0].disks] = lost[:, own[0].disks]
-        inside[:, everywhere] = 0.0
-        carry = []
+        inside[:, everywhere.disks] = lost[:, everywhere.disks]
+        inside[:, nodes] = 0.0
         for each, is_there in zip(carriers, stands, strict=True):
-            if each.part == part and is_there and ended[each.nodes].all():  # a side without forces at rest
-                inside += on_side(each, lost)
-            elif each.part == part and is_there:
-                carry.append((each.nodes, on_side(each, lost)))
-        for nodes, left in [*carry, (everywhere, inside)]:
-            held = nodes[~ended[nodes]]
-            if left.any() and len(held) > 0:
-                steady = held[~loose[held]]
-                most = float(size[nodes].mean())
-                change += _share_out(left, held, steady, places, most if own[0].turns else 0.0)
+            if each.part == part and is_there:
+                if ended[each.nodes].all():  # a side without forces at rest
+                    inside += on_side(each, lost)
+                else:
+                    change += _share_out(on_side(each, lost), each, places, ended, loose, size)
+        if not ended[nodes].all():
+            change += _share_out(inside, everywhere, places, ended, loose, size)
     return change
 
 
@@ -139,22 +136,33 @@ def on_side(carrier: Carrier, force: np.ndarray) -> np.ndarray:
     return own
 
 
-def _share_out(lost: np.ndarray, held: np.ndarray, steady: np.ndarray, places: np.ndarray, most: float) -> np.ndarray:
-    """Equal forces on disks held (k,) with the sum of those lost (3, n), and their torque as far as `most` (N) allows.
+def _share_out(
+    lost: np.ndarray, carrier: Carrier, places: np.ndarray, ended: np.ndarray, loose: np.ndarray, size: np.ndarray
+) -> np.ndarray:
+    """Equal forces (3, n) on the disks left of a carrier with the sum of those lost (3, n), and their torque.
 
-    In a part that cannot turn, where most is 0, moments alone are shared out, on disks steady (m,).
+    The torque is carried by disks of no other side, as far as none of them gets more by it than the mean size (n,) N of
+    the forces at the start. In a part that cannot turn moments alone are carried, as moments on disks with bonds.
     """
     change = np.zeros_like(lost)
-    change[:2, held] = lost[:2].sum(axis=1, keepdims=True) / len(held)
-    moment = float(lost[2].sum())
-    arm = places - places[:, held].mean(axis=1, keepdims=True)
-    turn = np.stack([-arm[1, held], arm[0, held]])
-    size = float(np.sum(turn**2))
-    if most > 0.0 and size > 0.0:
-        torque = float(np.sum(arm[0] * lost[1] - arm[1] * lost[0])) + moment
-        change[:2, held] += np.clip(torque / size, *(np.array([-most, most]) / np.hypot(*turn).max())) * turn
-    elif len(steady):
-        change[2, steady] = moment / len(steady)
+    if not lost.any():
+        return change
+    left = ~ended[carrier.nodes]
+    held, share = carrier.nodes[left], carrier.share[:, left]
+    share = np.where(share.sum(axis=1, keepdims=True) > 0.0, share, 1.0)
+    change[:2, held] = lost[:2].sum(axis=1, keepdims=True) * (share / share.sum(axis=1, keepdims=True))[:2]
+    if not carrier.turns:
+        steady = held[~loose[held]]
+        change[2, steady] = lost[2].sum() / max(1, len(steady))
+        return change
+    alone = held[(share == 1.0).all(axis=0)]
+    if len(alone) > 1:
+        apart = lost - change
+        torque = float(np.sum(places[0] * apart[1] - places[1] * apart[0]) + apart[2].sum())
+        arm = places[:, alone] - places[:, alone].mean(axis=1, keepdims=True)
+        turn = np.stack([-arm[1], arm[0]])
+        most = float(size[carrier.nodes].mean()) / np.hypot(*turn).max()
+        change[:2, alone] += np.clip(torque / np.sum(turn**2), -most, most) * turn
     return change
 
 

@@ -45,14 +45,16 @@ class SideWatch:
 
     Attributes
     ----------
-    work : largest share of work so far, see `WARNS`, with its side and time. ended : share of forces on disks that have
-    broken off. turn : largest rotation so far (rad), with its side and time. reached : by side, number of bonds of its
-    intact zone that have reached their strength, and time (s) at which the first was found.
+    work : largest work so far, over the energy that came in until now, see `WARNS`, with its side and time. ended :
+    share of forces on disks that have broken off. turn : largest rotation so far (rad), with its side and time.
+    reached : by side, number of bonds of its intact zone that have reached their strength, and time (s) at which the
+    first was found.
     """
 
     def __init__(self, scene: DiskBody, time_step: float) -> None:
         self._scene, self._time_step = scene, time_step
-        self._work, self._turn = np.zeros(3), np.zeros(3)  # size, number of the carrier, step
+        self._work, self._turn = np.zeros(3), np.zeros(3)  # J or rad, number of the carrier, step
+        self._energy = 1.0
         self.ended = 0.0
         self._places = [*scene.intact_zones, COLUMN]
         self._reached = np.full((len(self._places), 2), -1)  # count, step of the first
@@ -82,12 +84,13 @@ class SideWatch:
         if energy <= 0.0 or len(work) == 0:
             return
         most = int(np.argmax(work))
-        size = max(float(work[most]), whole) / energy
+        size = max(float(work[most]), whole)
         if size > self._work[0]:
             self._work[:] = size, most, step
-        if self._work[0] > STOPS:
+        self._energy = energy
+        if size > STOPS * energy:
             raise RunError(
-                f"{self._worked()}, {percent(float(self._work[0]))} of the energy that came in or was stored at rest: "
+                f"{self._worked()}, {percent(size / energy)} of the energy that came in or was stored at rest: "
                 f"the ground at this side has broken, and what the static stage left there has become a motor; {CURE}"
             )
 
@@ -118,7 +121,7 @@ class SideWatch:
     def describe(self) -> dict[str, Any]:
         """The findings as plain JSON values, for a summary; times in s."""
         return {
-            "work": self._described(self._work),
+            "work": self._described(self._work, self._energy),
             "turn": self._described(self._turn),
             "ended": self.ended,
             "reached": {
@@ -128,19 +131,22 @@ class SideWatch:
             },
         }
 
-    def _described(self, found: np.ndarray) -> dict[str, Any] | None:
-        """Size, side and time of a finding; None for none."""
+    def _described(self, found: np.ndarray, unit: float = 1.0) -> dict[str, Any] | None:
+        """Size over a unit, side and time of a finding; None for none."""
         size, at, step = found.tolist()
-        return {"size": size, "side": self._sides[int(at)], "time": step * self._time_step} if size > 0.0 else None
+        return (
+            {"size": size / unit, "side": self._sides[int(at)], "time": step * self._time_step} if size > 0.0 else None
+        )
 
     def saved_arrays(self) -> Arrays:
         """The findings so far."""
-        return {"work": self._work, "turn": self._turn, "reached": self._reached, "ended": np.array(self.ended)}
+        numbers = {"ended": np.array(self.ended), "energy": np.array(self._energy)}
+        return {"work": self._work, "turn": self._turn, "reached": self._reached, **numbers}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         self._work, self._turn, self._reached = (saved[name].copy() for name in ("work", "turn", "reached"))
-        self.ended = float(saved["ended"])
+        self.ended, self._energy = float(saved["ended"]), float(saved["energy"])
 
 
 CURE = (

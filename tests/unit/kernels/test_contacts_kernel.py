@@ -11,7 +11,10 @@ from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import (
     BONDED,
     INTACT,
+    KEPT,
+    MAY_BREAK,
     NONE,
+    REACHED,
     REFERENCE,
     SHEAR,
     TENSION,
@@ -56,6 +59,23 @@ def test_pairs_push_as_the_law_says_step_by_step(geometry: int) -> None:
     assert set(found.state) == {NONE, INTACT, TENSION, SHEAR}
     assert slid > 0
     assert opened > 0
+
+
+@GEOMETRIES
+def test_bonds_that_are_kept_never_break_and_say_that_they_would_have(geometry: int) -> None:
+    weak, broken = WEAK._replace(geometry=geometry), random_pairs(PARTICLES, PAIRS)
+    held, endless = random_pairs(PARTICLES, PAIRS), random_pairs(PARTICLES, PAIRS)
+    kept = np.arange(PAIRS) % 2 == 0
+    held.kept[kept] = KEPT
+    for number, (u, v) in enumerate(motion(20)):
+        for pairs, limits in ((broken, weak), (held, weak), (endless, UNBREAKABLE._replace(geometry=geometry))):
+            pushed(pairs, limits, u, v, number)
+        # as if they had no limit; the others as if none were kept
+        assert np.array_equal(held.force, np.where(kept, endless.force, broken.force))
+        assert np.array_equal(held.cracked, np.where(kept, -1, broken.cracked))
+    would_have = kept & np.isin(broken.state, (TENSION, SHEAR))
+    assert would_have.sum() >= 5
+    assert np.array_equal(held.kept, np.where(would_have, REACHED, np.where(kept, KEPT, MAY_BREAK)))
 
 
 @GEOMETRIES

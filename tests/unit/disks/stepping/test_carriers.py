@@ -1,0 +1,111 @@
+"""What the disks of a side carry when others come off, and the work of forces at rest against their side's motion."""
+
+import numpy as np
+import pytest
+from disk_systems import BODY, FREE_FIELD, TWO_BRICKS, shaken
+
+from dembound.boundaries import OPPOSITE
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stepping.balance import Balance
+from dembound.disks.stepping.carriers import carriers_of, on_side, relative_work, standing
+from dembound.disks.stepping.system import DiskSystem
+from dembound.kernels.contacts import TENSION
+
+LATTICE = {"pattern": "A", "size": [6.0, 5.0], "radius": 0.25}
+PERIODIC = {side: {"type": "periodic"} for side in ("left", "right")}
+STEP = 0.1
+
+
+@pytest.fixture
+def scene(bar):
+    """Makes twelve disks by ten under some sides, or other packings."""
+
+    def make(packing: dict = LATTICE, **boundary: dict) -> DiskScene:
+        return build(bar({**BODY, "material.law": "linearpbond", "packing": packing, "boundary": boundary}))
+
+    return make
+
+
+def none_of(body: DiskScene) -> np.ndarray:
+    return np.zeros(body.count, dtype=np.bool_)
+
+
+def test_at_corners_each_side_has_the_force_along_its_normal(scene) -> None:
+    body = scene()
+    carriers, force = carriers_of(body), shaken(body, 1.0)
+    assert [each.side for each in carriers] == list(body.edges)
+    total = sum(on_side(each, force) for each in carriers)
+    at_sides = np.unique(np.concatenate([each.nodes for each in carriers]))
+    np.testing.assert_allclose(total[:, at_sides], force[:, at_sides], rtol=1e-15)
+    corner = int(np.argmin(body.positions.sum(axis=1)))
+    left, bottom = (on_side(each, force)[:, corner] for each in carriers if each.side in ("left", "bottom"))
+    assert left.tolist() == [force[0, corner], 0.0, 0.5 * force[2, corner]]
+    assert bottom.tolist() == [0.0, force[1, corner], 0.5 * force[2, corner]]
+
+
+def isolate(system: DiskSystem, particles: np.ndarray) -> None:
+    """Break all bonds of some particles in all parts."""
+    for part in system.parts:
+        pairs = part.pairs
+        hit = (np.isin(pairs.first, particles) | np.isin(pairs.second, particles)) & (pairs.cracked < 0)
+        pairs.state[hit], pairs.cracked[hit] = TENSION, 1
+
+
+@pytest.mark.parametrize("sides", [{}, FREE_FIELD, PERIODIC], ids=["free", "free field", "periodic"])
+def test_breaks_at_random_leave_the_sum_of_forces_of_every_side(scene, sides) -> None:
+    """In the body and in its column, and of periodic bodies too, as long as half of the side is left."""
+    body = scene(TWO_BRICKS, **sides)
+    system, rng = DiskSystem(body, STEP), np.random.default_rng(11)
+    across = np.zeros((3, body.count))
+    if body.seam is not None:
+        across[:, body.seam.node] = rng.uniform(-1.0, 1.0, (3, len(body.seam.node)))
+    carriers, still = carriers_of(body), np.zeros((3, body.count))
+    force = shaken(body, 1.0, 1)
+    force[:, np.setdiff1d(np.arange(body.count), np.concatenate([each.nodes for each in carriers]))] = 0.0
+    balance = Balance(body, force, shaken(body, 1.0, 2), shaken(body, 0.1, 3), across)
+
+    def sums() -> np.ndarray:
+        acting = balance.force + np.where(balance.let_go, 0.0, across)
+        return np.array([on_side(each, acting)[:2].sum(axis=1) for each in carriers])
+
+    load, before = balance.force.copy(), sums()
+    ended = []
+    for _ in range(6):
+        isolate(system, rng.choice(body.count, 3, replace=False))
+        for pairs in system.contacts.values():
+            pairs.arrays.force[:] = 0.0
+        balance.end_on_debris(system.disks.parts, still, still, STEP, load, None)
+        ended.append(int((~balance.force.any(axis=0)).sum()))
+    assert ended[-1] > 10
+    np.testing.assert_allclose(sums(), before, rtol=0.0, atol=1e-12)  # some thirty terms of size 1
+    assert standing(carriers, ~balance.force[:2].any(axis=0), balance.force).all()
+
+
+def test_a_side_that_has_lost_half_of_its_forces_carries_no_more_nor_does_the_opposite_one(scene) -> None:
+    body = scene()
+    carriers, force = carriers_of(body), np.zeros((3, body.count))
+    by_side = {each.side: each.nodes for each in carriers}
+    force[0, by_side["left"]], force[0, by_side["right"]] = 1.0, -1.0
+    force[1, by_side["bottom"]] = 2.0
+    ended = none_of(body)
+    assert standing(carriers, ended, force).all()
+    ended[by_side["top"]] = True  # bears nothing
+    ended[by_side["left"][1:5]] = True
+    assert standing(carriers, ended, force).all()
+    ended[by_side["left"][1:7]] = True
+    stands = dict(zip((each.side for each in carriers), standing(carriers, ended, force), strict=True))
+    assert stands == {side: side not in ("left", "right") for side in stands}
+
+
+def test_work_counts_against_the_mean_motion_of_the_side(scene) -> None:
+    body = scene()
+    carriers, force, moved = carriers_of(body), shaken(body, 1.0), np.zeros((3, body.count))
+    moved[:2] = [[0.3], [-0.2]]
+    np.testing.assert_allclose(relative_work(carriers, force, moved, none_of(body)), 0.0, atol=1e-14)
+    left = next(each for each in carriers if each.side == "left")
+    node = int(left.nodes[4])
+    moved[:, node] += [2.0, 0.0, 0.5]
+    apart = 2.0 * np.where(left.nodes == node, 1.0 - 1.0 / len(left.nodes), -1.0 / len(left.nodes))
+    expected = np.sum((left.share * force[:, left.nodes])[0] * apart) + 0.5 * force[2, node]
+    assert relative_work(carriers, force, moved, none_of(body))[carriers.index(left)] == pytest.approx(expected)
+    assert OPPOSITE["left"] == "right"

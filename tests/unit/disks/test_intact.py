@@ -1,0 +1,55 @@
+"""The disks of zones in which bonds do not break."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dembound.disks.scene import build
+from dembound.errors import CaseError
+
+LATTICE: dict[str, Any] = {
+    "packing": {"pattern": "A", "size": [10.0, 8.0], "radius": 0.25},
+    "material.law": "linearpbond",
+    "material.pb_ten": 1e6,
+    "wave": {"push": {"type": "cosine", "amplitude": 1.0, "period": 0.1}},
+    "monitor": [],
+    "motion.held": [],
+}
+BOTTOM = {"type": "viscous_input", "wave_s": "push"}
+
+
+def scene(bar, **boundary: dict[str, Any]):
+    return build(bar({**LATTICE, "boundary": boundary}))
+
+
+@pytest.mark.parametrize("depth", [1, 2, 4])
+def test_a_zone_is_as_many_rows_of_a_lattice(bar, depth) -> None:
+    body = scene(bar, bottom=BOTTOM | {"intact": depth}, left={"type": "viscous", "intact": 1})
+    x, y = body.positions.T
+    assert np.array_equal(body.intact_zones["bottom"], np.flatnonzero(y < 0.5 * depth))
+    assert np.array_equal(body.intact_zones["left"], np.flatnonzero(x < 0.5))
+    assert body.intact is not None
+    assert np.array_equal(body.intact, (y < 0.5 * depth) | (x < 0.5))
+
+
+def test_a_free_field_column_is_intact_as_a_whole(bar) -> None:
+    sides = {side: {"type": "free_field", "intact": 2} for side in ("left", "right")}
+    body = scene(bar, bottom=BOTTOM, **sides)
+    first = body.column_count
+    assert body.intact is not None
+    assert body.intact[:first].all()
+    assert min(nodes.min() for nodes in body.intact_zones.values()) >= first
+    beside = scene(bar, bottom=BOTTOM | {"intact": 2}, left={"type": "free_field"}, right={"type": "free_field"})
+    assert beside.intact is not None
+    assert not beside.intact[:first].all()
+
+
+def test_without_a_zone_all_bonds_may_break(bar) -> None:
+    assert scene(bar, bottom=BOTTOM).intact is None
+
+
+def test_a_zone_of_more_than_half_of_the_body_is_refused(bar) -> None:
+    assert scene(bar, bottom=BOTTOM | {"intact": 8}).intact is not None
+    with pytest.raises(CaseError, match=r"boundary.bottom.intact: is 9: bonds of 180 of 320 disks would not break"):
+        scene(bar, bottom=BOTTOM | {"intact": 9})
