@@ -88,7 +88,8 @@ def test_bottoms_of_dashpots_have_springs_where_they_have_a_zone(bottom, expecte
 
 
 def test_keys_of_other_sides_and_of_bars_are_refused() -> None:
-    bar = '[method]\ntype = "finite_difference"\n[bar]\nlength = 1.0\nspacing = 0.1\ndensity = 1.0\nwave_speed = 1.0\n[run]\nduration = 1.0\n'
+    method = '[method]\ntype = "finite_difference"\n'
+    bar = f"{method}[bar]\nlength = 1.0\nspacing = 0.1\ndensity = 1.0\nwave_speed = 1.0\n[run]\nduration = 1.0\n"
     assert problems_of(f'{bar}[boundary.right]\ntype = "viscous"\nintact = 2') == [
         "boundary.right.intact: is for sides of disks"
     ]
