@@ -100,7 +100,7 @@ def test_the_torque_of_what_is_lost_is_carried_as_far_as_no_disk_bears_more_than
     assert np.isin(np.flatnonzero(found.any(axis=0)), left.nodes).all()
     assert not found[:, node].any()
     np.testing.assert_allclose(resultant(found)[:2], resultant(lost)[:2], rtol=1e-14)
-    assert (abs(resultant(found)[2] - resultant(lost)[2]) < 1e-13) is exact
+    assert bool(abs(resultant(found)[2] - resultant(lost)[2]) < 1e-13) is exact
     equal = lost[:2].sum(axis=1) / (len(left.nodes) - 3)  # two corners bear nothing along the side
     assert np.hypot(*(found[:2, left.nodes].T - equal).T).max() < size + np.hypot(*equal)
 

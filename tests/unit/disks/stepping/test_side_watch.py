@@ -1,0 +1,91 @@
+"""The watch of forces at rest: their work and the disks they act on, and the end of a run that they drive."""
+
+import numpy as np
+import pytest
+from disk_systems import BODY
+
+from dembound.disks.scene import build
+from dembound.disks.stepping.balance import Balance
+from dembound.disks.stepping.side_watch import COLUMN, SideWatch
+from dembound.disks.stepping.system import DiskSystem
+from dembound.errors import RunError
+from dembound.kernels.contacts import REACHED
+
+LATTICE = {"pattern": "A", "size": [6.0, 5.0], "radius": 0.25}
+BOTTOM = {"type": "viscous", "intact": 2}
+STEP = 0.5
+
+
+class Watched:
+    """A body of 12 × 10 disks that its bottom bears, each disk there with 1 N, watched at displacements of one disk."""
+
+    def __init__(self, bar) -> None:
+        changes = {**BODY, "material.law": "linearpbond", "material.pb_ten": 1e6, "packing": LATTICE}
+        self.scene = build(bar({**changes, "boundary": {"bottom": BOTTOM}}))
+        still = np.zeros((3, self.scene.count))
+        self.bottom = self.scene.sides["bottom"].nodes
+        force = still.copy()
+        force[1, self.bottom] = 1.0
+        self.system = DiskSystem(self.scene, STEP)
+        self.balance = Balance(self.scene, force, still, still, still)
+        self.watch = SideWatch(self.scene, STEP)
+
+    def look(self, step: int, moved: float = 0.0, turned: float = 0.0, energy: float = 100.0, whole: float = 0.0):
+        displacement = np.zeros((3, self.scene.count))
+        displacement[:, self.bottom[4]] = [0.0, moved, turned]
+        self.watch.look(self.balance, self.system.contacts, displacement, step, whole, energy)
+        return self.watch.describe()
+
+
+def test_work_is_that_on_a_disk_which_leaves_its_side_over_the_energy_that_came_in(bar) -> None:
+    watched = Watched(bar)
+    said = watched.look(3, moved=12.0)
+    # 1 N over 12 m, less the mean motion of twelve disks, on each of which 1 N acts
+    assert said["work"] is None
+    watched.balance.force[1, watched.bottom[4]] = 2.0
+    assert watched.look(4, moved=12.0)["work"] == {"size": pytest.approx(0.11), "side": "bottom", "time": 2.0}
+    assert watched.look(5, energy=220.0)["work"]["size"] == pytest.approx(0.05)  # the largest so far, over all energy
+    with pytest.raises(RunError, match="boundary.bottom: until t = 3 s forces at rest have done work"):
+        watched.look(6, moved=72.0)
+
+
+def test_all_forces_together_count_where_the_side_moves_as_a_whole(bar) -> None:
+    watched = Watched(bar)
+    assert watched.look(3, whole=40.0)["work"]["size"] == pytest.approx(0.4)
+    with pytest.raises(RunError, match="51 %"):
+        watched.look(4, whole=51.0)
+
+
+def test_nothing_is_said_before_energy_came_in(bar) -> None:
+    assert Watched(bar).look(1, moved=1e3, energy=0.0)["work"] is None
+
+
+def test_the_largest_turn_is_that_of_a_disk_that_bears_a_force(bar) -> None:
+    watched = Watched(bar)
+    watched.look(1, turned=-0.3)
+    assert watched.look(2, turned=0.1)["turn"] == {"size": 0.3, "side": "bottom", "time": 0.5}
+    idle = Watched(bar)
+    idle.bottom = idle.scene.edges["top"].nodes
+    assert idle.look(1, turned=0.3)["turn"] is None
+
+
+def test_bonds_at_their_strength_are_counted_by_zone_from_the_first_look(bar) -> None:
+    watched = Watched(bar)
+    pairs = watched.system.contacts["body"]
+    assert watched.look(1)["reached"] == {}
+    kept = np.flatnonzero(pairs.arrays.kept)
+    pairs.arrays.kept[kept[:3]] = REACHED
+    assert watched.look(4)["reached"] == {"bottom": {"bonds": 3, "time": 2.0}}
+    pairs.arrays.kept[kept[:5]] = REACHED
+    assert watched.look(6)["reached"] == {"bottom": {"bonds": 5, "time": 2.0}}
+    assert COLUMN not in watched.watch.describe()["reached"]
+
+
+def test_findings_are_kept_over_a_restart(bar) -> None:
+    watched = Watched(bar)
+    watched.balance.force[1, watched.bottom[4]] = 2.0
+    watched.look(4, moved=12.0, turned=0.2)
+    again = SideWatch(watched.scene, STEP)
+    again.restore({name: values.copy() for name, values in watched.watch.saved_arrays().items()})
+    again.look(watched.balance, watched.system.contacts, np.zeros((3, watched.scene.count)), 5, 0.0, 100.0)
+    assert again.describe() == watched.watch.describe()

@@ -1,0 +1,111 @@
+"""Disks that have fallen far below the scene: found where they touch nothing, put to rest without a loss of energy."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from small_cases import GRAINS, small
+
+from dembound.disks.far import STEPS, FarDisks, far_warnings
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+
+LOOSE: dict[str, Any] = {
+    "packing": GRAINS["packing"] | {"size": [4.0, 4.0]},
+    "material": {
+        "law": "linearpbond",
+        "density": 2500.0,
+        "emod": 1e7,
+        "pb_emod": 1e5,
+        "pb_ten": 1.0,
+        "pb_coh": 1.0,
+        "elastic_start": False,
+    },
+    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+    "run": {"duration": 1.0},
+    "output": {"pictures": False},
+}
+"""A heap that falls apart, and past every floor."""
+
+
+class Falling:
+    """A run of the heap in free fall, disks of which are thrown down."""
+
+    def __init__(self, *, retires: bool) -> None:
+        scene = build(small(LOOSE))  # type: ignore[arg-type]
+        assert isinstance(scene, DiskScene)
+        self.scene, self.step = scene, choose_step(scene)[0]
+        self.run = Simulation(scene, self.step)
+        self.far, self.ledger = FarDisks(scene, retires=retires), Ledger(self.run, STEPS // 4)
+        self.run.track(self.far, self.ledger)
+        x, y = scene.positions.T
+        self.thrown = np.flatnonzero(y < 0.6)
+        velocity = self.run.state.velocity.copy()
+        velocity[1] += 30.0
+        velocity[1, self.thrown] = -60.0 - 10.0 * x[self.thrown]
+        self.run.state.velocity = velocity
+
+    def until(self, steps: int) -> None:
+        self.run.advance(steps - self.run.state.step)
+
+
+@pytest.fixture(scope="module")
+def fallen() -> dict[bool, Falling]:
+    """Runs with and without retirement, two looks long."""
+    found = {retires: Falling(retires=retires) for retires in (False, True)}
+    for each in found.values():
+        each.until(2 * STEPS + 1)
+    return found
+
+
+def test_they_are_those_below_the_base_by_the_height_of_the_scene_that_touch_nothing(fallen) -> None:
+    falling = fallen[False]
+    y = (falling.scene.positions[:, 1] + falling.run.state.displacement[1])[falling.far.far]
+    assert falling.far.far.sum() > 3
+    assert y.max() < -4.0
+    assert np.isin(np.flatnonzero(falling.far.far), falling.thrown).all()
+    assert falling.far.describe(falling.step) == {
+        "disks": int(falling.far.far.sum()), "retired": False, "time": pytest.approx(STEPS * falling.step, rel=1.0),
+    }  # fmt: skip
+
+
+def test_those_that_retire_stay_where_they_are_with_their_energy_accounted_for(fallen) -> None:
+    falling = fallen[True]
+    chosen, state = falling.far.far, falling.run.state
+    assert np.array_equal(chosen, fallen[False].far.far)
+    before = state.displacement[:, chosen].copy()
+    falling.until(falling.run.state.step + 50)
+    assert not state.velocity[:, chosen].any()
+    assert np.array_equal(state.displacement[:, chosen], before)
+    fallen[False].until(falling.run.state.step)
+    entry, other = (each.ledger.entries[-1] for each in (falling, fallen[False]))
+    assert entry.time == other.time
+    # what turning normals leave is the same; some 2,000 steps of sums of a hundred terms of the size of all energy
+    assert abs(entry.error - other.error) < 1e-10 * entry.supplied
+    assert abs(entry.load - other.load) > 0.1 * entry.supplied
+    speeds = np.sum(falling.scene.mass[chosen] * 0.5 * 60.0**2)
+    assert entry.damping > speeds
+    # the others do not notice
+    rest = ~chosen
+    assert np.array_equal(state.displacement[:, rest], fallen[False].run.state.displacement[:, rest])
+
+
+def test_others_pass_them_without_touching(fallen) -> None:
+    falling = fallen[True]
+    pairs = falling.run.system.contacts["body"]
+    here = falling.run.state.displacement.copy()
+    other, gone = int(np.flatnonzero(~falling.far.far)[0]), int(np.flatnonzero(falling.far.far)[0])
+    here[:2, other] += (falling.scene.positions + here[:2].T)[gone] - (falling.scene.positions + here[:2].T)[other]
+    pairs.search(here)
+    assert not (np.transpose(pairs.pairs) == gone).any()
+
+
+def test_they_are_warned_of_once() -> None:
+    assert list(far_warnings(None)) == []
+    (said,) = far_warnings({"disks": 1135, "retired": False, "time": 1.5})
+    assert said.startswith("run.far: of 1,135 disks each has fallen below the base")
+    assert 'run.far = "retire"' in said
+    (said,) = far_warnings({"disks": 2, "retired": True, "time": 1.5})
+    assert "retire" not in said
