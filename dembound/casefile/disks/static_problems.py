@@ -31,8 +31,9 @@ def static_problems(
         if table and table.is_outside and side != "bottom" and has_column:
             yield f"static.boundary.{side}: is not allowed, as the ground goes on beyond; its bottom may be held"
     for side, own in static.boundary.items():
-        if own and "artificial" in own.model_fields_set:
-            yield f"static.boundary.{side}.artificial: is of no use in the static stage; give it to boundary.{side}"
+        for key in ("artificial", "intact"):
+            if own and key in own.model_fields_set:
+                yield f"static.boundary.{side}.{key}: is of no use in the static stage; give it to boundary.{side}"
     begins = begins_stressed(static, boundaries)
     if static.k0 is not None:
         yield from _without_weight(loads)

@@ -21,11 +21,16 @@ def intact_facts(scene: DiskScene) -> Entries:
     """Where the zones lie in which bonds do not break, and the springs of the bottom."""
     zones = scene.intact_zones
     if zones:
-        depths = [f"{depth} disks from {side}" for side, depth in scene.case.intact.items() if side in zones]
+        depths: dict[int, list[str]] = {scene.case.intact[side]: [] for side in zones}
+        for side in zones:
+            depths[scene.case.intact[side]].append(side)
+        parts = [
+            f"{depth} {'disk' if depth == 1 else 'disks'} from {' and '.join(sides)}" for depth, sides in depths.items()
+        ]
         inside = len(np.unique(np.concatenate(list(zones.values()))))
         count = scene.disk_count - scene.column_count
         column = "; all of the free-field column" if any(side in scene.case.column_sides for side in zones) else ""
-        yield "bonds kept", f"{', '.join(depths)}: {inside:,} of {count:,} disks have bonds that do not break{column}"
+        yield "bonds kept", f"{', '.join(parts)}: {inside:,} of {count:,} disks have bonds that do not break{column}"
     if (springs := scene.bearing) is not None:
         assert scene.case.bearing is not None
         beyond = "the free-field column" if scene.twin is not None else "its own mean, so that they bear no net force"

@@ -31,8 +31,8 @@ def test_zones_and_springs_are_among_the_facts() -> None:
     inside = len(set().union(*(set(nodes.tolist()) for nodes in body.intact_zones.values())))
     own = body.disk_count - body.column_count
     assert facts["bonds kept"] == (
-        f"2 disks from left, 2 disks from right, 2 disks from bottom: {inside:,} of {own:,} disks have bonds that do "
-        "not break; all of the free-field column"
+        f"2 disks from left and right and bottom: {inside:,} of {own:,} disks have bonds that do not break; all of the "
+        "free-field column"
     )
     # a tenth of the weight over α_n G ΣD/L of the bottom
     weight = -float(body.steady_load[1, body.column_count :].sum())

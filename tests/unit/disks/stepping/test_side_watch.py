@@ -45,7 +45,7 @@ def test_work_is_that_on_a_disk_which_leaves_its_side_over_the_energy_that_came_
     watched.balance.force[1, watched.bottom[4]] = 2.0
     assert watched.look(4, moved=12.0)["work"] == {"size": pytest.approx(0.11), "side": "bottom", "time": 2.0}
     assert watched.look(5, energy=220.0)["work"]["size"] == pytest.approx(0.05)  # the largest so far, over all energy
-    with pytest.raises(RunError, match="boundary.bottom: until t = 3 s forces at rest have done work"):
+    with pytest.raises(RunError, match=r"boundary\.bottom: until t = 3 s forces at rest have done work"):
         watched.look(6, moved=72.0)
 
 
