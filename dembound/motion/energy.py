@@ -171,7 +171,8 @@ class Ledger(Tracker):
         self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
         self.sides.append(sides)
         self._watch(run, u)
-        system.look(u, state.step - 1, balance + min(load, 0.0), max(supplied, sum(self._first)))
+        borne = min(load, 0.0) - max(contact + bond, 0.0)  # weight lifted, and strain in a stress at rest
+        system.look(u, state.step - 1, borne, max(supplied, sum(self._first)))
 
     def _of_motion(self, before: np.ndarray, state: State) -> tuple[float, float]:
         """Σ ⅛m (v⁻ + v⁺)² and −Σ ⅛m (v⁺ − v⁻)²; before : (3, slots) v⁻."""

@@ -168,11 +168,12 @@ class System:
         """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""
         return None
 
-    def look(self, u: np.ndarray, step: int, balance: float, energy: float) -> None:
+    def look(self, u: np.ndarray, step: int, borne: float, energy: float) -> None:
         """Look at displacements (3, slots) of a step for which the ledger is written; by default nothing.
 
-        balance : J, work of forces at rest, less what they have done against steady loads; energy : J, the larger of
-        the supplied energy and that stored at rest. Raises RunError where something has gone wrong.
+        borne : J, at most 0, by how much less than their work forces at rest have supplied, as they have lifted weight
+        and strained the body; energy : J, the larger of the supplied energy and that stored at rest. Raises RunError
+        where something has gone wrong.
         """
 
     def borne(self, supported: np.ndarray) -> np.ndarray:

@@ -27,10 +27,10 @@ from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.reduce import Reduce
+from dembound.casefile.disks.run import DiskRun
 from dembound.casefile.disks.scatter import Scatter
 from dembound.casefile.disks.static import Static
 from dembound.casefile.output import Output
-from dembound.casefile.run import Run
 from dembound.casefile.sweep import Sweep
 from dembound.table import Table, name_of
 
@@ -103,7 +103,7 @@ DISKS = (
     Part("`[[load]]`", (Load,), guide="tasks/blasts"),
     Part("`[[hole]]`", holes.TYPES, holes.Hole, guide="tasks/holes_and_stress"),
     Part("`[[monitor]]`", (Monitor,)),
-    Part("`[run]`", (Run,)),
+    Part("`[run]`", (DiskRun,)),
     Part("`[output]`", (Output,), guide="tasks/show_results"),
     Part("`[chart]`", (Chart,), guide="tasks/trust_a_result"),
     Part("`[[chart.choice]]`", (ChartChoice,)),
@@ -117,7 +117,7 @@ BARS = (
     Part("`[method]`", methods.TYPES, methods.Method, guide="tasks/bars"),
     Part("`[[load]]` of a bar", (BarLoad,)),
     Part("`[[monitor]]` of a bar", (BarMonitor,)),
-    Part("`[run]` of a bar", (BarRun,), within=Run, more="The keys of [`[run]`](#run), and:"),
+    Part("`[run]` of a bar", (BarRun,), within=DiskRun, more="The keys of [`[run]`](#run), and:"),
 )
 """The tables of a case of a bar that are not those of disks."""
 

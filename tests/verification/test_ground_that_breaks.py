@@ -110,7 +110,7 @@ def test_a_watched_run_that_holds_is_not_warned_of() -> None:
 
 def test_where_the_sides_do_not_hold_the_watch_says_so() -> None:
     said = broken(**{f"boundary__{side}__intact": 0 for side in ("left", "right", "bottom")}).run.system.side_watch
-    assert said.ended > 0.01
+    assert said.ended > 0.1
 
 
 def test_the_springs_are_in_the_account_of_their_side() -> None:

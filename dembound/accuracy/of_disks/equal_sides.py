@@ -12,6 +12,7 @@ from dembound.accuracy.of_disks.matched_sides import Reflected, factor_for, refl
 from dembound.accuracy.of_disks.plain_sides import with_plain_sides
 from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.intact import Keeping
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import homogenised_beta, per_metre
 from dembound.disks.scene import DiskScene, build
@@ -30,7 +31,8 @@ def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dic
     waves that are not known on disks of another size.
     """
     scene = with_plain_sides(scene)
-    case = replace(case, boundary={side: scene.case.boundary[side] for side in case.boundary})
+    plain = scene.case.boundary
+    case = replace(case, boundary={side: _as_deep(plain[side], table) for side, table in case.boundary.items()})
     own = build(case)
     shares = {side: reflected(scene, side, time_step) for side, table in case.boundary.items() if table.factors}
     halved = {side: found for side, found in shares.items() if _may_be_whole(case.boundary[side])}
@@ -40,6 +42,13 @@ def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dic
         side: _equal_dashpots(boundary[side], side, found, weight > 0.0, own) for side, found in shares.items()
     }
     return boundary, weight
+
+
+def _as_deep(table: Boundary, given: Boundary) -> Boundary:
+    """A side with as many disks whose bonds do not break as another one is given."""
+    if isinstance(table, Keeping) and isinstance(given, Keeping):
+        return table.model_copy(update={"intact": given.intact})
+    return table
 
 
 def with_whole_cells(case: DiskCase) -> DiskCase:

@@ -52,7 +52,7 @@ class Balance:
         self._begun = force.copy()
         self._note_begin()
         self._carriers = carriers_of(scene)
-        self._relative = np.zeros(len(self._carriers))
+        self._relative, self._free = np.zeros(len(self._carriers)), np.zeros(())
         self._stands = np.ones(len(self._carriers), dtype=np.bool_)
 
     def work(self, displacement: np.ndarray) -> float:
@@ -130,7 +130,7 @@ class Balance:
         if not (debris.any() or alone.any()):
             return
         moved = displacement - self.datum
-        before = self.relative_work(displacement)
+        before, free = self.relative_work(displacement), self.free_work(displacement)
         change = np.where(debris, -self.force, 0.0)
         change[2] -= np.where(alone & ~debris, self.force[2], 0.0)
         lost = np.where(alone, self._across, 0.0) - change
@@ -157,6 +157,7 @@ class Balance:
         followers.force[...] += np.where(turned, 0.0, share[:, None, :] * change[:2, followers.node])
         followers.steady[...] += change[:2, followers.node]
         self._relative += before - self.relative_work(displacement)
+        self._free += free - self.free_work(displacement)
 
     def relative_work(self, displacement: np.ndarray) -> np.ndarray:
         """Work (J) of the forces up to displacements (3, n), by carrier, less that on the mean motion of its side.
@@ -167,10 +168,14 @@ class Balance:
         force = np.where(self._scene.moves, self.force + np.where(self.let_go, 0.0, self._across), 0.0)
         return self._relative + relative_work(self._carriers, force, moved, self._ended)
 
+    def free_work(self, displacement: np.ndarray) -> float:
+        """Work (J) of the forces up to displacements (3, n) where no side prescribes the motion."""
+        moved = displacement - self.datum
+        return float(self._free) + float(np.sum(np.where(self._scene.moves, self.force, 0.0) * moved))
+
     def share_of_ended(self) -> float:
-        """Sum of the sizes of the forces that acted at the start on disks that have broken off since, over all."""
-        size = self._size
-        return float(size[self._ended].sum() / size.sum()) if size.any() else 0.0
+        """Sum of the sizes of the forces at the start on disks that have broken off since, over all forces."""
+        return float(self._size[self._ended].sum() / self._all) if self._size.any() else 0.0
 
     def largest_turn(self, displacement: np.ndarray) -> tuple[float, int]:
         """The largest rotation (rad) of a disk that bears a force at rest at a side, and the number of its carrier."""
@@ -193,6 +198,7 @@ class Balance:
         force = (self._begun + self._across)[:2]
         size = np.hypot(*np.where(self._scene.moves[:2], force, 0.0))
         self._size = np.where(size > BEARS * np.hypot(*force).max(initial=0.0), size, 0.0)
+        self._all = float(np.hypot(*force).sum())
 
     def _leave_sides(self) -> None:
         """Compute the rotation of each side from its remaining particles."""
@@ -207,7 +213,7 @@ class Balance:
 _FIXED = ("steady", "datum", "across")
 """The arguments of a balance other than its forces."""
 
-_EVOLVING = ("ended", "torn", "begun", "relative", "stands")
+_EVOLVING = ("ended", "torn", "begun", "relative", "free", "stands")
 """Arrays about particles that have broken off, and of what acted on them."""
 
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")

@@ -17,8 +17,8 @@ from dembound.packings.cut import cut_contacts
 STANDS = 0.5
 """Share of the forces at a side that acted on disks which are left, for these to carry what the others did."""
 
-BEARS = 1e-3
-"""Force at rest, over the largest one, below which it is what the static stage has left over."""
+BEARS = 1e-2
+"""Force at rest, over the largest one, below which it does not count."""
 
 
 class Carrier(NamedTuple):

@@ -236,11 +236,11 @@ class DiskSystem(RecordedDisks):
             pairs.retired |= disks[pairs.nodes]
             pairs.search(displacement)
 
-    def look(self, u: np.ndarray, step: int, balance: float, energy: float) -> None:
+    def look(self, u: np.ndarray, step: int, borne: float, energy: float) -> None:
         """Look at the forces at rest at displacements (3, slots) of a step, see `SideWatch.look`."""
         if self.balance is not None and self.scene.has_history:
             displacement = self.scene.layout.gather(u)
-            self.side_watch.look(self.balance, self.contacts, displacement, step, balance, energy)
+            self.side_watch.look(self.balance, self.contacts, displacement, step, borne, energy)
 
     def _let_go(self) -> None:
         """Let the free field exert no forces on disks that have broken off or lost all their bonds."""

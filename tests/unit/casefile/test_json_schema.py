@@ -98,7 +98,7 @@ def test_a_file_without_tables_is_no_case(problems) -> None:
 
 
 def test_units_stand_in_descriptions_and_null_nowhere(schema) -> None:
-    run = schema["$defs"]["Run"]["properties"]
+    run = schema["$defs"]["DiskRun"]["properties"]
     assert run["duration"]["description"] == "simulated time (s)"
     assert schema["$defs"]["Material"]["properties"]["pb_ten"]["type"] == "number"
 

@@ -106,7 +106,7 @@ def test_histories_alone_are_written_without_snapshots(bar, spalling, tmp_path) 
 
 
 KEYS = """name title version particles contacts loose_disks_left_out time_step step_limit steps duration ended
-wall_time seconds layers has_history threads particle_steps_per_second memory_bytes packing load_factor
+wall_time seconds layers has_history threads particle_steps_per_second memory_bytes packing load_factor forces_at_rest far
 boundaries monitors laws static cracks energy keys reduced not_reduced resumed sides warnings waves"""
 
 

@@ -126,6 +126,8 @@ PACKED = {
     "monitor": [],
     "static": {},
     "material.law": "linearpbond",
+    "boundary.left.intact": 0,  # two disks from both sides would be half of the body
+    "boundary.right.intact": 0,
 }
 
 

@@ -85,7 +85,7 @@ def test_what_is_held_does_not_creep(boundary) -> None:
 FOUND = {
     "work": {"size": 0.06, "side": "left", "time": 0.5},
     "turn": {"size": 0.2, "side": "right", "time": 0.25},
-    "ended": 0.02,
+    "ended": 0.2,
     "reached": {"left": {"bonds": 1200, "time": 0.125}, "free-field column": {"bonds": 3, "time": 0.5}},
 }
 
@@ -94,8 +94,8 @@ def test_forces_at_rest_that_became_a_motor_are_warned_of() -> None:
     work, turn, ended = lasting_force_warnings(FOUND)
     assert work.startswith("boundary.left: until t = 0.5 s forces at rest have done 6 % of the energy")
     assert turn.startswith("boundary.right: a disk on which forces at rest act has turned by 0.2 rad by t = 0.25 s")
-    assert ended.startswith("static: disks that bore 2 % of the forces at rest have broken off")
-    quiet = {"work": {**FOUND["work"], "size": 0.05}, "turn": {**FOUND["turn"], "size": 0.15}, "ended": 0.01}
+    assert ended.startswith("static: disks that bore 20 % of the forces at rest have broken off")
+    quiet = {"work": {**FOUND["work"], "size": 0.05}, "turn": {**FOUND["turn"], "size": 0.15}, "ended": 0.1}
     assert list(lasting_force_warnings(quiet)) == []
     assert list(lasting_force_warnings({"work": None, "turn": None, "ended": 0.0})) == []
     assert list(lasting_force_warnings(None)) == []

@@ -30,10 +30,10 @@ class Watched:
         self.balance = Balance(self.scene, force, still, still, still)
         self.watch = SideWatch(self.scene, STEP)
 
-    def look(self, step: int, moved: float = 0.0, turned: float = 0.0, energy: float = 100.0, whole: float = 0.0):
+    def look(self, step: int, moved: float = 0.0, turned: float = 0.0, energy: float = 100.0, borne: float = -1e9):
         displacement = np.zeros((3, self.scene.count))
         displacement[:, self.bottom[4]] = [0.0, moved, turned]
-        self.watch.look(self.balance, self.system.contacts, displacement, step, whole, energy)
+        self.watch.look(self.balance, self.system.contacts, displacement, step, borne, energy)
         return self.watch.describe()
 
 
@@ -51,9 +51,10 @@ def test_work_is_that_on_a_disk_which_leaves_its_side_over_the_energy_that_came_
 
 def test_all_forces_together_count_where_the_side_moves_as_a_whole(bar) -> None:
     watched = Watched(bar)
-    assert watched.look(3, whole=40.0)["work"]["size"] == pytest.approx(0.4)
+    # 1 N over 60 m, of which 20 J have lifted weight
+    assert watched.look(3, moved=60.0, borne=-20.0)["work"]["size"] == pytest.approx(0.4)
     with pytest.raises(RunError, match="51 %"):
-        watched.look(4, whole=51.0)
+        watched.look(4, moved=60.0, borne=-9.0)
 
 
 def test_nothing_is_said_before_energy_came_in(bar) -> None:
