@@ -104,12 +104,12 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
 
 
 def _as_deep(case: DiskCase, side: str, scene: DiskScene, cell: float) -> Boundary:
-    """A side whose bonds do not break as deep as in the case, in larger cells (m) that are fewer."""
+    """A side whose bonds do not break no deeper than in the case, in larger cells (m)."""
     table = case.boundary[side]
     if not isinstance(table, Keeping) or side not in case.intact:
         return table
     depth = case.intact[side] * scene.ground.brick.mean_diameter / cell
-    return table.model_copy(update={"intact": max(1, round(depth))})
+    return table.model_copy(update={"intact": int(depth)})
 
 
 def _cells(size: tuple[float, float], diameter: float) -> tuple[int, int, float]:
