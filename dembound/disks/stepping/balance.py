@@ -106,8 +106,8 @@ class Balance:
     ) -> None:
         """End the forces on pieces that have broken off, and the moments on disks without bonds; others carry them.
 
-        A piece has broken off if neither bonds nor closed contacts connect it to disks of an intact zone or, without
-        such zones, to the largest piece, and one of its bonds has broken since the start. Ground that was loose at the
+        A piece has broken off if neither bonds nor closed contacts connect it to disks of an intact zone or, in parts
+        without one, to the largest piece, and one of its bonds has broken since the start. Ground that was loose at the
         start therefore keeps its confining forces. Disks that have broken off or lost all bonds are no longer held by
         a free field, see `let_go`.
 
@@ -123,7 +123,8 @@ class Balance:
                 alone[body] = fresh & (part.contacts.bonds_left() == 0)
             slot = part.layout.slot[body]
             piece = pieces(part.pairs, slot.min(), slot.max() + 1)[slot - slot.min()]
-            held = np.array([np.argmax(np.bincount(piece))]) if intact is None else piece[intact[body]]
+            kept = np.zeros(0, dtype=np.int64) if intact is None else piece[intact[body]]
+            held = kept if len(kept) else np.array([np.argmax(np.bincount(piece))])
             debris[body] = ~np.isin(piece, held) & np.isin(piece, piece[self._torn[body]])
         debris &= ~self._ended
         alone = (alone | debris) & ~self.let_go
