@@ -187,11 +187,11 @@ def reach_warnings(found: Mapping[str, Any] | None) -> Iterator[str]:
     reached = {} if found is None else found["reached"]
     if not reached:
         return
-    places = [
-        f"the {place if place == COLUMN else f'{place} side'} (at least {each['bonds']:,} bonds, from t = "
-        f"{each['time']:.4g} s)"
-        for place, each in reached.items()
-    ]
+    places = []
+    for place, each in reached.items():
+        where = place if place == COLUMN else f"{place} side"
+        bonds = "1 bond" if each["bonds"] == 1 else f"{each['bonds']:,} bonds"
+        places.append(f"the {where} (at least {bonds}, from t = {each['time']:.4g} s)")
     keys = " and ".join(f"boundary.{place}" for place in reached if place != COLUMN) or "boundary"
     yield (
         f"{keys}: cracks would have reached {', '.join(places)}, whose bonds do not break, as they stand for ground "
