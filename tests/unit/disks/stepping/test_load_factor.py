@@ -126,6 +126,19 @@ def test_without_limits_there_is_no_factor(tmp_path):
     assert load_factor_in_words(summary["load_factor"]) == "the elastic law holds under any multiple of the waves"
 
 
+def test_bonds_that_do_not_break_have_no_limit(tmp_path):
+    """Of bonds alone; in all 20 columns of disks none breaks, and in 2 the first one is farther inside."""
+    bonds = QUIET | {"material.contact_share": 0.0}
+    found = {}
+    for depth in (0, 2, 20):
+        case = small(STATIC, f"kept{depth}", bonds | {f"boundary.{side}.intact": depth for side in ("left", "right")})
+        summary = json.loads((run_case(case, tmp_path) / "summary.json").read_text())
+        found[depth] = summary["load_factor"]
+    assert found[20] == {"factor": None}
+    assert found[2]["factor"] >= found[0]["factor"]
+    assert 1.0 < found[2]["position"][0] < 9.0
+
+
 WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}
 SETTLE = r"output.load_factor: needs a \[static\] stage, .* under load\[1, weight\]"
 
