@@ -13,7 +13,7 @@ from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
 
 STEPS = 1024
-"""Steps between two looks: within them a disk falls by less than a scene's height."""
+"""Steps between two looks, which take less time than one step: a multiple of those at which the loop returns anyway."""
 
 
 class FarDisks(Every):

@@ -26,7 +26,7 @@ class Carrier(NamedTuple):
 
     side, part : names. nodes : (k,) ascending; share : (3, k) of the force and moment on each that belongs to this
     side: at a corner each side has the force along its normal. turns : whether the part can turn, so that torques about
-    the middle of a side are carried.
+    the middle of a side are carried. disks : all of the part.
     """
 
     side: str
