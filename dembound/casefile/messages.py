@@ -72,8 +72,7 @@ def _described(
     for key, about in by_key.items():
         inner = _table_at(keys.get(key, {}), shared)
         if inner and isinstance(raw.get(key), Mapping):
-            for detail in about:
-                detail["loc"] = detail["loc"][1:]
+            about = _about_table(about, keys[key])
             yield from _described(about, f"{path}.{key}", raw[key], inner, shared)
             continue
         row = shared.get(keys.get(key, {}).get("items", {}).get("$ref", "").rsplit("/", 1)[-1])
@@ -81,6 +80,17 @@ def _described(
             yield from _in_rows(f"{path}.{key}", about, raw[key], row, shared)
         else:
             yield from _lines(path, key, about, raw, keys, others)
+
+
+def _about_table(details: list[ErrorDetails], schema: Mapping[str, Any]) -> list[ErrorDetails]:
+    """The mistakes in the table at a key, by places within it; of a key that takes other values, too, those alone."""
+    options = [each for each in schema.get("anyOf", ()) if each.get("type") != "null"]
+    if len(options) > 1:
+        name = next(each["$ref"].rsplit("/", 1)[-1] for each in options if "$ref" in each)
+        details = [detail for detail in details if detail["loc"][1] == name]
+    for detail in details:
+        detail["loc"] = detail["loc"][2 if len(options) > 1 else 1 :]
+    return details
 
 
 def _table_at(schema: Mapping[str, Any], shared: Mapping[str, Any]) -> Mapping[str, Any] | None:

@@ -99,3 +99,9 @@ def test_keys_of_other_sides_and_of_bars_are_refused() -> None:
         "boundary.right.bearing: is for the bottom of disks"
     ]
     assert problems_of(f'{body}{run}[boundary.top]\ntype = "viscous"\nbearing = false') == []
+    bottom = f'{body}{run}[boundary.bottom]\ntype = "viscous"\nbearing = '
+    assert problems_of(f"{bottom}{{alpha_x = 1.0, alpha_n = -1.0}}") == [
+        "boundary.bottom.bearing.alpha_n: is -1.0, must be at least 0",
+        "boundary.bottom.bearing.alpha_x: unknown key; allowed: alpha_n, alpha_s (did you mean alpha_s?)",
+    ]
+    assert problems_of(f'{bottom}"yes"') == ['boundary.bottom.bearing: is "yes", must be true or false or a table']
