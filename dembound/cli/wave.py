@@ -20,10 +20,14 @@ from dembound.errors import CaseError
 
 if TYPE_CHECKING:
     from dembound.records.channel import Channel, Record
+    from dembound.records.formats import Reading
     from dembound.records.processing import Motion, Processing
 
 STEPS = "Processing"
 """Panel of the help."""
+
+READING = "Files that state too little"
+"""Another panel."""
 
 HEADS = (
     *("com-\nponent", "sam-\nples", "rate\n(Hz)", "PGA\n(m/s²)", "PGA\n(g)", "PGV\n(m/s)", "PGD\n(m)"),
@@ -125,6 +129,42 @@ class ProcessingOptions:
         )
 
 
+@dataclass(frozen=True)
+class ReadingOptions:
+    """What is known about a file beside its header."""
+
+    unit: Annotated[
+        str | None,
+        typer.Option(help="Unit of the values, e.g. g, cm/s² or m/s; replaces the file's.", rich_help_panel=READING),
+    ] = None
+    time_step: Annotated[
+        float | None, typer.Option("--dt", metavar="X", help="Time step (s).", rich_help_panel=READING)
+    ] = None
+    columns: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,NAME,…",
+            help='Columns of a text in their order, as time,NS,EW; "-" leaves one out.',
+            rich_help_panel=READING,
+        ),
+    ] = None
+    series: Annotated[
+        bool,
+        typer.Option("--series", help="Take all numbers, line by line, as one channel.", rich_help_panel=READING),
+    ] = False
+    skip: Annotated[
+        int,
+        typer.Option(metavar="N", min=0, help="Leave out lines at the beginning of a text.", rich_help_panel=READING),
+    ] = 0
+
+    def given(self) -> Reading:
+        """The same for readers."""
+        from dembound.records.formats import Reading
+
+        names = tuple(name.strip() for name in self.columns.split(",")) if self.columns else ()
+        return Reading(self.unit, self.time_step, names, self.series, self.skip)
+
+
 def _csv(param: typer.CallbackParam, path: Path | None) -> Path | None:
     """A wave to write, if its folder exists. Raises CaseError if its name does not end in ``.csv``."""
     if path is not None and path.suffix.lower() != ".csv":
@@ -138,9 +178,6 @@ def wave(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="Record: AT2, V1, V2, K-NET, CSV and others.")],
     component: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="This component only. May be repeated.")
-    ] = None,
-    unit: Annotated[
-        str | None, typer.Option(help="Unit of the values, e.g. g, cm/s² or m/s; by default the file's.")
     ] = None,
     output: Annotated[
         Path | None,
@@ -189,6 +226,7 @@ def wave(
         Path | None, typer.Option(metavar="NAME.csv", help="Curves of the picture to write (CSV).", callback=_csv)
     ] = None,
     *,
+    reading: ReadingOptions,
     processing: ProcessingOptions,
 ) -> None:
     """Make a wave of a measured ground motion (CSV and PNG).
@@ -204,7 +242,7 @@ def wave(
     from dembound.records.processing import processed
     from dembound.records.wave_file import write_wave
 
-    record = read_record(file, unit)
+    record = read_record(file, reading.given())
     channels = _chosen(record, component)
     target = output or Path(f"{file.stem}_velocity.csv")
     paths = _paths(target, channels)
@@ -216,6 +254,8 @@ def wave(
     out.print(f"{file}: {record.format}, {record.title or 'no title'}")
     for remark in record.remarks:
         err.print(f"warning: {remark}")
+    for line in record.chosen:
+        out.print(f"  {line}")
     motions = [processed(channel, processing.of(channel)) for channel in channels]
     if deconvolve is not None:
         motions = _below(deconvolve, motions, kinds, damping, transfer)
@@ -231,6 +271,8 @@ def wave(
         origin = [
             f"made by dembound wave of {file.name}, {record.format}",
             record.title,
+            *record.chosen,
+            *record.remarks,
             f"component: {motion.component}",
         ]
         write_wave(path, motion, [line for line in origin if line])

@@ -44,9 +44,11 @@ class Record:
     title : station, event and the like in one line, as the header states them.
     channels : in the order of the file; they may have different lengths and rates.
     remarks : one line for each contradiction between the header and the samples that does not prevent reading.
+    chosen : what was taken for what, where the file could be read otherwise.
     """
 
     format: str
     title: str
     channels: tuple[Channel, ...]
     remarks: tuple[str, ...] = ()
+    chosen: tuple[str, ...] = ()

@@ -182,7 +182,7 @@ def _numbers(path: Path, rows: Sequence[tuple[int, list[str]]], separator: str) 
     if sum(_is_like(fields, places, decimal) for _, fields in rows[:first]) >= BROKEN_OFF:
         raise CaseError([f'"{path}": line {rows[first - 1][0]} is no line of numbers like those around it'])
     left = [fields[: places[0]] for _, fields in rows[first:] if any(fields[: places[0]])]
-    above = [_joined(fields, len(rows[last][1])) if separator == " " else fields for _, fields in rows[:first]]
+    above = [joined(fields, len(rows[last][1])) if separator == " " else fields for _, fields in rows[:first]]
     return Columns(
         path=path,
         header=left or above,
@@ -193,7 +193,7 @@ def _numbers(path: Path, rows: Sequence[tuple[int, list[str]]], separator: str) 
     )
 
 
-def _joined(fields: list[str], count: int) -> list[str]:
+def joined(fields: list[str], count: int) -> list[str]:
     """Words between blanks joined to a number of column names that end with units in brackets; else unchanged."""
     line = " ".join(fields)
     for names in (WORD_WITH_UNIT, WORDS_WITH_UNIT):

@@ -11,42 +11,53 @@ from dembound.errors import CaseError
 from dembound.gauge.reading.scope import content_of, decoded
 from dembound.records.channel import Record
 from dembound.records.formats.cosmos import Cosmos
-from dembound.records.formats.csmip import Csmip
+from dembound.records.formats.esm import Esm
 from dembound.records.formats.format import Format
+from dembound.records.formats.geonet import Geonet
 from dembound.records.formats.knet import Knet
+from dembound.records.formats.networks import Cwb, Nsmn, Unam
 from dembound.records.formats.peer import Peer
+from dembound.records.formats.seismic import read_binary
 from dembound.records.formats.smc import Smc
-from dembound.records.formats.source import MOTIONS, USUAL, Flaw, Source
+from dembound.records.formats.source import MOTIONS, USUAL, Flaw, Reading, Source, Unknown
 from dembound.records.formats.text_columns import TextColumns
+from dembound.records.formats.volumes import Volumes
 from dembound.table import with_registered
 from dembound.waves.unit_names import unit_named
 
-TYPES: tuple[type[Format], ...] = (Peer, Csmip, Cosmos, Knet, Smc)
+TYPES: tuple[type[Format], ...] = (Geonet, Volumes, Cosmos, Knet, Smc, Esm, Cwb, Nsmn, Unam, Peer)
 REGISTERED: tuple[type[Format], ...] = with_registered("dembound.records", Format, TYPES)
 FORMATS: list[Format] = [*(form() for form in REGISTERED), TextColumns()]
 """All formats; the last one is tried on files that no other one recognises."""
 
 
-def read_record(path: Path, unit: str | None = None) -> Record:
+def read_record(path: Path, given: Reading = Reading()) -> Record:  # noqa: B008  # frozen
     """Read a file of ground motion, whose content, not its name, gives the format.
 
     Parameters
     ----------
     path : the file.
-    unit : of the values, in place of the unit of the same quantity in the header or where the header has none.
+    given : what is known beside its header.
 
-    Raises CaseError, in one line, for a file that cannot be read, is of no known format, or is damaged.
+    Raises CaseError, in one line, for a file that cannot be read, is of no known format, is damaged, may be read in
+    two ways, or contradicts its header.
     """
-    given = None if unit is None else unit_named(unit)
-    if unit is not None and (given is None or given.quantity not in MOTIONS):
-        raise CaseError([f"--unit: is {unit}, must be one of {USUAL}"])
-    source = Source(path, re.split(r"\r\n|\n|\r", decoded(content_of(path)).rstrip("\x1a\r\n\t ")), unit)
-    form = next(form for form in FORMATS if form.recognises(source.lines))
+    named = None if given.unit is None else unit_named(given.unit)
+    if given.unit is not None and (named is None or named.quantity not in MOTIONS):
+        raise CaseError([f"--unit: is {given.unit}, must be one of {USUAL}"])
+    content = content_of(path)
+    text = decoded(content).rstrip("\0\x1a\r\n\t ")
+    lines = re.split(r"\r*\n|\r", text)
+    source = Source(path, lines, given)
+    form = FORMATS[-1] if given.is_of_text else next(form for form in FORMATS if form.recognises(source.lines))
+    name = "SAC or MiniSEED" if "\0" in text else form.name
     try:
-        record = form.read(source)
+        if given.time_step is not None and name != FORMATS[-1].name:
+            raise Flaw("--dt: is for columns of text, the file states its own time step; leave it out")
+        record = read_binary(content, source) if "\0" in text else form.read(source)
+        if given.unit is not None and len({channel.quantity for channel in record.channels}) > 1:
+            raise Flaw(f"--unit: is {given.unit}, but the channels are different quantities; leave it out")
     except Flaw as flaw:
-        raise CaseError([f'"{path}", read as {form.name}: {flaw}']) from None
-    except CaseError as error:
-        known = ", ".join(known.name for known in FORMATS)
-        raise CaseError([f"{error.problems[0]}; known formats: {known}"]) from None
-    return replace(record, remarks=(*record.remarks, *dict.fromkeys(source.remarks)))
+        known = f"; known formats: {', '.join(known.name for known in FORMATS)}" if isinstance(flaw, Unknown) else ""
+        raise CaseError([f'"{path}", read as {name}: {flaw}{known}']) from None
+    return replace(record, remarks=(*record.remarks, *dict.fromkeys(source.remarks)), chosen=tuple(source.chosen))

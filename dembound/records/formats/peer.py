@@ -1,35 +1,56 @@
-"""AT2, VT2 and DT2 files of the PEER databases: four lines of header, then the values of one component."""
+"""AT2, VT2 and DT2 files of the PEER databases, and files like them: a header, then the values of one component.
+
+The header has four lines, in some collections up to eleven: the last one has number and time step, one above it the
+unit. Lines may end in CR CR LF, and values in "*** End".
+"""
 
 import re
 from collections.abc import Sequence
 
 from dembound.records.channel import Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import COUNT, DECIMAL, Source
+from dembound.records.formats.source import COUNT, DECIMAL, SECONDS, Source, quantity_named, seconds_of
 
-UNITS = re.compile(
-    r"\s*(accel|veloc|displ)\w*\s+time\s+(?:series|history)\s+in\s+units\s+of\s+([^\s.,;]+)", re.IGNORECASE
+UNITS = re.compile(r"\bunits\s+(?:of|are|is|:|=)?\s*[(\[]?\s*([^\s.,;)\]]+)", re.IGNORECASE)
+SAMPLES = re.compile(
+    rf"\s*NPTS?\s*=\s*{COUNT}\b.*?\bDT\s*=\s*({DECIMAL})\s*{SECONDS}?\b"
+    rf"|\s*{COUNT}\s+({DECIMAL})\s+NPTS,\s*DT\b",
+    re.IGNORECASE,
 )
-SAMPLES = (rf"NPTS\s*=\s*{COUNT}\b.*?DT\s*=\s*({DECIMAL})", rf"^\s*{COUNT}\s+({DECIMAL})\s")
 """As "NPTS=  5000, DT=   .0050 SEC", and before 2006 "5000  .0050  NPTS, DT"."""
+
+LONGEST = 11
+"""Lines of the longest header."""
 
 
 class Peer(Format):
-    """Second line: event, station and component; third line: quantity and unit; fourth line: number and time step."""
+    """The second line of four has event, station and component, the third one quantity and unit."""
 
     name = "PEER AT2/VT2/DT2"
 
     def recognises(self, lines: Sequence[str]) -> bool:
-        """Whether the third line has a quantity and its unit."""
-        return len(lines) > 2 and UNITS.match(lines[2]) is not None
+        """Whether a line of the header has number and time step, and another one a unit or the name of the database."""
+        at = _at(lines)
+        return at is not None and any(UNITS.search(line) or "PEER" in line for line in lines[:at])
 
     def read(self, source: Source) -> Record:
         """The component of the file."""
-        stated = UNITS.match(source.lines[2])
-        assert stated is not None
-        found = source.found("|".join(SAMPLES), 3, 4, "NPTS and DT")
-        count, step = (text for text in found.groups() if text is not None)
-        title = source.lines[1].strip()
-        unit = source.measured(stated[2])
-        channel = source.channel(title.rpartition(",")[2].strip(), unit, source.free(4, int(count)), float(step))
-        return Record(f"PEER {stated[1][0].upper()}T2", title, (channel,))
+        at = _at(source.lines)
+        assert at is not None
+        found = SAMPLES.match(source.lines[at])
+        assert found is not None
+        count, step, unit = (found[1], found[2], found[3]) if found[1] else (found[4], found[5], "")
+        above = [line.strip() for line in source.lines[:at] if line.strip()]
+        stated = next((line for line in reversed(above) if UNITS.search(line)), "")
+        title = next((line for line in [*above[1:2], *above[:1]] if line != stated), "")
+        spelled = match[1] if (match := UNITS.search(stated)) else ""
+        named = source.measured(spelled, stated if quantity_named(stated) else " ".join(above))
+        component = title.rpartition(",")[2].strip() if "," in title else ""
+        values = source.free(at + 1, int(count))
+        channel = source.channel(component, named, values, seconds_of(step, unit or "", at + 1))
+        return Record(f"PEER {channel.quantity[0].upper()}T2", title, (channel,))
+
+
+def _at(lines: Sequence[str]) -> int | None:
+    """Index of the line with number and time step; None without one."""
+    return next((at for at, line in enumerate(lines[: LONGEST + 1]) if SAMPLES.match(line)), None)

@@ -45,7 +45,7 @@ class Smc(Format):
             begin += 1
         if not 0.0 < integers[COUNT] < 1e9:
             raise Flaw(f"states {integers[COUNT]:g} values in line {TEXTS + 3}, must be positive")
-        numbers, time, rate = source.free(begin, int(integers[COUNT])), 0.0, reals[RATE]
+        numbers, time, rate = source.free(begin, int(integers[COUNT]), may_follow=True), 0.0, reals[RATE]
         found = None
         if 0.0 < rate < reals[UNKNOWN]:
             step = 1.0 / float(rate)

@@ -23,6 +23,13 @@ MOTIONS: dict[str, Quantity] = {
 }
 """Quantities by their names in `unit_names`."""
 
+QUANTITY = {
+    "accelerations": re.compile(r"\b(?:acc|accel\w*|acel\w*|beschl\w*)(?![a-z])|加速度", re.IGNORECASE),
+    "velocities": re.compile(r"\b(?:vel|veloc\w*|geschw\w*|vitesse)(?![a-z])|(?<!加)速度", re.IGNORECASE),
+    "displacements": re.compile(r"\b(?:disp|displ\w*|despl\w*|versch\w*)(?![a-z])|位移", re.IGNORECASE),
+}
+"""Words, also shortened, of several languages that name a quantity."""
+
 USUAL = "g, gal, cm/s², m/s², cm/s, m/s, cm or m"
 SI = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
 
@@ -30,34 +37,67 @@ PEAK_TOLERANCE = 1e-3
 """Share of a stated peak by which that of the samples may differ, beside the rounding of the stated one."""
 
 COUNT = r"(\d{1,9})"
-DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[Ee][+-]?\d+)?"
-"""Patterns of a number of samples and of any number."""
+DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
+"""Patterns of a number of samples and of any number, Fortran's double precision (1.5D-03) included."""
+
+SECONDS = r"((?:milli)?seconds?|m?s(?:ec(?:onds?|s)?)?)"
+BARE = 0.1
+"""The unit of a time step, and the longest one that is taken in seconds without a unit, s."""
 
 LONGEST = 10
 """Times the number of digitised points that even ones may have."""
 
 NUMBER = re.compile(DECIMAL)
+FORTRAN = re.compile(r"([+-]?(?:\d+\.\d*|\.\d+))(?:[Dd]([+-]?\d+)|([+-]\d{3}))")
+"""A number that float() does not read: double precision, or without the letter before an exponent of three digits."""
+
 LAYOUT = re.compile(r"\(\s*(\d*)\s*[a-z]+(\d+)(?:\.\d+)?[^()]*\)", re.IGNORECASE)
-END = re.compile(r"\s*(/&|end-of-data)", re.IGNORECASE)
-"""The line behind the samples of a channel, in formats with several channels in a file."""
+END = re.compile(r"\s*(/&|end-of-data|\*+\s*end\b)", re.IGNORECASE)
+"""The line behind the samples of a channel."""
 
 
 class Flaw(Exception):  # noqa: N818  # what is wrong with a file, not with the program
     """What is wrong in a file, in one line without its path."""
 
 
+class Unknown(Flaw):
+    """The file is of no known format."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What is given about a file beside its header; without arguments the header alone counts.
+
+    unit : of the values, in place of that in the header. time_step : s, where the header states none. columns : names
+    of the columns of a text, in their order, "-" for one that is left out, "time" for times. series : whether all
+    numbers of a text are one channel, line by line. skip : lines of a text above its header that are not read.
+    """
+
+    unit: str | None = None
+    time_step: float | None = None
+    columns: Sequence[str] = ()
+    series: bool = False
+    skip: int = 0
+
+    @property
+    def is_of_text(self) -> bool:
+        """Whether it arranges numbers, which formats of networks do themselves."""
+        return bool(self.columns or self.series or self.skip)
+
+
 @dataclass(frozen=True)
 class Source:
     """A file that is being read.
 
-    path; lines : without their ends; unit : of its values where the header has none or another one, None for that of
-    the header; remarks : what the reader notices on its way.
+    path; lines : without their ends; given : what is known beside its header; remarks : what the reader notices on its
+    way, warnings; chosen : what it took for what, where a text could be read otherwise.
     """
 
     path: Path
     lines: Sequence[str]
-    unit: str | None = None
+    given: Reading = Reading()
     remarks: list[str] = field(default_factory=list)
+    chosen: list[str] = field(default_factory=list)
 
     def line(self, index: int) -> str:
         """A line by its index; raises Flaw if the file ends before."""
@@ -95,42 +135,52 @@ class Source:
         """The numbers (count,) of `fields`; raises Flaw as well for what is no number."""
         found: list[float] = []
         for text in self.fields(first, count, layout):
-            try:
-                found.append(float(text))
-            except ValueError:
+            if (value := number_of(text)) is None:
                 number = first + 1 + len(found) // _columns_of(layout)[0]
-                raise Flaw(f'line {number} has "{text.strip()}" in place of a number') from None
+                raise Flaw(f'line {number} has "{text.strip()}" in place of a number')
+            found.append(value)
         return np.array(found)
 
-    def free(self, first: int, count: int) -> np.ndarray:
-        """The numbers (count,) from line index `first` on, separated by blanks or signs.
+    def free(self, first: int, count: int, *, may_follow: bool = False) -> np.ndarray:
+        """The numbers (count,) from line index `first` on, separated by blanks or signs, up to a line that ends them.
 
-        Raises Flaw for fewer ones in the rest of the file, and for other text; more ones are remarked on.
+        Raises Flaw for fewer ones, for other text, and for more ones but zeros, which fill a line; with `may_follow`
+        others are remarked on.
         """
         found: list[float] = []
         for index, line in enumerate(self.lines[first:], start=first):
-            try:
-                found += [float(text) for text in line.split()]
-            except ValueError:
+            if END.match(line):
+                break
+            numbers = [number_of(text) for text in line.split()]
+            if None in numbers:
                 if NUMBER.sub("", line).strip():
-                    raise Flaw(f'line {index + 1} has "{line.strip()[:30]}" in place of numbers') from None
-                found += map(float, NUMBER.findall(line))
+                    raise Flaw(f'line {index + 1} has "{line.strip()[:30]}" in place of numbers')
+                numbers = [number_of(text) for text in NUMBER.findall(line)]
+            found += [number for number in numbers if number is not None]
         if len(found) < count:
             raise Flaw(f"ends at line {len(self.lines)}, after {len(found)} of {count} numbers")
-        if len(found) > count:
-            self.remarks.append(f"{len(found) - count} numbers behind the {count} that the header states are left out")
+        if any(found[count:]):
+            more = f"{len(found) - count} numbers behind the {count} that the header states"
+            if not may_follow:
+                raise Flaw(f"has {more}")
+            self.remarks.append(f"{more} are left out")
         return _sound(np.array(found[:count]))
 
-    def measured(self, text: str) -> Named:
-        """The unit of a text in the header, or that which is given instead.
+    def measured(self, text: str, named: str = "") -> Named:
+        """The unit that is given, or else that of a text in the header.
 
-        Raises Flaw if none of both is one of a motion.
+        named : words that name the quantity of the values. Raises Flaw if there is no unit, if it is none of a motion,
+        and if these words name another quantity than a unit of the header.
         """
-        stated, given = unit_named(text), unit_named(self.unit) if self.unit else None
-        if given is not None and (stated is None or stated.quantity == given.quantity):
-            if stated is not None and stated.size != given.size:
-                self.remarks.append(f"--unit: {self.unit} given, the header says {text.strip()}")
-            stated = given
+        stated = unit_named(text)
+        if stated is not None and stated.quantity in ("counts", "voltages"):
+            raise Flaw(f"has {stated.quantity} ({text.strip()}), must be converted to {' or '.join(MOTIONS)} before")
+        if self.given.unit is not None:
+            given = unit_named(self.given.unit)
+            assert given is not None, "checked by read_record"
+            if stated is not None and stated[1:] != given[1:]:
+                self.remarks.append(f"--unit: {self.given.unit} given, the header says {text.strip()}")
+            return given
         if stated is None:
             said = (
                 f'"{text.strip()}" as unit of the values, which is not known'
@@ -140,11 +190,13 @@ class Source:
             raise Flaw(f"states {said}; give it by --unit: {USUAL}")
         if stated.quantity not in MOTIONS:
             raise Flaw(f"has {stated.quantity} ({text.strip()}), must have {' or '.join(MOTIONS)}")
+        if (quantity := quantity_named(named)) and quantity != stated.quantity:
+            raise Flaw(f"has {quantity} in {text.strip()}, which measures {stated.quantity}; give the right --unit")
         return stated
 
     def evenly(self, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Times (k,) s and values at even times; raises Flaw for times that do not increase or have gaps."""
-        _require_increasing(time)
+        require_increasing(time)
         try:
             time, values, notes = evenly(self.path, time, _sound(values))
         except CaseError as error:
@@ -157,7 +209,7 @@ class Source:
 
         Points at the same time count with their mean. Raises Flaw for times that go back.
         """
-        _require_increasing(time)
+        require_increasing(time)
         time, place = np.unique(time, return_inverse=True)
         values = np.bincount(place, _sound(values)) / np.bincount(place)
         step = float(f"{np.median(np.diff(time)):.6g}")  # of times with few digits
@@ -184,7 +236,8 @@ class Source:
         unit : by `measured`. numbers : (n,) in this unit. peak : as the header states it in this unit; other text for
         none. found : what the stated peak is compared with; by default the largest size of the numbers.
 
-        Raises Flaw for too few samples, samples that are not finite, and a time step that is not positive.
+        Raises Flaw for too few samples, samples that are not finite, a time step that is not positive, and another
+        peak than the stated one, unless the unit is given.
         """
         quantity, size, spelled = MOTIONS[unit.quantity], unit.size, unit.spelled.strip()
         if len(numbers) < FEWEST:
@@ -198,8 +251,10 @@ class Source:
         found = float(np.abs(numbers).max()) if found is None else found
         if abs(found - stated) > PEAK_TOLERANCE * stated + rounding:
             states, have = (f"{size * each:.4g} {SI[quantity]}" for each in (stated, found))
-            name = component or quantity
-            self.remarks.append(f"{name}: the header states a peak of {states}, the samples have {have}")
+            said = f"{component or quantity}: the header states a peak of {states}, the samples have {have}"
+            if self.given.unit is None:
+                raise Flaw(f"{said}; to read it nevertheless, give the unit by --unit")
+            self.remarks.append(said)
         return Channel(component, quantity, values, time_step, begin, size * stated, spelled)
 
 
@@ -210,12 +265,42 @@ def _sound(numbers: np.ndarray) -> np.ndarray:
     return numbers
 
 
-def _require_increasing(time: np.ndarray) -> None:
-    """Raise Flaw for times that are too few, not finite or go back."""
+def require_increasing(time: np.ndarray) -> None:
+    """Raise Flaw for times (k,) that are too few, not finite or go back."""
     if len(time) < FEWEST:
         raise Flaw(f"has {len(time)} samples, must have {FEWEST} or more")
-    if not (np.abs(time) <= LARGEST).all() or (np.diff(time) < 0.0).any() or time[0] == time[-1]:
-        raise Flaw("must have times that increase")
+    if not (np.abs(time) <= LARGEST).all():
+        raise Flaw("has times that are not finite")
+    steps = np.diff(time)
+    if (steps < 0.0).any() or time[0] == time[-1]:
+        at = int(np.argmin(steps))
+        raise Flaw(f"must have times that increase: {time[at + 1]:.6g} s is behind {time[at]:.6g} s")
+
+
+def number_of(text: str) -> float | None:
+    """The number in a text, in Fortran's spellings too, nan and inf included; None for other texts."""
+    try:
+        return float(text) if "_" not in text else None
+    except ValueError:
+        found = FORTRAN.fullmatch(text.strip())
+        return float(f"{found[1]}e{found[2] or found[3]}") if found else None
+
+
+def seconds_of(number: str, unit: str, line: int) -> float:
+    """A time step (s) of the header from a number, with a decimal comma too, and a unit by `SECONDS` or none.
+
+    line : its number. Raises Flaw for a long one without a unit.
+    """
+    step = float(number.replace(",", "."))
+    if not unit and step > BARE:
+        raise Flaw(f'line {line} states a time step of {step:g} without a unit: write "{step:g} ms" or "{step:g} s"')
+    return step * (1e-3 if unit.lower().startswith("m") else 1.0)
+
+
+def quantity_named(words: str) -> str | None:
+    """The quantity of a motion in a text, by its name in `MOTIONS`; None for other texts, and for several."""
+    found = {quantity for quantity, pattern in QUANTITY.items() if pattern.search(words)}
+    return found.pop() if len(found) == 1 else None
 
 
 def rows_of(count: int, layout: str) -> int:

@@ -1,44 +1,86 @@
-"""Columns of numbers in text files with a header, as spreadsheets and programs write them.
+"""Numbers in text files with a header, as spreadsheets and programs write them.
 
-A column of times and one or more of values, or values alone and the time step or the sampling rate in the header, as
-"dt = 0.01 s" or "100 samples/s".
+They are columns, one of times and others of values, or values alone with the time step or the sampling rate in the
+header; or one series of values, any number of them to a line. Units count beside the name of a column, in a line of
+units, and, for a single channel, beside its quantity; the number of samples and the peak that a header states must be
+those of the file.
 """
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from dembound.errors import CaseError
-from dembound.gauge.reading.scope import BROKEN_OFF, Columns, read_columns
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import DECIMAL, MOTIONS, NUMBER, Flaw, Source
+from dembound.records.formats.source import (
+    BARE,
+    COUNT,
+    QUANTITY,
+    SECONDS,
+    Flaw,
+    Source,
+    require_increasing,
+    seconds_of,
+)  # fmt: skip
+from dembound.records.formats.table import OTHER, Head, Table, head_of, quantity_of, read_table
 from dembound.table import LARGEST, SMALLEST
-from dembound.waves.unit_names import unit_named, units_in
+from dembound.waves.unit_names import unit_named
 
-TIME = re.compile(r"(t|time|sec|seconds?)(?![a-z])", re.IGNORECASE)
+NUMBER = r"([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[Ee][+-]?\d+)?)"
 STEP = re.compile(
-    r"\b(?:dt|delta ?t|time ?step|step|sampling interval)\b\s*[\[(]?(m?s(?:ec)?)?[\])]?\s*[=:,]?\s*"
-    rf"({DECIMAL})\s*(m?s(?:ec)?\b)?",
+    r"(?:\bdt\b|Δt|\bdelta ?t|\btime ?step|\bstep(?=\s*[=:])|\b(?:sampl\w*|time|digiti\w*) ?(?:interval|period|step)"
+    rf"|\bintervals? of|\bspac(?:ing|ed)(?: of| at)?)\s*[\[(]?(?:{SECONDS}\b)?[\])]?\s*[=:,]?\s*{NUMBER}"
+    rf"\s*[\[(]?(?:{SECONDS}\b)?",
     re.IGNORECASE,
 )
 """The time step in a header, its unit before or behind it."""
 
 RATE = re.compile(
-    r"\b(?:sampl(?:ing|e)(?: rate| frequency)?|fs)\b\s*"
-    rf"(?:[\[(]hz[\])]\s*[=:,]?\s*({DECIMAL})|[=:,]?\s*({DECIMAL})\s*hz\b)"
-    rf"|({DECIMAL})\s*(?:samples\s*(?:/|per)\s*s(?:ec(?:ond)?)?\b|sps\b)",
+    r"\b(?:sampl(?:ing|es?)? ?(?:rate|freq\w*)?|fs|rate)\s*"
+    rf"(?:[\[(](?:hz|sps)[\])]\s*[=:,]?\s*{NUMBER}|[=:,]?\s*{NUMBER}\s*(?:hz|sps)\b)"
+    rf"|{NUMBER}\s*(?:samples\s*(?:/|per)\s*s(?:ec(?:ond)?)?\b|sps\b)",
     re.IGNORECASE,
 )
 """The sampling rate in a header, Hz or samples/s."""
 
-MOST_UNNAMED = 4
-"""Columns that a file without their names may have; more of them are rather one series in lines."""
+SAMPLES = re.compile(
+    r"\b(?:npts?|ndata|(?:number|no\.?) of (?:points|samples|data(?: points)?|values))\s*[=:]?\s*"
+    rf"{COUNT}\b|\b{COUNT}\s+(?:(?:data )?points|samples|values)\b(?!\s*(?:/|per))",
+    re.IGNORECASE,
+)
+"""The number of samples in a header."""
+
+PEAK = re.compile(
+    r"\b(?:pga|(?:peak|max(?:imum|\.)?) (?:ground )?acc\w*)\s*(?:[\[(]([^\])]*)[\])])?\s*[=:]?\s*"
+    rf"{NUMBER}\s*([^\s,;]*)",
+    re.IGNORECASE,
+)
+"""The peak acceleration in a header, its unit before or behind it."""
+
+UNIT = re.compile(
+    r"(?:\bunits?\b(?:\s*(?:are|is|of|:|=))*|(?:"
+    + "|".join(pattern.pattern for pattern in QUANTITY.values())
+    + r")(?:\s+time (?:series|history))?)\s*(?:,\s*)?(?:in(?:\s+units\s+of)?\s+|[:=/]\s*)?"
+    r"(?:[\[(]([^\])]+)[\])]|([^\s,;]+))(?!\s*[=:]?\s*[+-]?[.\d])",
+    re.IGNORECASE,
+)
+"""The unit of a single channel, behind the name of its quantity or the word unit, and not before a number."""
+
+LONG = 5
+"""Numbers in a line from which on lines without heads of columns are one series."""
+
+SMOOTHER = 0.7
+"""Ratio of mean differences between neighbours at which numbers contradict the order in which they are read."""
+
+EITHER = "give --columns NAME,NAME,… for columns or --series for one series"
+
+SAME = 0.01
+"""Relative difference of time steps that are equal."""
 
 
 class TextColumns(Format):
-    """Of any separator; each column of values is a channel, called as in the header, without a unit behind "_"."""
+    """Of any separator; each column of values is a channel, called as in the header."""
 
     name = "columns of text"
 
@@ -47,88 +89,216 @@ class TextColumns(Format):
         return True
 
     def read(self, source: Source) -> Record:
-        """The channels of a file; raises CaseError for one without columns of numbers."""
-        filled = [line for line in source.lines if line.strip()]
-        if filled and NUMBER.fullmatch(filled[-1].strip()):
-            channels = [_of_one_column(source)]
+        """The channels of a file; raises Flaw for one that may be read in two ways."""
+        if source.given.series and source.given.columns:
+            raise Flaw("--series: is not allowed together with --columns")
+        table = read_table(source)
+        heads = [head_of(name) for name in source.given.columns] or table.heads
+        if source.given.columns and (len(heads) != table.width or table.ragged < len(table.rows)):
+            at = table.numbers[min(table.ragged, len(table.rows) - 1)]
+            raise Flaw(f"--columns: names {len(heads)} columns, line {at} has {len(table.rows[-1])} numbers or another")
+        step, count = _step(source, table), _stated_count(table)
+        if _is_series(source, table, heads, step, count):
+            numbers = np.array([value for row in table.rows for value in row])
+            if table.width > 1:
+                source.chosen.append(f"{len(numbers)} numbers in lines of {table.width}, read as one series")
+            channels = [_single(source, table, Head(), numbers, step)]
         else:
-            channels = _of_columns(source, read_columns(source.path))
+            channels = _columns(source, table, heads, step)
+        for samples in {len(channel.values) for channel in channels}:
+            if count is not None and samples != count[0]:
+                raise Flaw(f"line {count[1]} states {count[0]} samples, there are {samples}; {_skip(count[1])}")
         return Record("columns of text", "", tuple(channels))
 
 
-def _of_one_column(source: Source) -> Channel:
-    """The values of a file with one number in a line."""
-    numbers = [index for index, line in enumerate(source.lines) if NUMBER.fullmatch(line.strip())]
-    other = [index for index, line in enumerate(source.lines) if line.strip() and not NUMBER.fullmatch(line.strip())]
-    first = other[-1] + 1 if other else 0
-    if sum(index < first for index in numbers) >= BROKEN_OFF:
-        raise Flaw(f"line {first} is no number like the lines around it")
-    header = "\n".join(source.lines[:first])
-    values = np.array([float(source.lines[index].strip()) for index in numbers if index >= first])
-    if (step := _step(header)) is None:
+Stated = tuple[float, int] | None
+"""A number that the header states and its line; line 0 is an option."""
+
+
+def _is_series(source: Source, table: Table, heads: Sequence[Head], step: Stated, count: Stated) -> bool:
+    """Whether the numbers are one series and no columns; raises Flaw where both are possible."""
+    width, lines = table.width, len(table.rows)
+    if source.given.series or source.given.columns or width == 1:
+        return source.given.series or not source.given.columns
+    if table.ragged < lines - 1 and (count is None or count[0] != table.total):
+        at = table.numbers[table.ragged]
+        has = len(table.rows[table.ragged])
+        raise Flaw(f"line {at} has {has} numbers, others have {width}; if all are one series: --series")
+    if table.ragged == lines and (heads or _increases(table)):
+        return False
+    if step is None:
         raise Flaw(
-            "has one column and states no time step, must have a line above the values such as "
-            '"dt = 0.01 s" or "sampling: 100 Hz"'
+            f"has {width} numbers in a line and states neither times nor a time step: give --dt, and {EITHER[5:]}"
         )
-    return source.channel("", source.measured(_only_unit(header)), values, step)
+    if table.ragged < lines or (count is not None and count[0] == table.total):
+        return True
+    if (count is not None and count[0] == lines) or width < LONG:
+        raise Flaw(f"has {width} numbers in a line without names: {EITHER}")
+    _require_order(table, series=True)
+    return True
 
 
-def _of_columns(source: Source, columns: Columns) -> list[Channel]:
-    """The channels of a file with two or more numbers in a line."""
-    names, header = columns.names, "\n".join(" ".join(fields) for fields in columns.header)
-    count, step = len(names), _step(header)
-    if count > MOST_UNNAMED and not any(names):
-        raise Flaw(f"has {count} columns without names, must have a line with their names above them")
-    units = [[*columns.units(column), names[column]] for column in range(count)]
-    timed = [column for column in range(count) if TIME.match(names[column]) or _unit(units[column], ("times",))]
-    try:
-        values = [np.array(columns.values(column)) for column in range(count)]
-    except CaseError as error:
-        raise Flaw(error.problems[0].removeprefix(f"{source.path}: ")) from None
-    if timed or step is None or (not any(names) and (np.diff(values[0]) > 0.0).all()):
-        at = timed[0] if timed else 0
-        size = unit.size if (unit := unit_named(_unit(units[at], ("times",)))) else 1.0
-        time = size * values[at]
-    else:
-        at, time = -1, step * np.arange(float(len(values[0])))
-    found = []
-    for column in range(count):
-        if column != at:
-            spelled = _unit(units[column], MOTIONS) or _only_unit(header)
-            even, numbers = source.evenly(time, values[column])
+def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) -> list[Channel]:
+    """The channels of columns."""
+    values, heads = np.array(table.rows).T, heads or [Head()] * table.width
+    timed = [at for at, head in enumerate(heads) if head.is_time]
+    if not timed and not source.given.columns and (step is None or not any(heads)) and _increases(table):
+        timed = [0]
+    if any((values[at] != values[timed[0]]).any() for at in timed[1:]):
+        raise Flaw(
+            f"has several columns of times: {_names_of(heads, timed)}; name those to read by --columns, others -"
+        )
+    chosen = [at for at in range(len(heads)) if at not in timed and heads[at].name != "-"]
+    if not timed:
+        if step is None:
+            raise Flaw("has no column called time and states no time step; give --dt, or name the columns by --columns")
+        _require_order(table, series=False)
+    channels = []
+    for at in chosen:
+        name = heads[at].name or (f"column {at + 1}" if len(chosen) > 1 else "")
+        if OTHER.search(name):
+            raise Flaw(f'column {at + 1}, "{name}", is no motion; name the columns by --columns, this one -')
+        if timed:
+            time = _times(source, table, heads[timed[0]], timed[0])
+            even, numbers = source.evenly(time, values[at])
             between = float(f"{(even[-1] - even[0]) / (len(even) - 1):.12g}")
-            name = names[column].removesuffix(f"_{spelled}")
-            found.append(source.channel(name, source.measured(spelled), numbers, between, float(even[0])))
-    return found
+            _require_step(step, between, timed[0])
+            begin = float(even[0])
+        elif step is not None:
+            between, numbers, begin = step[0], values[at], 0.0
+        unit = heads[at].unit if len(chosen) > 1 or heads[at].unit else _unit_of_title(table)
+        channels.append(_channel(source, table, Head(name, unit), numbers, between, begin, alone=len(chosen) == 1))
+    if not channels:
+        raise Flaw("has no column of values; name the columns by --columns")
+    return channels
 
 
-def _unit(texts: Iterable[str], quantities: Collection[str]) -> str:
-    """The first unit of one of these quantities in texts, as it is spelled; empty without any."""
-    for text in texts:
-        marked, bare, _ = units_in(text, "m/s²")
-        for unit in (unit_named(text), *marked, *bare):
-            if unit is not None and unit.quantity in quantities:
-                return unit.spelled
-    return ""
+def _single(source: Source, table: Table, head: Head, numbers: np.ndarray, step: Stated) -> Channel:
+    """The channel of a series."""
+    if step is None:
+        raise Flaw(
+            'has one column and states no time step, must have a line above the values such as "dt = 0.01 s" or '
+            '"sampling: 100 Hz"; or give --dt'
+        )
+    unit = next((head.unit for head in table.heads if table.width == 1 and head.unit), "") or _unit_of_title(table)
+    return _channel(source, table, Head("", unit), numbers, step[0], 0.0, alone=True)
 
 
-def _only_unit(header: str) -> str:
-    """The unit of a motion that is alone in a header; empty without one, and for several."""
-    marked, bare, _ = units_in(header, "m/s²")
-    found = {(unit.quantity, unit.size): unit.spelled for unit in (*marked, *bare) if unit.quantity in MOTIONS}
-    return next(iter(found.values())) if len(found) == 1 else ""
+def _channel(
+    source: Source, table: Table, head: Head, numbers: np.ndarray, step: float, begin: float, *, alone: bool
+) -> Channel:
+    """A channel; the peak that the header states is that of one which is alone."""
+    unit = source.measured(head.unit, head.name)
+    stated = ""
+    for _, text in table.header if alone and unit.quantity == "accelerations" else ():
+        if found := PEAK.search(text):
+            named = unit_named(found[1] or found[3] or "")
+            if named is not None and named.quantity == unit.quantity:
+                stated = f"{float(found[2].replace(',', '.')) * named.size / unit.size:.4g}"
+    return source.channel(head.name, unit, numbers, step, begin, stated)
 
 
-def _step(header: str) -> float | None:
-    """The time step in a header, s; None without one. Raises Flaw for one that is not positive."""
-    if found := STEP.search(header):
-        unit = (found[1] or found[3] or "s").lower()
-        step = float(found[2]) * (1e-3 if unit.startswith("m") else 1.0)
-    elif found := RATE.search(header):
-        rate = float(next(filter(None, found.groups())))
-        step = 1.0 / rate if rate else 0.0
-    else:
-        return None
-    if not SMALLEST <= step <= LARGEST:
-        raise Flaw(f"has a time step of {step:g} s, must be positive")
-    return step
+def _unit_of_title(table: Table) -> str:
+    """The unit of the only channel in the header, as it is spelled; empty without one, and for several."""
+    found = {}
+    for _, text in table.header:
+        for match in UNIT.finditer(text):
+            spelled = match[match.lastindex or 0].strip(" .")
+            before = text[: match.start()].lower().split()
+            if quantity_of(spelled) and not (before and before[-1].strip("([") in ("peak", "max", "max.", "maximum")):
+                found[unit_named(spelled)] = spelled
+    sizes = {unit[1:] for unit in found if unit is not None}
+    return next(iter(found.values())) if len(sizes) == 1 else ""
+
+
+def _step(source: Source, table: Table) -> Stated:
+    """The time step that is given or stated, s; raises Flaw for several, one without a unit, and one of no size."""
+    found: list[tuple[float, int]] = []
+    for number, line in table.header:
+        text = line.replace("_", " ")
+        for match in STEP.finditer(text):
+            found.append((seconds_of(match[2], match[1] or match[3] or "", number), number))
+        for match in RATE.finditer(text):
+            rate = float(next(filter(None, match.groups())).replace(",", "."))
+            found.append((1.0 / rate if rate else 0.0, number))
+    given = source.given.time_step
+    if given is not None:
+        found.insert(0, (given, 0))
+    for step, number in found:
+        if not SMALLEST <= step <= LARGEST:
+            raise Flaw(f"has a time step of {step:g} s, must be positive")
+        if abs(step - found[0][0]) > SAME * step:
+            said = "--dt: is" if given is not None else f"line {found[0][1]} states"
+            raise Flaw(f"{said} {found[0][0]:g} s, line {number} states {step:g} s; {_skip(number)}")
+    return found[0] if found else None
+
+
+def _stated_count(table: Table) -> tuple[int, int] | None:
+    """The number of samples that the header states, and the line; None without one."""
+    for number, text in table.header:
+        if found := SAMPLES.search(text.replace("_", " ")):
+            return int(found[1] or found[2]), number
+    return None
+
+
+def _skip(number: int) -> str:
+    """How to leave out a line of the header."""
+    return f"--skip {number} leaves that line and those above out"
+
+
+def _increases(table: Table) -> bool:
+    """Whether the first numbers of the lines increase evenly, as times do."""
+    first = np.array([row[0] for row in table.rows])
+    steps = np.diff(first)
+    return (
+        len(first) > 2
+        and bool((steps >= 0.0).all())
+        and bool(np.ptp(steps) <= 0.5 * steps.mean())
+        and first[-1] > first[0]
+    )
+
+
+def _times(source: Source, table: Table, head: Head, at: int) -> np.ndarray:
+    """The times of a column, s; raises Flaw, with its line, for those that go back, and for steps without a unit."""
+    unit = unit_named(head.unit)
+    values = np.array([row[at] for row in table.rows])
+    try:
+        require_increasing(values)
+    except Flaw as flaw:
+        steps = np.diff(values)
+        line = f" in line {table.numbers[int(np.argmin(steps)) + 1]}" if (steps < 0.0).any() else ""
+        raise Flaw(
+            f"{flaw}{line}; if column {at + 1} has no times, name the columns by --columns and give --dt"
+        ) from None
+    step = (values[-1] - values[0]) / (len(values) - 1)
+    if unit is None and step > BARE:
+        raise Flaw(
+            f"has times {step:.4g} apart without a unit: write it in their head, as time (ms); if column {at + 1} has "
+            "no times, name the columns by --columns and give --dt"
+        )
+    if unit is None and head.unit == "" and not head.name:
+        source.chosen.append(f"column {at + 1}: times in s")
+    return (1.0 if unit is None else unit.size) * values
+
+
+def _require_step(step: Stated, between: float, at: int) -> None:
+    """Raise Flaw if the header or an option states another time step (s) than that of a column of times."""
+    if step is not None and abs(step[0] - between) > SAME * between:
+        said = f"line {step[1]} states" if step[1] else "--dt: is"
+        raise Flaw(
+            f"{said} {step[0]:g} s, times in column {at + 1} are {between:g} s apart; name the columns by --columns"
+        )
+
+
+def _require_order(table: Table, *, series: bool) -> None:
+    """Raise Flaw if the numbers are much smoother in the other order than that in which they are read."""
+    values = np.array(table.rows[: table.ragged])
+    along, down = np.abs(np.diff(values.ravel())).mean(), np.abs(np.diff(values, axis=0)).mean()
+    if (down < SMOOTHER * along) if series else (along < SMOOTHER * down):
+        seem = "columns" if series else "one series"
+        raise Flaw(f"has {table.width} numbers in a line that seem to be {seem}: {EITHER}")
+
+
+def _names_of(heads: Sequence[Head], places: Sequence[int]) -> str:
+    """Names of columns, in words."""
+    return ", ".join(heads[at].name or str(at + 1) for at in places)

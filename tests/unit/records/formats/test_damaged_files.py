@@ -9,7 +9,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.records.formats import read_record
 
-SAMPLES = sorted((Path(__file__).parents[1] / "samples").iterdir())
+SAMPLES = sorted((Path(__file__).parents[1] / "samples").glob("sample*"))
 CHANGES = 1000
 TEXTS = [
     b"",

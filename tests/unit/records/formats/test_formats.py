@@ -1,7 +1,9 @@
-"""Files of ground motion in the formats of several networks, of invented stations and values."""
+"""Files of ground motion in the formats of several networks; samples/README.md has the sources of the headers."""
 
+import sys
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ import pytest
 from dembound import table
 from dembound.errors import CaseError
 from dembound.records.channel import Record
-from dembound.records.formats import TYPES, read_record
+from dembound.records.formats import TYPES, Reading, read_record
 from dembound.records.formats.format import Format
 from dembound.records.formats.source import Source
 
@@ -44,6 +46,49 @@ EXPECTED = {
     "sample.UD1": ("KiK-net", [("U-D (borehole)", "acceleration", 40, 0.05, 10192 * 3920 / 6182761 * GAL, None, True)]),
     "sample.smc": ("USGS SMC", [("360", "acceleration", 21, 0.005, 0.0, 1.0441, True)]),
     "sample_film.smc": ("USGS SMC", [("up", "acceleration", 11, 0.00635, 0.0, None, False)]),
+    "sample.ASC": ("ESM/ITACA ASC", [("HNE", "acceleration", 18, 0.005, 0.168819 * GAL, 0.300022 * GAL, True)]),
+    "sample.V2A": (
+        "GeoNet V2A",
+        [
+            ("N10E", "acceleration", 12, 0.02, -0.0122, 2.3646, True),
+            ("N10E", "velocity", 12, 0.02, -0.25331, 0.29849, True),
+            ("N10E", "displacement", 12, 0.02, 0.094531, 0.099407, True),
+        ],
+    ),
+    "sample.dat": (
+        "CWB",
+        [
+            ("U", "acceleration", 15, 0.02, 0.299 * GAL, 0.479 * GAL, True),
+            ("N", "acceleration", 15, 0.02, 0.658 * GAL, 2.273 * GAL, True),
+            ("E", "acceleration", 15, 0.02, 0.12 * GAL, 0.778 * GAL, True),
+        ],
+    ),
+    "sample_nsmn.txt": (
+        "NSMN",
+        [
+            ("N-S", "acceleration", 15, 0.01, 9.679757 * GAL, 13.200332 * GAL, True),
+            ("E-W", "acceleration", 15, 0.01, -0.416071 * GAL, 1.843948 * GAL, True),
+            ("U-D", "acceleration", 15, 0.01, 2.581487 * GAL, 2.691239 * GAL, True),
+        ],
+    ),
+    "sample.191": (
+        "UNAM",
+        [
+            ("V", "acceleration", 15, 0.005, 6.8783 * GAL, 11.5352 * GAL, True),
+            ("N00E", "acceleration", 15, 0.005, 44.2296 * GAL, 58.7394 * GAL, True),
+            ("N90E", "acceleration", 15, 0.005, -17.4381 * GAL, 27.0636 * GAL, True),
+        ],
+    ),
+    "sample_bhrc.V1": ("BHRC V1", [("L1", "acceleration", 20, 0.005, -0.00114699 * G, 0.00114699 * G, False)]),
+    "sample.e0a": ("USC V1", [("S05W", "acceleration", 15, 0.004, 0.0046 * G, 0.0046 * G, False)]),
+    "sample.s0a": (
+        "USC V2",
+        [
+            ("N08W", "acceleration", 10, 0.02, -59.542 * GAL, 242.395 * GAL, True),
+            ("N08W", "velocity", 10, 0.02, -5.461 * GAL, 12.057 * GAL, True),
+            ("N08W", "displacement", 10, 0.02, -0.559 * GAL, 1.42 * GAL, True),
+        ],
+    ),
     "sample.csv": (
         "columns of text",
         [
@@ -59,19 +104,19 @@ EXPECTED = {
 
 def changed(folder: Path, name: str, *changes: tuple[str, str]) -> Path:
     """A sample with texts replaced, in another file without an ending."""
-    text = (SAMPLES / name).read_bytes().decode()
+    text = (SAMPLES / name).read_bytes().decode(errors="surrogateescape")
     for old, new in changes:
         assert old in text
         text = text.replace(old, new, 1)
     path = folder / "record"
-    path.write_bytes(text.encode())
+    path.write_bytes(text.encode(errors="surrogateescape"))
     return path
 
 
-def refusal(path: Path, unit: str | None = None) -> str:
+def refusal(path: Path, given: Reading = Reading()) -> str:  # noqa: B008
     """The one line of the error with which a file is refused, without its path."""
     with pytest.raises(CaseError) as refused:
-        read_record(path, unit)
+        read_record(path, given)
     (line,) = refused.value.problems
     return line.replace(f'"{path}"', "PATH")
 
@@ -95,10 +140,16 @@ def test_every_format_is_read_in_si(tmp_path, name):
     assert all(remark.startswith("digitised at uneven times") for remark in record.remarks)
 
 
+STATIONS = (
+    *("test pier 3", "smp001", "ars1", "hanmer springs", "eas", "germencik", "acapulco", "ajab shir", "wonderland"),
+    "big tujunga",
+)
+
+
 def test_titles_name_the_station():
     for name, form in EXPECTED.items():
         if form[0] != "columns of text":
-            assert any(word in read_record(SAMPLES / name).title.lower() for word in ("test pier 3", "smp001")), name
+            assert any(word in read_record(SAMPLES / name).title.lower() for word in STATIONS), name
 
 
 def test_points_from_film_are_joined_by_straight_lines():
@@ -125,9 +176,11 @@ def test_a_column_of_times_has_a_beginning(tmp_path):
     assert {channel.begin for channel in read_record(path).channels} == {2.0}
 
 
-def test_a_wrong_peak_in_the_header_is_remarked_on(tmp_path):
-    record = read_record(changed(tmp_path, "sample.v1", ("-1.2345670", "-1.2500000")))
-    assert record.remarks == ("90: the header states a peak of 12.26 m/s², the samples have 12.11 m/s²",)
+def test_a_wrong_peak_in_the_header_is_refused_and_with_the_unit_remarked_on(tmp_path):
+    wrong = changed(tmp_path, "sample.v1", ("-1.2345670", "-1.2500000"))
+    said = "90: the header states a peak of 12.26 m/s², the samples have 12.11 m/s²"
+    assert refusal(wrong).endswith(f"{said}; to read it nevertheless, give the unit by --unit")
+    assert read_record(wrong, Reading("g")).remarks == (said,)
     assert read_record(changed(tmp_path, "sample.v1", ("-1.2345670", "    -1.235"))).remarks == ()  # rounded
 
 
@@ -143,12 +196,12 @@ def test_a_given_unit_replaces_one_of_the_same_quantity(tmp_path):
         "PATH, read as columns of text: states no unit of the values; give it by --unit: "
         "g, gal, cm/s², m/s², cm/s, m/s, cm or m"
     )
-    (channel,) = read_record(without, "gal").channels
+    (channel,) = read_record(without, Reading("gal")).channels
     assert np.abs(channel.values).max() == pytest.approx(0.5)
-    record = read_record(SAMPLES / "sample_step.txt", "m/s²")
+    record = read_record(SAMPLES / "sample_step.txt", Reading("m/s²"))
     assert np.abs(record.channels[0].values).max() == pytest.approx(50.0)
     assert record.remarks == ("--unit: m/s² given, the header says cm/s²",)
-    assert refusal(without, "kPa") == "--unit: is kPa, must be one of g, gal, cm/s², m/s², cm/s, m/s, cm or m"
+    assert refusal(without, Reading("kPa")) == "--unit: is kPa, must be one of g, gal, cm/s², m/s², cm/s, m/s, cm or m"
 
 
 @pytest.mark.parametrize(
@@ -156,14 +209,22 @@ def test_a_given_unit_replaces_one_of_the_same_quantity(tmp_path):
     [
         ("sample.AT2", ("NPTS=     18", "NPTS=     21"), "PEER AT2/VT2/DT2: ends at line 8, after 18 of 21 numbers"),
         ("sample.AT2", (".0050 SEC", ".0000 SEC"), "PEER AT2/VT2/DT2: has a time step of 0 s, must be positive"),
-        ("sample.v1", (" 8 Accel", "17 Accel"), "CSMIP V1/V2: line 30 ends the channel after 8 of 17 numbers or fewer"),
-        ("sample.v1", (" 8 Accel", " 3 Accel"), "CSMIP V1/V2: line 29 has more than the last of 3 numbers"),
-        ("sample.v1", ("(8f9.6)", "(8f8.6)"), 'CSMIP V1/V2: line 29 has "0 -.5009" in place of a number'),
-        ("sample.v2", ("/&", "1.0"), "CSMIP V1/V2: line 55 does not end the channel, after 12 samples"),
+        (
+            "sample.v1",
+            (" 8 Accel", "17 Accel"),
+            "CSMIP, USC or BHRC V1/V2: line 30 ends the channel after 8 of 17 numbers or fewer",
+        ),
+        (
+            "sample.v1",
+            (" 8 Accel", " 3 Accel"),
+            "CSMIP, USC or BHRC V1/V2: line 29 has more than the last of 3 numbers",
+        ),
+        ("sample.v1", ("(8f9.6)", "(8f8.6)"), 'CSMIP, USC or BHRC V1/V2: line 29 has "0 -.5009" in place of a number'),
+        ("sample.v2", ("/&", "1.0"), "CSMIP, USC or BHRC V1/V2: line 55 does not end the channel, after 12 samples"),
         (
             "sample.V1c",
             ("units=g.     (02)", "units=counts (50)"),
-            "COSMOS: has counts (counts), must have accelerations",
+            "COSMOS: has counts (counts), must be converted to accelerations",
         ),
         ("sample.EW", ("/6182761", ""), "K-NET/KiK-net: lines 1 to 17 do not state Scale Factor"),
         ("sample.smc", ("2 CORRECTED ACCELEROGRAM", "5 RESPONSE SPECTRA"), "USGS SMC: holds a spectrum"),
@@ -177,13 +238,56 @@ def test_damage_is_located(tmp_path, name, change, said):
 
 
 def test_other_files_are_refused_with_the_formats_known(tmp_path):
-    for content in (b"", b"\x00\x01\x02" * 100, b"some words\nof prose\n", b"\xff\xfe"):
+    for content in (b"", b"some words\nof prose\n", b"\xff\xfe"):
         path = tmp_path / "other"
         path.write_bytes(content)
         assert refusal(path).endswith(
-            "; known formats: PEER AT2/VT2/DT2, CSMIP V1/V2, COSMOS, K-NET/KiK-net, USGS SMC, columns of text"
+            "; known formats: GeoNet V1A/V2A, CSMIP, USC or BHRC V1/V2, COSMOS, K-NET/KiK-net, USGS SMC, "
+            "ESM/ITACA ASC, CWB, NSMN, UNAM, PEER AT2/VT2/DT2, columns of text"
         )
     assert refusal(tmp_path / "absent") == "no file PATH"
+
+
+class Trace:
+    """A trace of ObsPy with three channels' worth of nothing but what is read of it."""
+
+    id = "XX.SMP..HNE"
+    data = np.arange(5)
+
+    def __init__(self, channel: str) -> None:
+        self.stats = SimpleNamespace(channel=channel, delta=0.01, starttime="2021-02-28")
+
+
+class Stream(list):
+    """A stream of ObsPy."""
+
+    def merge(self, method):
+        return self
+
+
+def test_binary_files_are_read_by_obspy_with_a_unit(tmp_path, monkeypatch):
+    path = tmp_path / "binary"
+    path.write_bytes(b"\x00\x01\x02" * 100)
+    monkeypatch.setitem(sys.modules, "obspy", None)
+    assert refusal(path).endswith("SAC and MiniSEED need ObsPy: install dembound[seismology]")
+
+    def read(file, format):
+        if format == "MSEED":
+            raise TypeError(format)
+        return Stream(map(Trace, channels))
+
+    channels = ["HNE", "HNN"]
+    monkeypatch.setitem(sys.modules, "obspy", SimpleNamespace(read=read))
+    assert "states no unit of the values; give it by --unit" in refusal(path)
+    record = read_record(path, Reading("cm/s2"))
+    assert [(each.component, each.time_step, each.values[-1]) for each in record.channels] == [
+        ("HNE", 0.01, 0.04), ("HNN", 0.01, 0.04),
+    ]  # fmt: skip
+    assert record.format == "SAC"
+    channels = ["HNE", "HNE"]
+    assert refusal(path, Reading("cm/s2")).endswith(
+        "has gaps in channel HNE; keep the samples before or behind them alone"
+    )
 
 
 class Added(Format):

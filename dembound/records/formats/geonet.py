@@ -1,0 +1,69 @@
+"""V1A and V2A files of GeoNet (GNS Science, New Zealand): three components, each with a header of 26 lines.
+
+16 lines of text, 4 of ten integers, 6 of ten numbers, then accelerations, in V2A also velocities and displacements, ten
+to a line of 80 characters, in mm and s (Cousins, GNS accelerogram data files, standard format, 2008;
+geonet.org.nz/data/supplementary/strong_motion_file_formats).
+"""
+
+import re
+from collections.abc import Sequence
+
+from dembound.records.channel import Channel, Record
+from dembound.records.formats.format import Format
+from dembound.records.formats.source import DECIMAL, Flaw, Source, rows_of
+
+HEADER, TEXTS, INTEGERS, REALS = 26, 16, 4, 6
+LAYOUT = "(10f8.1)"
+COUNTS, STEP = slice(33, 36), 25
+"""Places of the numbers of accelerations, velocities and displacements, and of the time step of the samples."""
+
+UNITS = {"Acceleration": "mm/s/s", "Velocity": "mm/s", "Displacement": "mm"}
+
+
+class Geonet(Format):
+    """Uncorrected (V1A) or corrected (V2A) accelerograms."""
+
+    name = "GeoNet V1A/V2A"
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the first line names an accelerogram and the text states component and number of points."""
+        text = "\n".join(lines[:TEXTS])
+        first = re.match(r"(un)?corrected accelerogram \S+", text, re.IGNORECASE)
+        return bool(
+            first and re.search(r"^Number of points\s+\d", text, re.M) and re.search(r"^Component\s", text, re.M)
+        )
+
+    def read(self, source: Source) -> Record:
+        """The components of the file."""
+        channels: list[Channel] = []
+        begin = 0
+        while begin < len(source.lines):
+            more, begin = _component(source, begin)
+            channels += more
+            while begin < len(source.lines) and not source.lines[begin].strip():
+                begin += 1
+        volume = "V1A" if source.lines[0].lower().startswith("un") else "V2A"
+        title = ", ".join(" ".join(source.line(at).split()) for at in (2, 6))
+        return Record(f"GeoNet {volume}", title, tuple(channels))
+
+
+def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
+    """The quantities of the component that begins at a line, by its index, and the index of the line behind them."""
+    name = source.found(r"^component\s+(\S+)", begin, begin + TEXTS, "the component")[1]
+    integers = source.fixed(begin + TEXTS, 10 * INTEGERS, "(10i8)")
+    reals = source.fixed(begin + TEXTS + INTEGERS, 10 * REALS, "(10f8.0)")
+    at, found = begin + HEADER, []
+    for (quantity, unit), count in zip(UNITS.items(), integers[COUNTS].astype(int), strict=True):
+        if not 0 <= count < 1e9:
+            raise Flaw(f"line {begin + TEXTS + INTEGERS} states {count} samples, must be 0 or more")
+        if count:
+            values = source.fixed(at, count, LAYOUT)
+            stated = source.found(rf"^{quantity}:?\s+(?:peak\s+({DECIMAL})\s+{unit})?", begin, begin + TEXTS, quantity)[
+                1
+            ]
+            measured = source.measured(unit, quantity)
+            found.append(source.channel(name, measured, values, float(reals[STEP]), peak=stated or ""))
+            at += rows_of(count, LAYOUT)
+    if not found:
+        raise Flaw(f"states no samples of component {name}")
+    return found, at

@@ -1,0 +1,136 @@
+"""Texts of columns, a component each, of three networks: Taiwan (CWB), Turkey (NSMN, AFAD) and Mexico (UNAM).
+
+The header states the layout. CWB: lines "#Key: value" and times in the first column. NSMN: lines "KEY : value" and a
+line of names. UNAM: lines in format 2.0 of the Mexican database of strong motions, values of channels between slashes.
+"""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from dembound.records.channel import Channel, Record
+from dembound.records.formats.format import Format
+from dembound.records.formats.source import COUNT, DECIMAL, Flaw, Source, number_of
+
+LONGEST = 120
+"""Lines of the longest header."""
+
+
+class Cwb(Format):
+    """Central Weather Bureau of Taiwan: "#DataSequence: Time U(+); N(+); E(+)" states the columns."""
+
+    name = "CWB"
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the header states the order of the columns and the unit."""
+        text = "\n".join(lines[:LONGEST])
+        return "#DataSequence:" in text and "#AmplitudeUnit:" in text
+
+    def read(self, source: Source) -> Record:
+        """The three components of the file."""
+        begin = next(at for at, line in enumerate(source.lines) if line.startswith("#DataSequence:")) + 1
+        names = re.findall(r"([A-Z])\([+-]\)", source.lines[begin - 1])
+        unit = source.measured(source.found(r"^#AmplitudeUnit:\s*([^\s.]+)", 0, begin, "the unit")[1])
+        rate = float(source.found(rf"^#SampleRate\(Hz\):\s*({DECIMAL})", 0, begin, "the sampling rate")[1])
+        while source.line(begin).startswith("#"):
+            begin += 1
+        rows = columns_below(source, begin, 1 + len(names))
+        time, step = rows[0], float(f"{(rows[0][-1] - rows[0][0]) / max(len(rows[0]) - 1, 1):.12g}")
+        if abs(step * rate - 1.0) > 1e-3:
+            raise Flaw(f"states {rate:g} samples in a second, times are {step:g} s apart")
+        channels = []
+        for name, values in zip(names, rows[1:], strict=True):
+            peaks = value(source, rf"#AmplitudeMAX\. {name}")
+            peak = max(re.findall(DECIMAL, peaks), key=lambda text: abs(float(text)), default="")
+            even, numbers = source.evenly(time, values)
+            channels.append(source.channel(name, unit, numbers, step, float(even[0]), peak))
+        return Record("CWB", _title(source, "#StationCode", "#Origin Time"), tuple(channels))
+
+
+class Nsmn(Format):
+    """National Strong Motion Network of Turkey (AFAD): three components in gal."""
+
+    name = "NSMN"
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the first line names the network's records."""
+        return lines[0].startswith("STRONG GROUND MOTION RECORDS OF TUR")
+
+    def read(self, source: Source) -> Record:
+        """The components of the file."""
+        begin = next((at for at, line in enumerate(source.lines[:LONGEST]) if re.match(r"\s*N-S\s", line)), 0) + 1
+        step = source.found(rf"^SAMPLING INTERVAL \(sec\)\s*:\s*({DECIMAL})", 0, begin, "the sampling interval")[1]
+        count = int(source.found(rf"^NUMBER OF DATA\s*:\s*{COUNT}", 0, begin, "the number of data")[1])
+        spelled, peaks = source.found(r"^RAW PGA VALUES \(([^)]*)\)\s*:(.*)$", 0, begin, "PGA and unit").groups()
+        names, unit = source.lines[begin - 1].split(), source.measured(spelled)
+        rows = columns_below(source, begin, len(names), count)
+        peak = {name: value for name, value in re.findall(rf"\(([^)]*)\)\s*({DECIMAL})", peaks)}
+        channels = [
+            source.channel(name, unit, values, float(step), peak=peak.get(name, ""))
+            for name, values in zip(names, rows, strict=True)
+        ]
+        return Record("NSMN", _title(source, "PLACE", "EARTHQUAKE DATE"), tuple(channels))
+
+
+class Unam(Format):
+    """Standard accelerograms of the Institute of Engineering of UNAM, Mexico: up to twelve channels in gal."""
+
+    name = "UNAM"
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the header is that of a standard file of accelerations."""
+        return any(line.startswith("ARCHIVO ESTANDAR DE ACELERACION") for line in lines[:20])
+
+    def read(self, source: Source) -> Record:
+        """The channels of the file."""
+        begin = next((at for at, line in enumerate(source.lines[:LONGEST]) if "CANAL-1" in line), 0) + 3
+        names, steps, counts, peaks = (
+            _slashed(source, key)
+            for key in ("ORIENTACION", r"INTERVALO DE MUESTREO", r"NUM\. TOTAL DE MUESTRAS", r"ACEL\. MAX\.\s*\(Gal\)")
+        )
+        if len({len(each) for each in (names, steps, counts, peaks)}) > 1 or len(set(counts)) != 1 or not names:
+            raise Flaw("states unlike numbers of channels or samples")
+        unit = source.measured(source.found(r"^UNIDADES DE LOS DATOS\s*:\s*(\S+)", 0, begin, "the unit")[1])
+        rows = columns_below(source, begin, len(names), int(counts[0]))
+        channels: list[Channel] = [
+            source.channel(name, unit, values, float(step), peak=peak)
+            for name, step, peak, values in zip(names, steps, peaks, rows, strict=True)
+        ]
+        return Record("UNAM", _title(source, "NOMBRE DE LA ESTACION", "FECHA DEL SISMO"), tuple(channels))
+
+
+def columns_below(source: Source, begin: int, width: int, count: int | None = None) -> np.ndarray:
+    """The numbers (width, n) of the lines from an index on.
+
+    Raises Flaw for lines of other numbers, and for another count of lines; repetitions of the last one, which fill a
+    file, are remarked on.
+    """
+    rows = []
+    for number, text in enumerate(source.lines[begin:], start=begin + 1):
+        numbers = [found for field in text.split() if (found := number_of(field)) is not None]
+        if text.strip() and (len(numbers) != width or len(text.split()) != width):
+            raise Flaw(f"line {number} has {len(numbers)} numbers, must have {width}")
+        rows += [numbers] if numbers else []
+    if count is not None and len(rows) != count:
+        if not 0 < count < len(rows) or any(row != rows[count - 1] for row in rows[count:]):
+            raise Flaw(f"has {len(rows)} lines of numbers, the header states {count}")
+        source.remarks.append(f"{len(rows) - count} repetitions of the last line are left out")
+    return np.array(rows[:count]).reshape(-1, width).T
+
+
+def value(source: Source, key: str) -> str:
+    """The text behind a key of the header, further words and a colon; empty without one."""
+    found = (re.match(rf"{key}[^:]*:(.*)", line) for line in source.lines[:LONGEST])
+    return next((each[1].strip() for each in found if each), "")
+
+
+def _title(source: Source, *keys: str) -> str:
+    """The values of these keys in one line."""
+    return ", ".join(filter(None, (value(source, key) for key in keys)))
+
+
+def _slashed(source: Source, key: str) -> list[str]:
+    """The values of all channels behind keys of UNAM's header, "/V/N00E/N90E" of the first six and of others."""
+    found = (re.match(rf"{key}[^:]*C\d+-C\d+[^:]*:(.*)", line) for line in source.lines[:LONGEST])
+    return [text.strip() for each in found if each for text in each[1].strip().split("/")[1:] if text.strip()]

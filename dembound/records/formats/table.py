@@ -1,0 +1,198 @@
+"""The lines of a text with columns of numbers: the header above, and the numbers with any separator between them."""
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from dembound.gauge.reading.scope import BROKEN_OFF, SIGNS, UNIT_IN_NAME, joined
+from dembound.records.formats.source import END, MOTIONS, Flaw, Source, Unknown, number_of, quantity_named
+from dembound.waves.unit_names import unit_named
+
+MARKS = "#%!"
+"""Signs that begin a comment."""
+
+RULER = re.compile(r"[-=+*_|\s]+")
+LOWEST = 4
+"""Lines of the header, from below, among which one may name the columns."""
+
+TIME = re.compile(r"(?i:time|zeit|tiempo|temps|tempo|zaman|secs?|seconds?|时间)(?![A-Za-z])|t(?![A-Za-z0-9])")
+COMPONENT = re.compile(
+    r"ns|ew|ud|n-s|e-w|u-d|[xyzhvlrtneu]\d?|[hb][hnl][nez123]|(north|east|up|down|vert|long|trans|rad|comp|chan?)\w*"
+    r"|[ns]?\d{1,3}[ew°]?",
+    re.IGNORECASE,
+)
+"""Names of columns of times, and of components."""
+
+OTHER = re.compile(
+    r"\b(arias|husid|intensity|cav|energy|power|fourier|spectr\w*|p?s[av]|sd|vs\d*|depth|response|phase)(?![a-z])", re.I
+)
+"""Names of columns that are no motion, whatever their unit."""
+
+
+@dataclass(frozen=True)
+class Head:
+    """The head of a column: its name, and the unit beside it as it is spelled; empty where there is none."""
+
+    name: str = ""
+    unit: str = ""
+
+    @property
+    def is_time(self) -> bool:
+        """Whether it is that of times."""
+        return TIME.match(self.name) is not None or quantity_of(self.unit) == "times"
+
+    @property
+    def is_known(self) -> bool:
+        """Whether it names times, a component or a quantity, or has a unit."""
+        return bool(self.unit or self.is_time or COMPONENT.fullmatch(self.name) or quantity_named(self.name))
+
+
+@dataclass(frozen=True)
+class Table:
+    """A text of numbers.
+
+    header : numbers and texts of the lines above the numbers, without signs of comments. heads : of the columns, none
+    without a line that names them. rows : the numbers of each line. numbers : of these lines in the file.
+    """
+
+    header: Sequence[tuple[int, str]]
+    heads: Sequence[Head]
+    rows: Sequence[Sequence[float]]
+    numbers: Sequence[int]
+
+    @property
+    def width(self) -> int:
+        """Numbers in most lines."""
+        return Counter(map(len, self.rows)).most_common(1)[0][0]
+
+    @property
+    def total(self) -> int:
+        """All numbers."""
+        return sum(map(len, self.rows))
+
+    @property
+    def ragged(self) -> int:
+        """Index of the first line with another number of numbers than most; that of no line without any."""
+        return next((at for at, row in enumerate(self.rows) if len(row) != self.width), len(self.rows))
+
+
+def read_table(source: Source) -> Table:
+    """The header and the numbers of a text.
+
+    Numbers are separated by tabs, semicolons, commas or blanks, and may have decimal commas but between commas. Raises
+    Flaw for a text without numbers at its end, for other text between them, and for lines of the header that may be
+    numbers of the series.
+    """
+    lines = [(number, text.strip(" \r")) for number, text in enumerate(source.lines, start=1)][source.given.skip :]
+    lines = [(number, text) for number, text in lines if text and not END.match(text)]
+    separator = _separator([text for _, text in lines])
+    found = [(number, text, _numbers(text, separator)) for number, text in lines]
+    first = len(found)
+    while first > 0 and found[first - 1][2]:
+        first -= 1
+    if first == len(found):
+        if any(numbers for _, _, numbers in found):
+            raise Flaw(f"line {found[-1][0]} is no line of numbers, there must be none behind them")
+        raise Unknown("has no lines of numbers")
+    rows = [numbers for _, _, numbers in found[first:]]
+    above = [len(numbers) for _, _, numbers in found[:first] if numbers]
+    if above.count(len(rows[0])) >= (BROKEN_OFF if len(rows[0]) == 1 else 1):
+        number = found[first - 1][0]
+        raise Flaw(f"line {number} is no line of numbers like those around it; --skip {number} leaves out all above")
+    if separator == "," and all(value.is_integer() for row in rows for value in row) and len(rows[0]) > 1:
+        raise Flaw("has whole numbers between commas; if numbers have decimal commas, separate columns by semicolons")
+    _require_no_count(rows, found[first][0])
+    header = [(number, text.lstrip(MARKS + " ")) for number, text, _ in found[:first] if not RULER.fullmatch(text)]
+    table = Table(header, (), rows, [number for number, _, _ in found[first:]])
+    return Table(header, _heads([text for _, text in header], separator, table.width), rows, table.numbers)
+
+
+def _separator(texts: Sequence[str]) -> str:
+    """The separator of the numbers, a blank standing for any number of them: seen in the last line with a digit."""
+    last = next((text for text in reversed(texts) if any(map(str.isdigit, text))), "")
+    for separator in ("\t", ";"):
+        if separator in last:
+            return separator
+    fields = _fields(last, ",")
+    return "," if len(fields) > 1 and all(number_of(text) is not None for text in fields) else " "
+
+
+def _fields(text: str, separator: str) -> list[str]:
+    """The fields of a line, without empty ones at its end."""
+    if separator == " ":
+        return text.split()
+    fields = [field.strip() for field in next(csv.reader([text], delimiter=separator, skipinitialspace=True), [])]
+    while fields and not fields[-1]:
+        fields.pop()
+    return fields
+
+
+def _numbers(text: str, separator: str) -> list[float]:
+    """The numbers of a line; none for a line with other fields, and for a comment."""
+    fields = [] if text[0] in MARKS else _fields(text.partition("#")[0].translate(SIGNS), separator)
+    if separator != ",":
+        fields = [field.replace(",", ".") for field in fields]
+    numbers = [number for field in fields if (number := number_of(field)) is not None]
+    return numbers if len(numbers) == len(fields) else []
+
+
+def _require_no_count(rows: Sequence[Sequence[float]], number: int) -> None:
+    """Raise Flaw if the first lines seem to state the number of samples, and perhaps the time step."""
+    widths, total = [len(row) for row in rows], sum(map(len, rows))
+    for lines in (1, 2):
+        top = [value for row in rows[:lines] for value in row]
+        stands_out = len(rows) > lines and widths[0] < widths[lines] and len(set(widths[:lines])) == 1
+        if total - len(top) in top or stands_out:
+            raise Flaw(
+                f"line {number} may state the number of samples: --skip {number + lines - 1} leaves it out, --dt gives "
+                "the time step"
+            )
+
+
+def _heads(header: Sequence[str], separator: str, width: int) -> list[Head]:
+    """The heads of the columns: names with units of one line, and units of another line below it."""
+    units: list[Head] = []
+    for text in reversed(header[-LOWEST:]):
+        fields = _fields(text, separator)
+        if separator == " ":
+            fields = joined(fields, width)
+        if len(fields) != width:
+            continue
+        heads = [head_of(field) for field in fields]
+        if not units and any(head.unit for head in heads) and not any(head.name.strip("-1[]") for head in heads):
+            units = heads
+        elif (separator != " " and width > 1) or 2 * sum(head.is_known for head in heads) > width:
+            return [Head(one.name, one.unit or two.unit) for one, two in zip(heads, units or heads, strict=True)]
+    return units
+
+
+def head_of(text: str) -> Head:
+    """The name and the unit in the head of a column: "acc (gal)", "acc [gal]", "a/gal", "acc_gal", "acc in gal"."""
+    parts = [Head(name.strip(" /,"), unit.strip()) for name, unit in _partitions(text)]
+    parts = [head for head in parts if quantity_of(head.unit) in (*MOTIONS, "times")]
+    if COMPONENT.fullmatch(text):
+        return Head(text)
+    if known := next((head for head in parts if Head(head.name).is_known), None):
+        return known  # before "NS g" is taken as a unit
+    if quantity_of(whole := text.strip("[]()")) in (*MOTIONS, "times"):
+        return Head("", whole)
+    return parts[0] if parts else Head(text)
+
+
+def _partitions(text: str) -> Iterator[tuple[str, str]]:
+    """A text in two parts that may be a name and a unit."""
+    if bracketed := UNIT_IN_NAME.match(text):
+        yield bracketed[1], bracketed[2]
+    name, slash, unit = text.partition("/")
+    if slash:
+        yield name, unit
+    for gap in re.finditer(r"(?:\s+in)?[\s_]+", text):
+        yield text[: gap.start()], text[gap.end() :].replace("_", "/")
+
+
+def quantity_of(unit: str) -> str:
+    """The quantity that a unit measures; empty for other texts."""
+    found = unit_named(unit) if unit else None
+    return "" if found is None else found.quantity

@@ -1,0 +1,148 @@
+"""Files of volumes 1 and 2, uncorrected and corrected, of several channels.
+
+V1 and V2 of the California Strong Motion Instrumentation Program (CSMIP, formerly DMG), which RENADIC of Chile writes,
+too, those of the University of Southern California (USC), and V1 of Iran's BHRC. They descend from volumes I and II of
+the California Institute of Technology (Trifunac and Lee, Routine computer processing of strong-motion accelerograms,
+EERL 73-03, 1973). The header of a channel has 13 lines of text (V1) or 25 (V2), 7 lines of integers and 7 (V1) or 13
+(V2) of numbers. V1 has uncorrected accelerations, even ones or, from film, pairs of time and acceleration; V2 has
+corrected accelerations, velocities and displacements. A line "/&" ends a channel of CSMIP.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dembound.records.channel import Channel, Record
+from dembound.records.formats.format import Format
+from dembound.records.formats.source import COUNT, DECIMAL, END, Flaw, Source, rows_of
+from dembound.waves.unit_names import Named
+
+BLOCK = re.compile(
+    rf"\s*{COUNT}\s+(?:points of\s+)?(acc|vel|dis).*?\bat\s+({DECIMAL})\s*(pts/)?sec"
+    r"\W*(?:in units of|in units|units:?|in)\s+([^\s()]+)(.*)",
+    re.IGNORECASE,
+)
+"""The line before even samples, as "31932 Accelerogram points at 100 pts/sec in units of g.  Format: (8f9.6)"."""
+
+PAIRS, EVEN = "(10f7.3)", "(10e13.6)"
+"""Layouts of pairs of time and acceleration, which USC shifts by a blank, and of BHRC's accelerations."""
+
+FIRST = {
+    "uncorrected accelerogram data": "CSMIP V1",
+    "corrected accelerogram": "CSMIP V2",
+    "response and fourier": "CSMIP V3",
+    "file of uncorrected accelerogram data of volume i:": "USC V1",
+    "* vol1ds file:": "BHRC V1",
+}
+"""How the first line of a channel begins, without a number behind "file" -> program and volume."""
+
+TITLE = {"CSMIP V1": (5, 1), "CSMIP V2": (6, 2), "USC V1": (5, 1), "USC V2": (6, 2), "BHRC V1": (7, 2)}
+"""Index of the lines of a header that name the station, and the event or its time."""
+
+HEADER = {"V1": 27, "V2": 45}
+LAYOUT = {"V1": "(8f9.6)", "V2": "(8f10.3)"}
+"""Lines of the header of a channel, and the layout of samples where the line before them has none."""
+
+
+class Volumes(Format):
+    """All channels and quantities of a file."""
+
+    name = "CSMIP, USC or BHRC V1/V2"
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the first lines are those of a file of one of the volumes."""
+        return bool(_volume(lines, 0))
+
+    def read(self, source: Source) -> Record:
+        """The channels of the file, of V2 with all three quantities."""
+        volume = _volume(source.lines, 0)
+        if volume[-2:] not in HEADER:
+            raise Flaw("holds spectra (V3), must be V1 or V2")
+        place, event = TITLE[volume]
+        title = f"{source.line(place)[:40].strip()}, {source.line(event)[:40].strip()}"
+        channels: list[Channel] = []
+        begin = 0
+        while begin < len(source.lines):
+            if source.lines[begin].strip():
+                if _volume(source.lines, begin) != volume:
+                    raise Flaw(f"line {begin + 1} is not the first one of a channel of {volume}")
+                more, begin = _channel(source, volume, begin)
+                channels += more
+            begin += 1
+        return Record(volume, title, tuple(channels))
+
+
+def _volume(lines: Sequence[str], begin: int) -> str:
+    """Program and volume by the first lines of a channel; empty for other lines."""
+    first, second = ("\n".join(lines[begin : begin + 2]).lower() + "\n").split("\n")[:2]
+    plain = re.sub(r"^file\s+\d+", "file", first)
+    found = next((volume for words, volume in FIRST.items() if plain.startswith(words)), "")
+    if found == "CSMIP V2" and "uncorrected accelerogram" not in second:
+        return ""
+    return "USC V2" if found == "CSMIP V2" and "volume i:" in second else found
+
+
+def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], int]:
+    """The quantities of the channel that begins at a line, by its index, and the index of the line that ends it."""
+    at = begin + HEADER[volume[-2:]]
+    named = r"^(?:chan\s+\d+:|comp\b(?=[^:]*$))\s*(\S+(?: \S+)*?)\s*(?:deg)?\s*(?:\(.*\)\s*|\s\d+\s*)?$"
+    component = source.found(named, begin, at, "the component")[1]
+    found = []
+    if volume[-1] == "1" and re.fullmatch(r"[-.DE\d\s+]+", source.line(at)):
+        read = _evenly if volume.startswith("BHRC") else _from_film
+        channel, at = read(source, component, begin, at)
+        found.append(channel)
+    while at < len(source.lines) and (block := BLOCK.match(source.lines[at])):
+        count, layout = int(block[1]), block[6] if "(" in block[6] else LAYOUT[volume[-2:]]
+        values = source.fixed(at + 1, count, layout)
+        rate = float(block[3])
+        step = rate if not block[4] else 1.0 / rate if rate else 0.0
+        peak = _peak(source, at) if volume == "CSMIP V1" else _peak_of(block[2], source, begin)
+        found.append(source.channel(component, source.measured(block[5]), values, step, peak=peak))
+        at += 1 + rows_of(count, layout)
+    if not found:
+        raise Flaw(f"line {at + 1} does not state number, time step and unit of samples")
+    if at < len(source.lines) and source.lines[at].strip() and not END.match(source.lines[at]):
+        raise Flaw(f"line {at + 1} does not end the channel, after {len(found[-1].values)} samples")
+    return found, at
+
+
+def _in_tenths(source: Source, begin: int, at: int) -> tuple[int, Named, float]:
+    """The number of points of uncorrected data, their unit, and its part in which they are: g, or a tenth of it."""
+    count = int(source.found(rf"no\. of points\s*=\s*{COUNT}\b", begin, at, "the number of points")[1])
+    unit = source.found(r"units (?:of uncor\w*\s.*?|are sec\w* )and (g)(/10)?", begin, at, "the unit")
+    return count, source.measured(unit[1]), 0.1 if unit[2] and source.given.unit is None else 1.0
+
+
+def _evenly(source: Source, component: str, begin: int, at: int) -> tuple[Channel, int]:
+    """BHRC's channel of even accelerations that begins at a line, and the index of the line behind them."""
+    count, unit, part = _in_tenths(source, begin, at)
+    duration = float(source.found(rf"duration\s*=\s*({DECIMAL})", begin, at, "the duration")[1])
+    channel = source.channel(component, unit, part * source.fixed(at, count, EVEN), duration / max(count, 1))
+    return channel, at + rows_of(count, EVEN)
+
+
+def _from_film(source: Source, component: str, begin: int, at: int) -> tuple[Channel, int]:
+    """The channel whose pairs of time and acceleration begin at a line, and the index of the line behind them."""
+    count, unit, part = _in_tenths(source, begin, at)
+    rows = rows_of(2 * count, PAIRS)
+    if len(source.line(at).rstrip()) % 7:  # USC's lines begin with a blank
+        source = replace(source, lines=[line[1:] for line in source.lines])
+    pairs = source.fixed(at, 2 * count, PAIRS)
+    step, values = source.from_film(pairs[::2], part * pairs[1::2])
+    found = float(np.abs(part * pairs[1::2]).max())
+    peak = _peak(source, at) if _volume(source.lines, begin) == "CSMIP V1" else ""
+    return source.channel(component, unit, values, step, float(pairs[0]), peak, found), at + rows
+
+
+def _peak(source: Source, at: int) -> str:
+    """The peak (g) in the header of V1 whose samples or the line before them is at this index."""
+    peak = source.lines[at - 7][60:70]
+    return "" if peak.strip().startswith("-999.") else peak
+
+
+def _peak_of(quantity: str, source: Source, begin: int) -> str:
+    """The peak of a quantity, by its first letters, in the header of V2 that begins at this index."""
+    return source.found(rf"^peak\s+{quantity}\w*\s*=\s*({DECIMAL})", begin, begin + 25, f"the peak of {quantity}")[1]
