@@ -52,8 +52,6 @@ def read_record(path: Path, given: Reading = Reading()) -> Record:  # noqa: B008
     form = FORMATS[-1] if given.is_of_text else next(form for form in FORMATS if form.recognises(source.lines))
     name = "SAC or MiniSEED" if "\0" in text else form.name
     try:
-        if given.time_step is not None and name != FORMATS[-1].name:
-            raise Flaw("--dt: is for columns of text, the file states its own time step; leave it out")
         record = read_binary(content, source) if "\0" in text else form.read(source)
         if given.unit is not None and len({channel.quantity for channel in record.channels}) > 1:
             raise Flaw(f"--unit: is {given.unit}, but the channels are different quantities; leave it out")

@@ -10,15 +10,19 @@ from collections.abc import Sequence
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
 from dembound.records.formats.source import COUNT, END, Flaw, Source, rows_of
+from dembound.waves.unit_names import unit_named
 
 FIRST = re.compile(r".*\(format v[\d.]+ with\s+(\d{1,3}) text lines\)", re.IGNORECASE)
 INTEGERS = rf"^\s*{COUNT} integer-header.*format\s*=\s*(\(.*)"
 REALS = rf"^\s*{COUNT} real-header.*format\s*=\s*(\(.*)"
 COMMENTS = rf"^\s*{COUNT} comment line"
-SAMPLES = rf"^\s*{COUNT} .*units\s*=\s*([^(]*?)\.?\s*\(\s*\d+\s*\).*format\s*=\s*(\(.*)"
+SAMPLES = rf"^\s*{COUNT} (?:.*?approx\s+(\d+)\s+secs)?.*units\s*=\s*([^(]*?)\.?\s*\(\s*\d+\s*\).*format\s*=\s*(\(.*)"
 COMPONENT = r"^sta cha\w*:?\s*\S+?\s*:[ ]*(.*?)\s*(?:deg\b.*)?(?:\(.*)?$"
 CODE = re.compile(r"<SCNL>[^.\s]*\.([^.\s]+)\.")
 """The direction in the text; station, component, network and place in a comment."""
+
+PEAK_UNIT = re.compile(r"^Processed:.*\bMax\s*=\s*\S+\s+(\S+)\s+at\b", re.MULTILINE)
+"""The unit of the processed peak in the text."""
 
 STEP, PEAK = 61, 63
 """Places of the time step (ms) and of the peak among the numbers of the header."""
@@ -68,10 +72,13 @@ def _channel(source: Source, begin: int) -> tuple[Channel, int]:
     code = CODE.search("\n".join(source.lines[at + 1 : at + 1 + comments]))
     at += 1 + comments
     samples = source.found(SAMPLES, at, at + 1, "number, unit and layout of samples")
-    unit = source.measured(samples[2])
-    values = source.fixed(at + 1, int(samples[1]), samples[3])
-    at += 1 + rows_of(int(samples[1]), samples[3])
+    unit = source.measured(samples[3])
+    of_peak = PEAK_UNIT.search("\n".join(source.lines[begin : begin + int(first[1])]))
+    if of_peak and (named := unit_named(of_peak[1])) is not None and named[1:] != unit[1:] and not source.given.unit:
+        raise Flaw(f"line {at + 1} states {samples[3]}, the text a peak in {of_peak[1]}; give the unit by --unit")
+    values = source.fixed(at + 1, int(samples[1]), samples[4])
+    at += 1 + rows_of(int(samples[1]), samples[4])
     if at < len(source.lines) and not END.match(source.lines[at]):
         raise Flaw(f"line {at + 1} does not end the channel, after {len(values)} samples")
     name = code[1] if code and component.lower() in ("", "other") else component
-    return source.channel(name, unit, values, 1e-3 * float(reals[STEP]), peak=peak), at
+    return source.channel(name, unit, values, 1e-3 * float(reals[STEP]), peak=peak, length=samples[2] or ""), at

@@ -39,7 +39,8 @@ class Esm(Format):
         if of_peak is not None and of_peak.size != unit.size and (stated_peak := number_of(peak)) is not None:
             peak = f"{stated_peak * of_peak.size / unit.size:.6g}"
         values, step = source.free(begin, int(stated("NDATA", COUNT))), stated("SAMPLING_INTERVAL_S", rf"({DECIMAL})")
-        channel = source.channel(texts.get("STREAM", ""), unit, values, float(step), peak=peak)
+        length = texts.get("DURATION_S", "")
+        channel = source.channel(texts.get("STREAM", ""), unit, values, float(step), peak=peak, length=length)
         names = (texts.get(key, "") for key in ("STATION_CODE", "STATION_NAME", "EVENT_NAME", "EVENT_DATE_YYYYMMDD"))
         return Record("ESM/ITACA ASC", ", ".join(filter(None, names)), (channel,))
 

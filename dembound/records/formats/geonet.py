@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import DECIMAL, Flaw, Source, rows_of
+from dembound.records.formats.source import COUNT, DECIMAL, SAME, Flaw, Source, rows_of
 
 HEADER, TEXTS, INTEGERS, REALS = 26, 16, 4, 6
 LAYOUT = "(10f8.1)"
@@ -52,6 +52,13 @@ def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
     name = source.found(r"^component\s+(\S+)", begin, begin + TEXTS, "the component")[1]
     integers = source.fixed(begin + TEXTS, 10 * INTEGERS, "(10i8)")
     reals = source.fixed(begin + TEXTS + INTEGERS, 10 * REALS, "(10f8.0)")
+    length = source.found(rf"^number of points\s+\d+\s+duration\s+({DECIMAL})", begin, begin + TEXTS, "the duration")[1]
+    points = source.found(rf"^number of points\s+{COUNT}\b", begin, begin + TEXTS, "the number of points")[1]
+    step = source.found(rf"\bat (?:intervals of )?({DECIMAL}) s", begin, begin + TEXTS, "the interval")[1]
+    if int(points) != integers[COUNTS][0] or abs(float(step) - reals[STEP]) > SAME * reals[STEP]:
+        raise Flaw(
+            f"line {begin + 1} begins a text that states {points} points every {step} s, the numbers below others"
+        )
     at, found = begin + HEADER, []
     for (quantity, unit), count in zip(UNITS.items(), integers[COUNTS].astype(int), strict=True):
         if not 0 <= count < 1e9:
@@ -62,7 +69,7 @@ def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
                 1
             ]
             measured = source.measured(unit, quantity)
-            found.append(source.channel(name, measured, values, float(reals[STEP]), peak=stated or ""))
+            found.append(source.channel(name, measured, values, float(reals[STEP]), peak=stated or "", length=length))
             at += rows_of(count, LAYOUT)
     if not found:
         raise Flaw(f"states no samples of component {name}")

@@ -11,7 +11,10 @@ import numpy as np
 
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import COUNT, DECIMAL, Flaw, Source, number_of
+from dembound.records.formats.source import COUNT, DECIMAL, SAME, Flaw, Source, number_of
+
+GAL = 0.01
+"""m/s²."""
 
 LONGEST = 120
 """Lines of the longest header."""
@@ -23,18 +26,18 @@ class Cwb(Format):
     name = "CWB"
 
     def recognises(self, lines: Sequence[str]) -> bool:
-        """Whether the header states the order of the columns and the unit."""
+        """Whether the header states the order of the columns."""
         text = "\n".join(lines[:LONGEST])
-        return "#DataSequence:" in text and "#AmplitudeUnit:" in text
+        return re.search(r"^#DataSequence: *Time ", text, re.MULTILINE) is not None
 
     def read(self, source: Source) -> Record:
         """The three components of the file."""
-        begin = next(at for at, line in enumerate(source.lines) if line.startswith("#DataSequence:")) + 1
-        names = re.findall(r"([A-Z])\([+-]\)", source.lines[begin - 1])
-        unit = source.measured(source.found(r"^#AmplitudeUnit:\s*([^\s.]+)", 0, begin, "the unit")[1])
-        rate = float(source.found(rf"^#SampleRate\(Hz\):\s*({DECIMAL})", 0, begin, "the sampling rate")[1])
-        while source.line(begin).startswith("#"):
+        begin = 0
+        while source.line(begin).startswith("#") or not source.line(begin).strip():
             begin += 1
+        names = re.findall(r"([A-Z])\([+-]\)", value(source, "#DataSequence"))
+        unit = source.measured(value(source, "#AmplitudeUnit").partition(".")[0])
+        rate = float(source.found(rf"^#SampleRate\(Hz\):\s*({DECIMAL})", 0, begin, "the sampling rate")[1])
         rows = columns_below(source, begin, 1 + len(names))
         time, step = rows[0], float(f"{(rows[0][-1] - rows[0][0]) / max(len(rows[0]) - 1, 1):.12g}")
         if abs(step * rate - 1.0) > 1e-3:
@@ -44,7 +47,8 @@ class Cwb(Format):
             peaks = value(source, rf"#AmplitudeMAX\. {name}")
             peak = max(re.findall(DECIMAL, peaks), key=lambda text: abs(float(text)), default="")
             even, numbers = source.evenly(time, values)
-            channels.append(source.channel(name, unit, numbers, step, float(even[0]), peak))
+            length = value(source, "#RecordLength")
+            channels.append(source.channel(name, unit, numbers, step, float(even[0]), peak, length=length))
         return Record("CWB", _title(source, "#StationCode", "#Origin Time"), tuple(channels))
 
 
@@ -59,15 +63,17 @@ class Nsmn(Format):
 
     def read(self, source: Source) -> Record:
         """The components of the file."""
-        begin = next((at for at, line in enumerate(source.lines[:LONGEST]) if re.match(r"\s*N-S\s", line)), 0) + 1
-        step = source.found(rf"^SAMPLING INTERVAL \(sec\)\s*:\s*({DECIMAL})", 0, begin, "the sampling interval")[1]
+        named = (at for at, line in enumerate(source.lines[:LONGEST]) if re.fullmatch(r"(\s+[NEU]-[SWD])+\s*", line))
+        if (begin := next(named, -1) + 1) == 0:
+            raise Flaw('has no line of names such as "N-S E-W U-D"; --skip 17 and --columns read it as columns of text')
         count = int(source.found(rf"^NUMBER OF DATA\s*:\s*{COUNT}", 0, begin, "the number of data")[1])
-        spelled, peaks = source.found(r"^RAW PGA VALUES \(([^)]*)\)\s*:(.*)$", 0, begin, "PGA and unit").groups()
-        names, unit = source.lines[begin - 1].split(), source.measured(spelled)
+        peaks, step = value(source, "RAW PGA VALUES"), value(source, r"SAMPLING INTERVAL \(sec\)")
+        spelled = re.search(r"^RAW PGA VALUES \(([^)]*)\)", "\n".join(source.lines[:begin]), re.MULTILINE)
+        names, unit = source.line(begin - 1).split(), source.measured(spelled[1] if spelled else "")
         rows = columns_below(source, begin, len(names), count)
         peak = {name: value for name, value in re.findall(rf"\(([^)]*)\)\s*({DECIMAL})", peaks)}
         channels = [
-            source.channel(name, unit, values, float(step), peak=peak.get(name, ""))
+            source.channel(name, unit, values, number_of(step), peak=peak.get(name, ""))
             for name, values in zip(names, rows, strict=True)
         ]
         return Record("NSMN", _title(source, "PLACE", "EARTHQUAKE DATE"), tuple(channels))
@@ -85,18 +91,24 @@ class Unam(Format):
     def read(self, source: Source) -> Record:
         """The channels of the file."""
         begin = next((at for at, line in enumerate(source.lines[:LONGEST]) if "CANAL-1" in line), 0) + 3
-        names, steps, counts, peaks = (
-            _slashed(source, key)
-            for key in ("ORIENTACION", r"INTERVALO DE MUESTREO", r"NUM\. TOTAL DE MUESTRAS", r"ACEL\. MAX\.\s*\(Gal\)")
-        )
-        if len({len(each) for each in (names, steps, counts, peaks)}) > 1 or len(set(counts)) != 1 or not names:
+        names, counts = _slashed(source, "ORIENTACION"), _slashed(source, r"NUM\. TOTAL DE MUESTRAS")
+        if len(names) != len(counts) or len(set(counts)) != 1 or not counts[0].isdecimal():
             raise Flaw("states unlike numbers of channels or samples")
-        unit = source.measured(source.found(r"^UNIDADES DE LOS DATOS\s*:\s*(\S+)", 0, begin, "the unit")[1])
+        unit = source.measured(value(source, "UNIDADES DE LOS DATOS").partition(" ")[0])
         rows = columns_below(source, begin, len(names), int(counts[0]))
-        channels: list[Channel] = [
-            source.channel(name, unit, values, float(step), peak=peak)
-            for name, step, peak, values in zip(names, steps, peaks, rows, strict=True)
-        ]
+        rates, steps, lengths, peaks = (
+            [number_of(text) for text in _slashed(source, key)] or [None] * len(names)
+            for key in ("VEL. DE MUESTREO", "INTERVALO DE MUESTREO", "DURACION DEL REGISTRO", r"ACEL\. MAX\.\s*\(Gal\)")
+        )
+        if {len(each) for each in (rates, steps, lengths, peaks)} != {len(names)}:
+            raise Flaw("states unlike numbers of channels")
+        channels: list[Channel] = []
+        for name, rate, step, length, peak, values in zip(names, rates, steps, lengths, peaks, rows, strict=True):
+            if step is not None and rate and abs(step * rate - 1.0) > SAME:
+                raise Flaw(f"{name}: states {rate:g} samples/s, and one every {step:g} s")
+            between = 1.0 / rate if step is None and rate else step
+            stated = f"{GAL * peak / unit.size:.5g}" if peak is not None else ""
+            channels.append(source.channel(name, unit, values, between, peak=stated, length=f"{length}"))
         return Record("UNAM", _title(source, "NOMBRE DE LA ESTACION", "FECHA DEL SISMO"), tuple(channels))
 
 

@@ -48,10 +48,15 @@ class Smc(Format):
         numbers, time, rate = source.free(begin, int(integers[COUNT]), may_follow=True), 0.0, reals[RATE]
         found = None
         if 0.0 < rate < reals[UNKNOWN]:
-            step = 1.0 / float(rate)
+            step: float | None = 1.0 / float(rate)
+        elif source.given.time_step is not None:
+            step = None
         else:
             points = numbers[: len(numbers) // 2 * 2].reshape(-1, 2)
-            (step, numbers), time = source.from_film(points[:, 0], points[:, 1]), float(points[0, 0])
+            try:
+                (step, numbers), time = source.from_film(points[:, 0], points[:, 1]), float(points[0, 0])
+            except Flaw as flaw:
+                raise Flaw(f"{flaw}; if the numbers are no pairs of time and value, give --dt") from None
             found = float(np.abs(points[:, 1]).max())
         known = [place for place in PEAKS if reals[place] != reals[UNKNOWN]]
         peak = texts[max(known, key=lambda place: abs(reals[place]))] if known else ""

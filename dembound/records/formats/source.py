@@ -36,6 +36,9 @@ SI = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
 PEAK_TOLERANCE = 1e-3
 """Share of a stated peak by which that of the samples may differ, beside the rounding of the stated one."""
 
+LENGTH_TOLERANCE, SAME = 0.02, 0.01
+"""Shares of a stated length, which is often rounded, and of a time step by which those of the samples may differ."""
+
 COUNT = r"(\d{1,9})"
 DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
 """Patterns of a number of samples and of any number, Fortran's double precision (1.5D-03) included."""
@@ -109,7 +112,8 @@ class Source:
         """The first match in these lines, whatever the case of letters; raises Flaw, with `what`, without one."""
         text = "\n".join(self.lines[begin:end])
         if (match := re.search(pattern, text, re.IGNORECASE | re.MULTILINE)) is None:
-            raise Flaw(f"lines {begin + 1} to {end} do not state {what}")
+            text = f"; --skip {end} reads what is below as columns of text, with --dt, --unit and --columns"
+            raise Flaw(f"lines {begin + 1} to {end} do not state {what}{text}")
         return match
 
     def fields(self, first: int, count: int, layout: str) -> list[str]:
@@ -224,26 +228,38 @@ class Source:
         component: str,
         unit: Named,
         numbers: np.ndarray,
-        time_step: float,
+        time_step: float | None,
         begin: float = 0.0,
         peak: str = "",
         found: float | None = None,
+        length: str = "",
     ) -> Channel:
         """A channel in SI.
 
         Parameters
         ----------
-        unit : by `measured`. numbers : (n,) in this unit. peak : as the header states it in this unit; other text for
-        none. found : what the stated peak is compared with; by default the largest size of the numbers.
+        unit : by `measured`. numbers : (n,) in this unit. time_step : s; None where the header states none. peak : as
+        the header states it in this unit; other text for none. found : what the stated peak is compared with; by
+        default the largest size of the numbers. length : of the record, s, as the header states it, or other text.
 
-        Raises Flaw for too few samples, samples that are not finite, a time step that is not positive, and another
-        peak than the stated one, unless the unit is given.
+        Raises Flaw for too few samples, samples that are not finite, a time step that is not positive, missing, or
+        another one than is given, another length than the stated one, and another peak, unless the unit is given.
         """
         quantity, size, spelled = MOTIONS[unit.quantity], unit.size, unit.spelled.strip()
         if len(numbers) < FEWEST:
             raise Flaw(f"has {len(numbers)} samples, must have {FEWEST} or more")
+        time_step = self._given_step(time_step)
         if not SMALLEST <= time_step <= LARGEST:
             raise Flaw(f"has a time step of {time_step:g} s, must be positive")
+        stated, rounding = _with_rounding(length)
+        if (
+            stated
+            and self.given.time_step is None
+            and abs(len(numbers) * time_step - stated) > 2.0 * time_step + LENGTH_TOLERANCE * stated + rounding
+        ):
+            have = f"{len(numbers)} samples, one every {time_step:g} s, have {len(numbers) * time_step:g} s"
+            said = f"the header states a length of {stated:g} s, {have}; if they are right, give --dt {time_step:g}"
+            raise Flaw(f"{component or quantity}: {said}")
         values = size * _sound(numbers)
         stated, rounding = _with_rounding(peak)
         if stated is None:
@@ -256,6 +272,15 @@ class Source:
                 raise Flaw(f"{said}; to read it nevertheless, give the unit by --unit")
             self.remarks.append(said)
         return Channel(component, quantity, values, time_step, begin, size * stated, spelled)
+
+    def _given_step(self, stated: float | None) -> float:
+        """The time step (s) of the header, or that which is given; raises Flaw for none and for two."""
+        given = self.given.time_step
+        if stated is None and given is None:
+            raise Flaw("states no time step; give it by --dt")
+        if stated is not None and given is not None and abs(stated - given) > SAME * stated:
+            raise Flaw(f"--dt: is {given:g} s, the file states {stated:g} s; leave it out")
+        return stated if stated is not None else float(given or 0.0)
 
 
 def _sound(numbers: np.ndarray) -> np.ndarray:

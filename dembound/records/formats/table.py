@@ -13,7 +13,10 @@ from dembound.waves.unit_names import unit_named
 MARKS = "#%!"
 """Signs that begin a comment."""
 
+TOUCHING = re.compile(r"(?<=[.\d])(?=[+-]\d*\.)")
 RULER = re.compile(r"[-=+*_|\s]+")
+EITHER = "give --columns NAME,NAME,… for columns or --series for one series"
+
 LOWEST = 4
 """Lines of the header, from below, among which one may name the columns."""
 
@@ -26,7 +29,9 @@ COMPONENT = re.compile(
 """Names of columns of times, and of components."""
 
 OTHER = re.compile(
-    r"\b(arias|husid|intensity|cav|energy|power|fourier|spectr\w*|p?s[av]|sd|vs\d*|depth|response|phase)(?![a-z])", re.I
+    r"\b(arias|husid|intensity|cav|energy|power|fourier|spectr\w*|p?s[av]|sd|vs\d*|depth|response|phase|freq\w*|period)"
+    r"(?![a-z])",
+    re.IGNORECASE,
 )
 """Names of columns that are no motion, whatever their unit."""
 
@@ -85,7 +90,8 @@ def read_table(source: Source) -> Table:
     Flaw for a text without numbers at its end, for other text between them, and for lines of the header that may be
     numbers of the series.
     """
-    lines = [(number, text.strip(" \r")) for number, text in enumerate(source.lines, start=1)][source.given.skip :]
+    lines = [(number, text.translate(SIGNS).strip(" \r\f\v")) for number, text in enumerate(source.lines, start=1)]
+    lines = lines[source.given.skip :]
     lines = [(number, text) for number, text in lines if text and not END.match(text)]
     separator = _separator([text for _, text in lines])
     found = [(number, text, _numbers(text, separator)) for number, text in lines]
@@ -95,7 +101,10 @@ def read_table(source: Source) -> Table:
     if first == len(found):
         if any(numbers for _, _, numbers in found):
             raise Flaw(f"line {found[-1][0]} is no line of numbers, there must be none behind them")
-        raise Unknown("has no lines of numbers")
+        text = next(
+            (f', as line {number} "{text[:30]}"' for number, text in reversed(lines) if re.search(r"\d", text)), ""
+        )
+        raise Unknown(f"has no lines of numbers alone{text}")
     rows = [numbers for _, _, numbers in found[first:]]
     above = [len(numbers) for _, _, numbers in found[:first] if numbers]
     if above.count(len(rows[0])) >= (BROKEN_OFF if len(rows[0]) == 1 else 1):
@@ -103,9 +112,15 @@ def read_table(source: Source) -> Table:
         raise Flaw(f"line {number} is no line of numbers like those around it; --skip {number} leaves out all above")
     if separator == "," and all(value.is_integer() for row in rows for value in row) and len(rows[0]) > 1:
         raise Flaw("has whole numbers between commas; if numbers have decimal commas, separate columns by semicolons")
-    _require_no_count(rows, found[first][0])
+    if not source.given.series:
+        _require_no_header(rows, [text for _, text, _ in found[first:]], found[first][0])
+    gaps = [number for number, text, numbers in found[:first] if not numbers and _has_gaps(text, separator)]
+    if gaps:
+        raise Flaw(f"line {gaps[-1]} has empty fields beside numbers; --skip {gaps[-1]} leaves out all above")
     header = [(number, text.lstrip(MARKS + " ")) for number, text, _ in found[:first] if not RULER.fullmatch(text)]
     table = Table(header, (), rows, [number for number, _, _ in found[first:]])
+    if source.given.columns or source.given.series:
+        return table
     return Table(header, _heads([text for _, text in header], separator, table.width), rows, table.numbers)
 
 
@@ -116,6 +131,8 @@ def _separator(texts: Sequence[str]) -> str:
         if separator in last:
             return separator
     fields = _fields(last, ",")
+    if len(fields) == 2 and "." not in last and any(re.search(r"=\s*\d+,\d|;", text) for text in texts):
+        return " "  # a single column with decimal commas, as the header has
     return "," if len(fields) > 1 and all(number_of(text) is not None for text in fields) else " "
 
 
@@ -131,15 +148,26 @@ def _fields(text: str, separator: str) -> list[str]:
 
 def _numbers(text: str, separator: str) -> list[float]:
     """The numbers of a line; none for a line with other fields, and for a comment."""
-    fields = [] if text[0] in MARKS else _fields(text.partition("#")[0].translate(SIGNS), separator)
+    fields = [] if text[0] in MARKS else _fields(text.partition("#")[0], separator)
     if separator != ",":
         fields = [field.replace(",", ".") for field in fields]
+    if separator == " ":  # fields of Fortran may touch
+        fields = [part for field in fields for part in (TOUCHING.split(field) if field.count(".") > 1 else [field])]
     numbers = [number for field in fields if (number := number_of(field)) is not None]
     return numbers if len(numbers) == len(fields) else []
 
 
-def _require_no_count(rows: Sequence[Sequence[float]], number: int) -> None:
-    """Raise Flaw if the first lines seem to state the number of samples, and perhaps the time step."""
+def _has_gaps(text: str, separator: str) -> bool:
+    """Whether a line has numbers and empty fields, and nothing else."""
+    fields = _fields(text, separator) if text[0] not in MARKS else []
+    return "" in fields and any(fields) and all(not field or number_of(field) is not None for field in fields)
+
+
+def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], number: int) -> None:
+    """Raise Flaw if the first lines seem to state the number of samples or the time step, or to name columns.
+
+    These have the number of all others, or fewer numbers than other lines, or other digits behind the point than all.
+    """
     widths, total = [len(row) for row in rows], sum(map(len, rows))
     for lines in (1, 2):
         top = [value for row in rows[:lines] for value in row]
@@ -149,6 +177,17 @@ def _require_no_count(rows: Sequence[Sequence[float]], number: int) -> None:
                 f"line {number} may state the number of samples: --skip {number + lines - 1} leaves it out, --dt gives "
                 "the time step"
             )
+    first, *others = [_decimals(text) for text in texts]
+    if len(others) > 2 and first != others[0] and len(set(others)) == 1 and any(rows[0]):
+        raise Flaw(
+            f"line {number} has other digits than all lines below: --skip {number} leaves it out of the numbers, "
+            "--series takes all as one series"
+        )
+
+
+def _decimals(text: str) -> tuple[int, ...]:
+    """Digits behind the point of each number in a line."""
+    return tuple(len(digits) for digits in re.findall(r"\d+[.,]?(\d*)", text))
 
 
 def _heads(header: Sequence[str], separator: str, width: int) -> list[Head]:
@@ -156,11 +195,13 @@ def _heads(header: Sequence[str], separator: str, width: int) -> list[Head]:
     units: list[Head] = []
     for text in reversed(header[-LOWEST:]):
         fields = _fields(text, separator)
-        if separator == " ":
+        if separator == " " and width > 1:
             fields = joined(fields, width)
-        if len(fields) != width:
-            continue
         heads = [head_of(field) for field in fields]
+        if len(fields) != width:
+            if separator != " " and len(fields) > 1 < width and 2 * sum(head.is_known for head in heads) > len(fields):
+                raise Flaw(f'"{text}" names {len(fields)} columns, lines have {width} numbers: {EITHER}')
+            continue
         if not units and any(head.unit for head in heads) and not any(head.name.strip("-1[]") for head in heads):
             units = heads
         elif (separator != " " and width > 1) or 2 * sum(head.is_known for head in heads) > width:
@@ -174,7 +215,7 @@ def head_of(text: str) -> Head:
     parts = [head for head in parts if quantity_of(head.unit) in (*MOTIONS, "times")]
     if COMPONENT.fullmatch(text):
         return Head(text)
-    if known := next((head for head in parts if Head(head.name).is_known), None):
+    if known := next((head for head in parts if head.name and (Head(head.name).is_known or text[-1] in "])")), None):
         return known  # before "NS g" is taken as a unit
     if quantity_of(whole := text.strip("[]()")) in (*MOTIONS, "times"):
         return Head("", whole)

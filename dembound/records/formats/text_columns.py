@@ -16,14 +16,16 @@ from dembound.records.formats.format import Format
 from dembound.records.formats.source import (
     BARE,
     COUNT,
+    MOTIONS,
     QUANTITY,
+    SAME,
     SECONDS,
     Flaw,
     Source,
     require_increasing,
     seconds_of,
 )  # fmt: skip
-from dembound.records.formats.table import OTHER, Head, Table, head_of, quantity_of, read_table
+from dembound.records.formats.table import EITHER, OTHER, Head, Table, head_of, quantity_of, read_table
 from dembound.table import LARGEST, SMALLEST
 from dembound.waves.unit_names import unit_named
 
@@ -73,11 +75,6 @@ LONG = 5
 SMOOTHER = 0.7
 """Ratio of mean differences between neighbours at which numbers contradict the order in which they are read."""
 
-EITHER = "give --columns NAME,NAME,… for columns or --series for one series"
-
-SAME = 0.01
-"""Relative difference of time steps that are equal."""
-
 
 class TextColumns(Format):
     """Of any separator; each column of values is a channel, called as in the header."""
@@ -118,14 +115,16 @@ Stated = tuple[float, int] | None
 def _is_series(source: Source, table: Table, heads: Sequence[Head], step: Stated, count: Stated) -> bool:
     """Whether the numbers are one series and no columns; raises Flaw where both are possible."""
     width, lines = table.width, len(table.rows)
-    if source.given.series or source.given.columns or width == 1:
-        return source.given.series or not source.given.columns
-    if table.ragged < lines - 1 and (count is None or count[0] != table.total):
+    if source.given.series or source.given.columns:
+        return source.given.series
+    are_columns = any(heads) or _increases(np.array([row[0] for row in table.rows]))
+    cut = lines if are_columns or width == 1 else lines - 1
+    if table.ragged < cut and (count is None or count[0] != table.total):
         at = table.numbers[table.ragged]
         has = len(table.rows[table.ragged])
         raise Flaw(f"line {at} has {has} numbers, others have {width}; if all are one series: --series")
-    if table.ragged == lines and (heads or _increases(table)):
-        return False
+    if width == 1 or (table.ragged == lines and are_columns):
+        return width == 1
     if step is None:
         raise Flaw(
             f"has {width} numbers in a line and states neither times nor a time step: give --dt, and {EITHER[5:]}"
@@ -142,12 +141,16 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     """The channels of columns."""
     values, heads = np.array(table.rows).T, heads or [Head()] * table.width
     timed = [at for at, head in enumerate(heads) if head.is_time]
-    if not timed and not source.given.columns and (step is None or not any(heads)) and _increases(table):
+    is_named = any(head.name or head.unit for head in heads)
+    if not timed and not source.given.columns and (step is None or not is_named) and _increases(values[0]):
         timed = [0]
     if any((values[at] != values[timed[0]]).any() for at in timed[1:]):
         raise Flaw(
             f"has several columns of times: {_names_of(heads, timed)}; name those to read by --columns, others -"
         )
+    spectra = next((head.name for head in heads if re.match(r"freq|period", head.name, re.IGNORECASE)), None)
+    if spectra is not None and not source.given.columns:
+        raise Flaw(f'has a column "{spectra}", must have times; name the columns by --columns')
     chosen = [at for at in range(len(heads)) if at not in timed and heads[at].name != "-"]
     if not timed:
         if step is None:
@@ -156,7 +159,7 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     channels = []
     for at in chosen:
         name = heads[at].name or (f"column {at + 1}" if len(chosen) > 1 else "")
-        if OTHER.search(name):
+        if OTHER.search(name) or _increases(values[at]):
             raise Flaw(f'column {at + 1}, "{name}", is no motion; name the columns by --columns, this one -')
         if timed:
             time = _times(source, table, heads[timed[0]], timed[0])
@@ -205,7 +208,9 @@ def _unit_of_title(table: Table) -> str:
         for match in UNIT.finditer(text):
             spelled = match[match.lastindex or 0].strip(" .")
             before = text[: match.start()].lower().split()
-            if quantity_of(spelled) and not (before and before[-1].strip("([") in ("peak", "max", "max.", "maximum")):
+            if quantity_of(spelled) in MOTIONS and not (
+                before and before[-1].strip("([") in ("peak", "max", "max.", "maximum")
+            ):
                 found[unit_named(spelled)] = spelled
     sizes = {unit[1:] for unit in found if unit is not None}
     return next(iter(found.values())) if len(sizes) == 1 else ""
@@ -246,16 +251,10 @@ def _skip(number: int) -> str:
     return f"--skip {number} leaves that line and those above out"
 
 
-def _increases(table: Table) -> bool:
-    """Whether the first numbers of the lines increase evenly, as times do."""
-    first = np.array([row[0] for row in table.rows])
-    steps = np.diff(first)
-    return (
-        len(first) > 2
-        and bool((steps >= 0.0).all())
-        and bool(np.ptp(steps) <= 0.5 * steps.mean())
-        and first[-1] > first[0]
-    )
+def _increases(values: np.ndarray) -> bool:
+    """Whether numbers (n,) increase evenly, as times and numbers of samples do."""
+    steps = np.diff(values)
+    return len(values) > 2 and bool((steps >= 0.0).all() and steps.mean() > 0.0 and np.ptp(steps) <= 0.5 * steps.mean())
 
 
 def _times(source: Source, table: Table, head: Head, at: int) -> np.ndarray:
@@ -293,6 +292,8 @@ def _require_step(step: Stated, between: float, at: int) -> None:
 def _require_order(table: Table, *, series: bool) -> None:
     """Raise Flaw if the numbers are much smoother in the other order than that in which they are read."""
     values = np.array(table.rows[: table.ragged])
+    if len(values) < 2:
+        return
     along, down = np.abs(np.diff(values.ravel())).mean(), np.abs(np.diff(values, axis=0)).mean()
     if (down < SMOOTHER * along) if series else (along < SMOOTHER * down):
         seem = "columns" if series else "one series"

@@ -16,8 +16,8 @@ import numpy as np
 
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import COUNT, DECIMAL, END, Flaw, Source, rows_of
-from dembound.waves.unit_names import Named
+from dembound.records.formats.source import COUNT, DECIMAL, END, Flaw, Source, number_of, rows_of
+from dembound.waves.unit_names import Named, unit_named
 
 BLOCK = re.compile(
     rf"\s*{COUNT}\s+(?:points of\s+)?(acc|vel|dis).*?\bat\s+({DECIMAL})\s*(pts/)?sec"
@@ -27,7 +27,9 @@ BLOCK = re.compile(
 """The line before even samples, as "31932 Accelerogram points at 100 pts/sec in units of g.  Format: (8f9.6)"."""
 
 PAIRS, EVEN = "(10f7.3)", "(10e13.6)"
-"""Layouts of pairs of time and acceleration, which USC shifts by a blank, and of BHRC's accelerations."""
+RATE_LINE = 21
+"""Layouts of pairs of time and acceleration, which USC shifts by a blank, and of BHRC's accelerations; the line in the
+header whose first number is BHRC's sampling rate."""
 
 FIRST = {
     "uncorrected accelerogram data": "CSMIP V1",
@@ -40,6 +42,9 @@ FIRST = {
 
 TITLE = {"CSMIP V1": (5, 1), "CSMIP V2": (6, 2), "USC V1": (5, 1), "USC V2": (6, 2), "BHRC V1": (7, 2)}
 """Index of the lines of a header that name the station, and the event or its time."""
+
+TENTHS = re.compile(r"units (?:of uncor\w*\s.*?|are sec\w* )and (g)(/10)?", re.IGNORECASE)
+"""The unit of uncorrected accelerations in the text of a header, g or a tenth of it."""
 
 HEADER = {"V1": 27, "V2": 45}
 LAYOUT = {"V1": "(8f9.6)", "V2": "(8f10.3)"}
@@ -99,8 +104,13 @@ def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], in
         values = source.fixed(at + 1, count, layout)
         rate = float(block[3])
         step = rate if not block[4] else 1.0 / rate if rate else 0.0
-        peak = _peak(source, at) if volume == "CSMIP V1" else _peak_of(block[2], source, begin)
-        found.append(source.channel(component, source.measured(block[5]), values, step, peak=peak))
+        unit = source.measured(block[5], block[2])
+        in_text = TENTHS.search("\n".join(source.lines[begin:at])) if volume == "CSMIP V1" else None
+        if in_text is not None and source.measured(in_text[1])[1:] != unit[1:]:
+            raise Flaw(f"line {at + 1} states {unit.spelled.strip()}, the header another unit; give it by --unit")
+        peak = _peak(source, at) if volume == "CSMIP V1" else _peak_of(block[2], source, begin, unit)
+        length = _length(source, begin, at)
+        found.append(source.channel(component, unit, values, step, peak=peak, length=length))
         at += 1 + rows_of(count, layout)
     if not found:
         raise Flaw(f"line {at + 1} does not state number, time step and unit of samples")
@@ -112,16 +122,17 @@ def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], in
 def _in_tenths(source: Source, begin: int, at: int) -> tuple[int, Named, float]:
     """The number of points of uncorrected data, their unit, and its part in which they are: g, or a tenth of it."""
     count = int(source.found(rf"no\. of points\s*=\s*{COUNT}\b", begin, at, "the number of points")[1])
-    unit = source.found(r"units (?:of uncor\w*\s.*?|are sec\w* )and (g)(/10)?", begin, at, "the unit")
-    return count, source.measured(unit[1]), 0.1 if unit[2] and source.given.unit is None else 1.0
+    unit = TENTHS.search("\n".join(source.lines[begin:at]))
+    is_tenth = unit is not None and unit[2] is not None and source.given.unit is None
+    return count, source.measured(unit[1] if unit else ""), 0.1 if is_tenth else 1.0
 
 
 def _evenly(source: Source, component: str, begin: int, at: int) -> tuple[Channel, int]:
     """BHRC's channel of even accelerations that begins at a line, and the index of the line behind them."""
     count, unit, part = _in_tenths(source, begin, at)
-    duration = float(source.found(rf"duration\s*=\s*({DECIMAL})", begin, at, "the duration")[1])
-    channel = source.channel(component, unit, part * source.fixed(at, count, EVEN), duration / max(count, 1))
-    return channel, at + rows_of(count, EVEN)
+    rate = number_of(source.line(begin + RATE_LINE)[:13])
+    values, step = part * source.fixed(at, count, EVEN), 1.0 / rate if rate else None
+    return source.channel(component, unit, values, step, length=_length(source, begin, at)), at + rows_of(count, EVEN)
 
 
 def _from_film(source: Source, component: str, begin: int, at: int) -> tuple[Channel, int]:
@@ -134,7 +145,16 @@ def _from_film(source: Source, component: str, begin: int, at: int) -> tuple[Cha
     step, values = source.from_film(pairs[::2], part * pairs[1::2])
     found = float(np.abs(part * pairs[1::2]).max())
     peak = _peak(source, at) if _volume(source.lines, begin) == "CSMIP V1" else ""
-    return source.channel(component, unit, values, step, float(pairs[0]), peak, found), at + rows
+    length = _length(source, begin, at)
+    return source.channel(component, unit, values, step, float(pairs[0]), peak, found, length), at + rows
+
+
+def _length(source: Source, begin: int, at: int) -> str:
+    """The length of the record (s) in the header of a channel; empty without one."""
+    found = re.search(
+        rf"(?:record length|duration)\s*=\s*({DECIMAL})", "\n".join(source.lines[begin:at]), re.IGNORECASE
+    )
+    return found[1] if found else ""
 
 
 def _peak(source: Source, at: int) -> str:
@@ -143,6 +163,10 @@ def _peak(source: Source, at: int) -> str:
     return "" if peak.strip().startswith("-999.") else peak
 
 
-def _peak_of(quantity: str, source: Source, begin: int) -> str:
-    """The peak of a quantity, by its first letters, in the header of V2 that begins at this index."""
-    return source.found(rf"^peak\s+{quantity}\w*\s*=\s*({DECIMAL})", begin, begin + 25, f"the peak of {quantity}")[1]
+def _peak_of(quantity: str, source: Source, begin: int, unit: Named) -> str:
+    """The peak of a quantity, by its first letters, in the header of V2 that begins at this index, in a unit."""
+    pattern = rf"^peak\s+{quantity}\w*\s*=\s*({DECIMAL})\s+(\S+)"
+    found = source.found(pattern, begin, begin + HEADER["V2"] - 20, f"the peak of {quantity}")
+    spelled = unit_named(re.sub("cms", "cm", found[2], flags=re.IGNORECASE))
+    same = spelled is None or spelled.size == unit.size
+    return found[1] if same or spelled is None else f"{float(found[1]) * spelled.size / unit.size:.6g}"
