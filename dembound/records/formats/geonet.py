@@ -56,9 +56,7 @@ def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
     points = source.found(rf"^number of points\s+{COUNT}\b", begin, begin + TEXTS, "the number of points")[1]
     step = source.found(rf"\bat (?:intervals of )?({DECIMAL}) s", begin, begin + TEXTS, "the interval")[1]
     if int(points) != integers[COUNTS][0] or abs(float(step) - reals[STEP]) > SAME * reals[STEP]:
-        raise Flaw(
-            f"line {begin + 1} begins a text that states {points} points every {step} s, the numbers below others"
-        )
+        raise Flaw(f"line {begin + 1} begins a text of {points} points every {step} s, the numbers below state others")
     at, found = begin + HEADER, []
     for (quantity, unit), count in zip(UNITS.items(), integers[COUNTS].astype(int), strict=True):
         if not 0 <= count < 1e9:

@@ -14,6 +14,9 @@ MARKS = "#%!"
 """Signs that begin a comment."""
 
 TOUCHING = re.compile(r"(?<=[.\d])(?=[+-]\d*\.)")
+VALUE = re.compile(r"[=:]\s*[-+.\d]")
+"""A field of the header that states a value and heads no column."""
+
 RULER = re.compile(r"[-=+*_|\s]+")
 EITHER = "give --columns NAME,NAME,… for columns or --series for one series"
 
@@ -197,6 +200,8 @@ def _heads(header: Sequence[str], separator: str, width: int) -> list[Head]:
         fields = _fields(text, separator)
         if separator == " " and width > 1:
             fields = joined(fields, width)
+        if any(VALUE.search(field) for field in fields):
+            continue
         heads = [head_of(field) for field in fields]
         if len(fields) != width:
             if separator != " " and len(fields) > 1 < width and 2 * sum(head.is_known for head in heads) > len(fields):

@@ -141,8 +141,8 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     """The channels of columns."""
     values, heads = np.array(table.rows).T, heads or [Head()] * table.width
     timed = [at for at, head in enumerate(heads) if head.is_time]
-    is_named = any(head.name or head.unit for head in heads)
-    if not timed and not source.given.columns and (step is None or not is_named) and _increases(values[0]):
+    may_be_time = not (heads[0].is_known or source.given.columns)
+    if not timed and may_be_time and (step is None or not heads[0].name) and _increases(values[0]):
         timed = [0]
     if any((values[at] != values[timed[0]]).any() for at in timed[1:]):
         raise Flaw(

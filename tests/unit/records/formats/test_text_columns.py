@@ -1,0 +1,133 @@
+"""Texts of numbers with home-made headers: read as they state, or refused with the option that helps."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError
+from dembound.records.channel import Record
+from dembound.records.formats import Reading, read_record
+
+STEP = 0.01
+VALUES = np.round(0.2 * np.sin(0.3 * np.arange(60)) * np.hanning(60), 6)
+"""Accelerations, g."""
+
+G = 9.80665
+
+
+def in_lines(per: int, values: np.ndarray = VALUES, shape: str = "{:.6f}", separator: str = "  ") -> str:
+    """Values, so many to a line."""
+    texts = [shape.format(value) for value in values]
+    return "\n".join(separator.join(texts[at : at + per]) for at in range(0, len(texts), per)) + "\n"
+
+
+def timed(head: str, columns: int = 1, separator: str = ",", step: float = STEP) -> str:
+    """A head, and times with columns of the values, each of half the size of the one before."""
+    rows = ([f"{step * at:.2f}", *(f"{value / 2**k:.6f}" for k in range(columns))] for at, value in enumerate(VALUES))
+    return head + "\n" + "\n".join(map(separator.join, rows)) + "\n"
+
+
+AT2 = "PEER STRONG MOTION\nPlace, 090\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 60, DT= .0100 SEC\n"
+SERIES = "Acceleration (g), dt = 0.01 s"
+
+
+def read(folder: Path, text: str, given: Reading = Reading()) -> Record:  # noqa: B008
+    """The record of a text."""
+    path = folder / "record.txt"
+    path.write_bytes(text.encode())
+    return read_record(path, given)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{SERIES}, 60 points\n{in_lines(4)}",
+        f"# Somewhere, dt = 0.01 s\n# acceleration [g]\n{in_lines(5)}",
+        f"{SERIES}\n{in_lines(8)}",  # the last line is shorter
+        f"dt = 0,01 s; acceleration (g)\n{in_lines(1)}",
+        f"dt = 0,01 s; acceleration (g)\n{in_lines(1).replace('.', ',')}",
+        "dt = 10 ms; acceleration in g\n" + in_lines(1, shape="{:.6E}").replace("E", "D"),
+        "tiny, sampling: 100 Hz, acceleration: g\n" + in_lines(1, 1e-101 * VALUES, "{:.9E}").replace("E-10", "-10"),
+        timed("Acceleration in g", separator="  "),
+        timed("Time/s,Acceleration/g"),
+        timed("# Vs30 [m/s]: 450\n# Depth(km): 10\n# time s, acceleration in g"),
+        timed("Zeit (s);Beschl. (g)", separator=";").replace(".", ","),
+        timed("t ns\nsec g", separator=" "),  # "ns" is a component above a line of units, not nanoseconds
+        AT2 + in_lines(5, shape="{:.7E}") + "*** End\n\0\0",
+        (AT2 + in_lines(5)).replace("\n", "\r\r\n"),
+        AT2.replace(".0100 SEC", "10.0 MSEC") + in_lines(5),
+        "Data\n60 points at equal spacing of 0.01 sec\nThe units are (g)\nNPTS= 60, DT= .01 SEC\n" + in_lines(5),
+    ],
+)
+def test_what_states_all_is_read(tmp_path, text):
+    (channel,) = read(tmp_path, text).channels
+    size = 1e-101 if "tiny" in text else 1.0
+    np.testing.assert_allclose(channel.values, G * size * VALUES, atol=1e-6 * size)
+    assert (channel.quantity, channel.time_step) == ("acceleration", pytest.approx(STEP))
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "given"),
+    [
+        (timed("# Vs30 [m/s]: 450\n# time s, acceleration"), "no unit of the values; give it by --unit", Reading("g")),
+        (timed("time (s),velocity (g)"), "has velocities in g, which measures accelerations", Reading("g")),
+        (timed("Time [s],Arias intensity [m/s]"), "is no motion; name the columns by --columns", None),
+        (timed("freq (Hz),a (g)"), 'has a column "freq (Hz)", must have times', None),
+        (f"{SERIES}\n{in_lines(3)}", "--columns NAME,NAME,… for columns or --series", Reading(series=True)),
+        (f"{SERIES}\n{timed('', 3).strip()}", "states no unit", None),
+        (in_lines(1), "states no time step", Reading("g", STEP)),
+        (in_lines(5), "nor a time step: give --dt, and --columns", Reading("g", STEP, series=True)),
+        (f"g, dt = 5\n{in_lines(1)}", "line 1 states a time step of 5 without a unit", None),
+        (timed("time,a (g)", step=5.0), "times 5 apart without a unit", None),
+        (f"{SERIES}, 61 points\n{in_lines(4)}", "has 4 numbers in a line without names", Reading(series=True, skip=1)),
+        (f"{SERIES}, npts = 61\n{in_lines(1)}", "line 1 states 61 samples, there are 60; --skip 1", None),
+        (f"{SERIES}, PGA = 0.5 g\n{in_lines(1)}", "a peak of 4.903 m/s², the samples have", Reading("g")),
+        (f"{SERIES}, fs = 200 Hz\n{in_lines(1)}", "line 1 states 0.01 s, line 1 states 0.005 s", None),
+        (timed("dt = 0.02 s\ntime (s),a (g)"), "line 1 states 0.02 s, times in column 1 are 0.01 s apart", None),
+        (f"{SERIES}\n60\n{in_lines(1)}", "line 2 may state the number of samples: --skip 2", None),
+        (f"{SERIES}\n7.4\n{in_lines(1)}", "line 2 has other digits than all lines below: --skip 2", None),
+        (timed("No,time (s),NS (g),EW (g)", 2), "names 4 columns, lines have 3 numbers", None),
+        (timed("NS (g),EW (g),UD (g)", 2).replace("0.1", "x", 1), "is no line of numbers like those", None),
+        (timed("one (g),two (g)"), "has no column called time and", Reading("g", columns=("time", "NS"))),
+        (timed("time (s),a (g)", step=-0.01), "times that increase: -0.07 s is behind -0.06 s in line 9; if", None),
+        (f"{SERIES}\n" + in_lines(1).replace(".", ",") + "0,1,2\n", "whole numbers between commas", None),
+        (in_lines(2, separator=",") + "words\n", "there must be none behind them", None),
+    ],
+)  # fmt: skip
+def test_what_may_be_read_in_two_ways_is_refused_with_what_helps(tmp_path, text, said, given):
+    with pytest.raises(CaseError) as refused:
+        read(tmp_path, text)
+    (line,) = refused.value.problems
+    assert said in line
+    if given is not None and given.skip == 0:
+        (channel,) = read(tmp_path, text, given).channels
+        np.testing.assert_allclose(channel.values, G * VALUES, atol=1e-5)
+
+
+def test_columns_are_named_left_out_and_counted(tmp_path):
+    text = timed("dt = 0.01 s", 3, separator="\t").replace("dt = 0.01 s", "measured")
+    record = read(tmp_path, text, Reading("g", columns=("time", "NS", "-", "UD")))
+    assert [(each.component, np.abs(each.values).max()) for each in record.channels] == [
+        ("NS", pytest.approx(G * np.abs(VALUES).max())), ("UD", pytest.approx(G * np.abs(VALUES).max() / 4, rel=1e-4)),
+    ]  # fmt: skip
+    with pytest.raises(CaseError, match="--columns: names 2 columns"):
+        read(tmp_path, text, Reading("g", columns=("time", "NS")))
+    with pytest.raises(CaseError, match="--series: is not allowed together with --columns"):
+        read(tmp_path, text, Reading(columns=("time", "NS"), series=True))
+
+
+def test_a_units_row_and_names_of_components(tmp_path):
+    """A column T is a transverse component and not a time, and a line of units below the names does not name them."""
+    record = read(tmp_path, timed("Time L V T\nsec gal gal gal", 3, " "))
+    assert [(each.component, each.unit) for each in record.channels] == [("L", "gal"), ("V", "gal"), ("T", "gal")]
+
+
+def test_columns_that_look_like_one_series_are_refused(tmp_path):
+    """Three columns of a long wave have small steps down the lines; its values in lines of three have them along."""
+    wave = np.sin(0.05 * np.arange(300))
+    three = np.column_stack([wave[:100], wave[100:200], wave[200:]]).ravel()
+    heads = "dt = 0.01 s\nNS EW UD\ng g g\n"
+    assert len(read(tmp_path, heads + in_lines(3, three)).channels) == 3
+    with pytest.raises(CaseError, match="seem to be one series"):
+        read(tmp_path, heads + in_lines(3, wave))
