@@ -99,7 +99,7 @@ class TextColumns(Format):
             numbers = np.array([value for row in table.rows for value in row])
             if table.width > 1:
                 source.chosen.append(f"{len(numbers)} numbers in lines of {table.width}, read as one series")
-            channels = [_single(source, table, Head(), numbers, step)]
+            channels = [_single(source, table, numbers, step)]
         else:
             channels = _columns(source, table, heads, step)
         for samples in {len(channel.values) for channel in channels}:
@@ -145,24 +145,24 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     if not timed and may_be_time and (step is None or not heads[0].name) and _increases(values[0]):
         timed = [0]
     if any((values[at] != values[timed[0]]).any() for at in timed[1:]):
-        raise Flaw(
-            f"has several columns of times: {_names_of(heads, timed)}; name those to read by --columns, others -"
-        )
+        raise Flaw(f"columns {', '.join(str(at + 1) for at in timed)} have times; name one by --columns, others -")
     spectra = next((head.name for head in heads if re.match(r"freq|period", head.name, re.IGNORECASE)), None)
     if spectra is not None and not source.given.columns:
         raise Flaw(f'has a column "{spectra}", must have times; name the columns by --columns')
     chosen = [at for at in range(len(heads)) if at not in timed and heads[at].name != "-"]
-    if not timed:
+    if timed:
+        time = _times(source, table, heads[timed[0]], timed[0])
+    else:
         if step is None:
             raise Flaw("has no column called time and states no time step; give --dt, or name the columns by --columns")
-        _require_order(table, series=False)
+        if not source.given.columns:
+            _require_order(table, series=False)
     channels = []
     for at in chosen:
         name = heads[at].name or (f"column {at + 1}" if len(chosen) > 1 else "")
         if OTHER.search(name) or _increases(values[at]):
             raise Flaw(f'column {at + 1}, "{name}", is no motion; name the columns by --columns, this one -')
         if timed:
-            time = _times(source, table, heads[timed[0]], timed[0])
             even, numbers = source.evenly(time, values[at])
             between = float(f"{(even[-1] - even[0]) / (len(even) - 1):.12g}")
             _require_step(step, between, timed[0])
@@ -176,7 +176,7 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     return channels
 
 
-def _single(source: Source, table: Table, head: Head, numbers: np.ndarray, step: Stated) -> Channel:
+def _single(source: Source, table: Table, numbers: np.ndarray, step: Stated) -> Channel:
     """The channel of a series."""
     if step is None:
         raise Flaw(
@@ -207,10 +207,8 @@ def _unit_of_title(table: Table) -> str:
     for _, text in table.header:
         for match in UNIT.finditer(text):
             spelled = match[match.lastindex or 0].strip(" .")
-            before = text[: match.start()].lower().split()
-            if quantity_of(spelled) in MOTIONS and not (
-                before and before[-1].strip("([") in ("peak", "max", "max.", "maximum")
-            ):
+            is_peak = re.search(r"\b(peak|max(imum|\.)?) *$", text[: match.start()], re.IGNORECASE)
+            if quantity_of(spelled) in MOTIONS and not is_peak:
                 found[unit_named(spelled)] = spelled
     sizes = {unit[1:] for unit in found if unit is not None}
     return next(iter(found.values())) if len(sizes) == 1 else ""
@@ -298,8 +296,3 @@ def _require_order(table: Table, *, series: bool) -> None:
     if (down < SMOOTHER * along) if series else (along < SMOOTHER * down):
         seem = "columns" if series else "one series"
         raise Flaw(f"has {table.width} numbers in a line that seem to be {seem}: {EITHER}")
-
-
-def _names_of(heads: Sequence[Head], places: Sequence[int]) -> str:
-    """Names of columns, in words."""
-    return ", ".join(heads[at].name or str(at + 1) for at in places)
