@@ -1,10 +1,15 @@
-"""RAM, disks and cores of this machine, and a setting by which freed arrays return their RAM."""
+"""RAM, disks, cores and cache folders of this machine, and a setting by which freed arrays return their RAM."""
 
+import atexit
 import ctypes
 import os
 import shutil
+import stat
 import sys
+import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
@@ -67,6 +72,47 @@ def disk_free(path: Path) -> float | None:
         except OSError:
             continue
     return None
+
+
+def is_writable(folder: Path) -> bool:
+    """Whether files can be made in a folder, which is made if need be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return True
+
+
+def user_cache() -> Path | None:
+    """The user's folder for what can be computed again; None if it cannot be written, as without a home."""
+    import platformdirs
+
+    with suppress(RuntimeError):  # of a user without a home
+        folder = Path(platformdirs.user_cache_dir("dembound"))
+        return folder if is_writable(folder) else None
+    return None
+
+
+@cache
+def private_folder() -> Path:
+    """A folder among the temporary files that no other user can write: compiled code of others would run as one's own.
+
+    It is the same one in each process of a user. Where another user has made or may write that one, it is a new one,
+    deleted at the end of the process. Raises OSError if there is no place for temporary files.
+    """
+    user = os.getuid() if hasattr(os, "getuid") else None  # Windows has a place for each user
+    folder = Path(tempfile.gettempdir()) / ("dembound" if user is None else f"dembound-{user}")
+    with suppress(OSError):
+        folder.mkdir(mode=0o700)
+    with suppress(OSError):
+        found = folder.lstat()  # a link of another user must not be followed
+        is_own = user is None or (found.st_uid == user and not found.st_mode & 0o077)
+        if is_own and stat.S_ISDIR(found.st_mode) and is_writable(folder):
+            return folder
+    fresh = Path(tempfile.mkdtemp(prefix="dembound-"))
+    atexit.register(shutil.rmtree, fresh, ignore_errors=True)
+    return fresh
 
 
 def _of_linux(path: Path) -> Iterator[Memory]:

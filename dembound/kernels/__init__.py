@@ -1,6 +1,7 @@
 """Compiled loops: arrays and floats in, arrays and floats out. None of them raises, prints or reads files."""
 
 import hashlib
+import logging
 import os
 import shutil
 import time
@@ -8,6 +9,10 @@ from contextlib import suppress
 from pathlib import Path
 
 import numba
+
+from dembound.machine import is_writable, private_folder, user_cache
+
+LOGGER = logging.getLogger(__name__)
 
 # Threads wait for each other at every step. Where other programs use the cores too, busy waiting makes a run many times
 # slower; the variable is read when the first parallel loop starts.
@@ -34,10 +39,28 @@ def prune(folder: Path, keep: str, age: float = 7 * 86400.0) -> None:
                 shutil.rmtree(old, ignore_errors=True)
 
 
+def kept_in(chosen: str, package: Path) -> Path:
+    """The first folder that can be written, for compiled code: the chosen one, if any, else the package's; the user's.
+
+    Without any it is a private temporary one, which is logged, and left to processes that this one begins.
+    Raises OSError if that cannot be made either.
+    """
+    first = Path(chosen or package)
+    if is_writable(first):
+        return first
+    if (own := user_cache()) is not None:
+        return own / "compiled"
+    folder = private_folder()
+    LOGGER.info("compiled code is kept in %s, as %s cannot be written; NUMBA_CACHE_DIR sets a folder", folder, first)
+    os.environ["NUMBA_CACHE_DIR"] = str(folder)
+    numba.config.reload_config()  # type: ignore[attr-defined]  # else it is read again, and set, when code is compiled
+    return folder
+
+
 # Numba keeps compiled code until the file of the function itself changes. Kernels also contain functions from other
 # files, so the code compiled from each state of all files has a separate folder.
 _HERE = Path(__file__).parent
-_KEPT = Path(numba.config.CACHE_DIR or _HERE / "__pycache__")  # type: ignore[attr-defined]  # from the environment
+_KEPT = kept_in(numba.config.CACHE_DIR, _HERE / "__pycache__")  # type: ignore[attr-defined]  # from the environment
 _DIGEST = sources_digest(_HERE)
 prune(_KEPT, _DIGEST)
 numba.config.CACHE_DIR = str(_KEPT / _DIGEST)  # type: ignore[attr-defined]

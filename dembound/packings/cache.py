@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import platformdirs
 from filelock import FileLock, Timeout
 
 from dembound.interrupts import look
+from dembound.machine import private_folder, user_cache
 from dembound.packings.brick import Brick
 
 LOGGER = logging.getLogger(__name__)
@@ -34,9 +34,12 @@ DIGEST = hashlib.sha256
 
 
 def cache_folder() -> Path:
-    """Folder of the bricks: the environment variable DEMBOUND_CACHE, else the user's cache folder."""
+    """Folder of the bricks: the environment variable DEMBOUND_CACHE, else the user's cache folder.
+
+    It is a private temporary one where that cannot be written.
+    """
     chosen = os.environ.get("DEMBOUND_CACHE")
-    return Path(chosen) if chosen else Path(platformdirs.user_cache_dir("dembound")) / "bricks"
+    return Path(chosen) if chosen else (user_cache() or private_folder()) / "bricks"
 
 
 def load_or_pack(key_params: Mapping[str, Any], pack: Callable[[], Brick]) -> Brick:

@@ -3,11 +3,12 @@
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
 
-from dembound.machine import Memory, cores_here, memory_here
+from dembound.machine import Memory, cores_here, memory_here, private_folder, user_cache
 
 GIB = 2.0**30
 
@@ -89,3 +90,31 @@ def test_cores_are_those_of_this_process(monkeypatch) -> None:
     monkeypatch.delattr(os, "sched_getaffinity")
     monkeypatch.setattr(os, "cpu_count", lambda: 7)
     assert cores_here() == 7
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="Windows has temporary files for each user")
+def test_a_temporary_folder_is_never_one_that_another_user_may_write(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    make = private_folder.__wrapped__
+    own = tmp_path / f"dembound-{os.getuid()}"
+    assert [make(), make()] == [own, own]
+    assert own.stat().st_mode & 0o777 == 0o700
+    own.chmod(0o770)
+    assert make() != own
+    own.rename(tmp_path / "moved")
+    (tmp_path / "moved").chmod(0o700)
+    own.symlink_to(tmp_path / "moved")
+    fresh = make()
+    assert (fresh.parent, fresh.stat().st_mode & 0o777) == (tmp_path, 0o700)
+    assert fresh != own
+    monkeypatch.setattr(os, "getuid", lambda user=os.getuid(): user + 1)  # a folder of another user
+    (tmp_path / f"dembound-{os.getuid()}").mkdir(0o700)
+    assert make().name not in {own.name, f"dembound-{os.getuid()}"}
+
+
+def test_a_home_that_cannot_be_written_has_no_cache(tmp_path, monkeypatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert sys.platform != "linux" or user_cache() == tmp_path / "dembound"
+    (tmp_path / "file").touch()
+    monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: str(tmp_path / "file" / name))
+    assert user_cache() is None

@@ -1,5 +1,6 @@
 """Storage of compiled code: never of other sources than the present ones."""
 
+import logging
 import os
 import shutil
 import time
@@ -36,3 +37,22 @@ def test_code_that_has_not_been_used_is_removed(tmp_path) -> None:
     assert time.time() - (tmp_path / names["now"]).stat().st_mtime < 50.0
 
     kernels.prune(tmp_path / "absent", names["now"])
+
+
+def test_compiled_code_has_a_folder_where_neither_package_nor_home_can_be_written(
+    tmp_path, monkeypatch, caplog
+) -> None:
+    (tmp_path / "file").touch()
+    package, private = tmp_path / "file" / "__pycache__", tmp_path / "private"
+    monkeypatch.setattr(kernels, "private_folder", lambda: private)
+    monkeypatch.setattr(kernels, "user_cache", lambda: tmp_path / "home")
+    monkeypatch.setattr(os, "environ", dict(os.environ))
+    monkeypatch.setattr(kernels.numba.config, "reload_config", lambda: None)
+    caplog.set_level(logging.INFO)
+    assert kernels.kept_in("", tmp_path / "package") == tmp_path / "package"
+    assert kernels.kept_in("", package) == tmp_path / "home" / "compiled"
+    assert caplog.messages == []
+    monkeypatch.setattr(kernels, "user_cache", lambda: None)
+    assert kernels.kept_in("", package) == private
+    assert str(private) in caplog.text
+    assert os.environ["NUMBA_CACHE_DIR"] == str(private)
