@@ -107,7 +107,7 @@ def test_a_temporary_folder_is_never_one_that_another_user_may_write(tmp_path, m
     fresh = make()
     assert (fresh.parent, fresh.stat().st_mode & 0o777) == (tmp_path, 0o700)
     assert fresh != own
-    monkeypatch.setattr(os, "getuid", lambda user=os.getuid(): user + 1)  # a folder of another user
+    monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid + 1)  # a folder of another user
     (tmp_path / f"dembound-{os.getuid()}").mkdir(0o700)
     assert make().name not in {own.name, f"dembound-{os.getuid()}"}
 
