@@ -15,7 +15,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from types import FrameType, TracebackType
+from importlib.machinery import ExtensionFileLoader, ModuleSpec
+from types import FrameType, ModuleType, TracebackType
 from typing import Any, Self
 
 ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
@@ -136,6 +137,24 @@ class _Imports:
 def look_at_imports() -> None:
     """Also check for requests to end between imports from now on."""
     sys.meta_path.insert(0, _Imports())  # type: ignore[arg-type]  # as find_spec is all that importing needs
+
+
+def end_while_loading() -> None:
+    """From now on, have signals end this process at once while it loads a compiled library.
+
+    No handler is called within one, and without memory it may never return.
+    """
+    load = ExtensionFileLoader.create_module
+
+    def create_module(loader: ExtensionFileLoader, spec: ModuleSpec) -> ModuleType:
+        before = {number: signal.signal(number, signal.SIG_DFL) for number in obeyed()}
+        try:
+            return load(loader, spec)
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    ExtensionFileLoader.create_module = create_module  # type: ignore[assignment, method-assign]
 
 
 @contextmanager

@@ -1,7 +1,8 @@
-"""RAM, disks, cores and cache folders of this machine, and a setting by which freed arrays return their RAM."""
+"""RAM, addresses, disks, cores and cache folders of this machine, and a setting by which freed arrays return RAM."""
 
 import atexit
 import ctypes
+import errno
 import os
 import shutil
 import stat
@@ -18,6 +19,15 @@ OWN_PAGES = 1 << 20
 
 By default glibc raises this limit up to 32 MB as arrays are removed, and keeps their pages: a run of a million disks
 then takes a quarter more RAM, depending on the order in which arrays come and go."""
+
+LEAST_ADDRESSES = 600e6
+"""Bytes of address space that the libraries take: with less they end in many ways, or never."""
+
+RESERVED = 350e6
+"""Bytes of addresses that a run reserves beside the RAM it uses."""
+
+FEW_ADDRESSES = 4e9
+"""Bytes of address space up to which matrices are solved with one thread, as each takes 40 MB or more."""
 
 _MMAP_THRESHOLD = -3
 """M_MMAP_THRESHOLD of glibc's malloc.h."""
@@ -47,13 +57,33 @@ def one_thread_for_matrices() -> None:
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 
 
+def address_limit() -> float | None:
+    """The limit of the address space of this process, bytes, as of ``ulimit -v``; None without one."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return None if limit == resource.RLIM_INFINITY else float(limit)
+
+
+def memory_ran_out(error: BaseException) -> bool:
+    """Whether an error is one of memory: where addresses are limited, also of a library that cannot be loaded."""
+    if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+        return True
+    of_library = isinstance(error, SystemError | ImportError) or (isinstance(error, OSError) and error.errno is None)
+    return of_library and not isinstance(error, ModuleNotFoundError) and address_limit() is not None
+
+
 def memory_here(root: Path = Path("/")) -> Memory | None:
     """The RAM this process may use; None where the system does not report it. root : of the file system.
 
     On Linux the smallest of that of the machine and those of its control groups, by which containers are limited; pages
-    of files that the system would drop count as free. Elsewhere all RAM of the machine counts as free.
+    of files that the system would drop count as free. Elsewhere all RAM of the machine counts as free. A limit of the
+    address space counts as RAM, less what is only reserved.
     """
     known = [*_of_linux(root / "proc/meminfo"), *_of_groups(root)] or list(_of_machine())
+    known += [] if (limit := address_limit()) is None else [Memory(limit, max(limit - RESERVED, 0.0))]
     return Memory(min(m.total for m in known), min(m.free for m in known)) if known else None
 
 

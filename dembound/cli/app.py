@@ -19,9 +19,9 @@ import typer
 from typer.core import TyperGroup
 
 from dembound.cli.console import err, flush, out, prepare_streams
-from dembound.errors import CaseError, DemboundError, UnusableTypeWarning
+from dembound.errors import CaseError, DemboundError, RunError, UnusableTypeWarning
 from dembound.interrupts import exit_code_of
-from dembound.machine import give_back_at_once
+from dembound.machine import address_limit, give_back_at_once, memory_ran_out
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -284,9 +284,22 @@ def main() -> None:
         source = f"{error.source}: " if error.source else ""
         _print_failure(error, [f"{source}{line}" for line in str(error).splitlines()])
         sys.exit(error.exit_code)
-    except OSError as error:  # a missing folder, no permission, a full disk
+    except (OSError, MemoryError, ImportError, SystemError) as error:
+        if memory_ran_out(error):
+            _print_failure(error, [_of_memory(error)])
+            sys.exit(RunError.exit_code)
+        if not isinstance(error, OSError):
+            raise
+        # no permission, a full disk
         _print_failure(error, [f"{error.filename or 'output'}: {error.strerror or error}"])
         sys.exit(CANNOT_WRITE)
+
+
+def _of_memory(error: Exception) -> str:
+    """One line on an error of missing memory."""
+    limit, what = address_limit(), " ".join(str(error).split()) or type(error).__name__
+    within = "" if limit is None else f" within the {limit / 1e6:.0f} MB of addresses allowed (ulimit -v)"
+    return f"dembound: memory ran out{within}: {what}"
 
 
 def _print_failure(error: Exception, lines: Sequence[str]) -> None:

@@ -222,7 +222,7 @@ def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:
     except KeyboardInterrupt as stop:
         err.print(f"{folder.name}: stopped; {'; '.join(left()) or 'the run had not begun'}")
         raise typer.Exit(exit_code_of(stop)) from None
-    except OSError as error:
+    except (OSError, MemoryError) as error:
         for line in left():
             error.add_note(f"{folder.name}: {line}")
         raise

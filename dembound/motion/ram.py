@@ -76,7 +76,9 @@ def has_in_words(here: Memory) -> str:
 
 
 def in_words(size: float) -> str:
-    """Bytes as text, in MB, GB or TB with three digits."""
+    """Bytes as text, in kB, MB, GB or TB, with three digits."""
+    if size < 999.5e3:
+        return f"{size / 1e3:.0f} kB"
     if size < 999.5e6:
         return f"{size / 1e6:.0f} MB"
     return f"{size / 1e9:.3g} GB" if size < 999.5e9 else f"{size / 1e12:.3g} TB"

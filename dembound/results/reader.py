@@ -11,6 +11,7 @@ import numpy as np
 
 from dembound.errors import CaseError, DemboundError, NumberMissingError, RecordError
 from dembound.interrupts import look
+from dembound.machine import address_limit
 from dembound.results.committed import CommittedFile, log_of
 from dembound.results.damage import damage_in_words, is_of_checksum, require_finite, require_places, require_readable
 from dembound.results.datasets import datasets_of
@@ -83,6 +84,8 @@ def reading(path: Path) -> Iterator[h5py.File]:
         raise
     except Exception as error:  # h5py and numpy raise nearly anything for damaged contents
         if isinstance(error, OSError) and error.filename not in (None, str(path)):
+            raise
+        if isinstance(error, MemoryError) and address_limit() is not None:
             raise
         raise RecordError([f"{path}: {damage_in_words(error, path.stat().st_size)}"]) from error
 

@@ -4,10 +4,11 @@ import os
 import signal
 import threading
 import time
+from importlib.machinery import ExtensionFileLoader
 
 import pytest
 
-from dembound.interrupts import TOGETHER, Interrupts, Stopped, caught, look, put_off
+from dembound.interrupts import TOGETHER, Interrupts, Stopped, caught, end_while_loading, look, put_off
 
 
 @pytest.fixture(autouse=True)
@@ -103,3 +104,18 @@ def test_a_file_is_a_request_in_its_thread_alone(tmp_path) -> None:
         thread.join()
         look()
     assert seen == [signal.SIGTERM]
+
+
+def test_signals_end_a_process_at_once_while_it_loads_a_library(monkeypatch) -> None:
+    inside = []
+
+    def load(loader: object, spec: object) -> None:
+        inside.append(signal.getsignal(signal.SIGTERM))
+
+    monkeypatch.setattr(ExtensionFileLoader, "create_module", load)
+    end_while_loading()
+    with Interrupts():
+        noting = signal.getsignal(signal.SIGTERM)
+        ExtensionFileLoader("library", "library.so").create_module(None)
+        assert signal.getsignal(signal.SIGTERM) == noting
+    assert inside == [signal.SIG_DFL]

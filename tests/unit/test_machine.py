@@ -1,5 +1,6 @@
 """The memory of a machine is read as its system reports it, within the limits of containers."""
 
+import errno
 import os
 import subprocess
 import sys
@@ -8,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from dembound.machine import Memory, cores_here, memory_here, private_folder, user_cache
+from dembound import machine
+from dembound.machine import Memory, cores_here, memory_here, memory_ran_out, private_folder, user_cache
 
 GIB = 2.0**30
 
@@ -118,3 +120,19 @@ def test_a_home_that_cannot_be_written_has_no_cache(tmp_path, monkeypatch) -> No
     (tmp_path / "file").touch()
     monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: str(tmp_path / "file" / name))
     assert user_cache() is None
+
+
+def test_a_library_that_cannot_be_loaded_is_missing_memory_only_within_a_limit(monkeypatch) -> None:
+    unloaded = ImportError("failed to map segment"), OSError("Could not find/load shared object file"), SystemError()
+    for limit, expected in ((None, False), (7e8, True)):
+        monkeypatch.setattr(machine, "address_limit", lambda limit=limit: limit)
+        assert [memory_ran_out(error) for error in unloaded] == [expected] * 3
+        others = ModuleNotFoundError("no module"), OSError(errno.ENOSPC, "full"), ValueError()
+        assert not any(memory_ran_out(error) for error in others)
+        assert memory_ran_out(MemoryError())
+        assert memory_ran_out(OSError(errno.ENOMEM, "Cannot allocate memory"))
+
+
+def test_a_limit_of_addresses_counts_as_memory(root, monkeypatch) -> None:
+    monkeypatch.setattr(machine, "address_limit", lambda: 2e9)
+    assert memory_here(root()) == Memory(2e9, 2e9 - machine.RESERVED)

@@ -17,7 +17,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RunError
 from dembound.interrupts import ENDING, look_at_imports
 from dembound.studies.sweep.perform import ALONE, Outcome, Task, perform
 
@@ -84,13 +84,17 @@ class Processes(Workers):
         self._working: list[tuple[Process, Performing]] = []
 
     def _new(self) -> Process:
-        """A new process; not forked, as this one may have threads."""
+        """A new process; not forked, as this one may have threads. Raises RunError for one that ends at once."""
         pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _prepare, (self._stop,))
         others = multiprocessing.active_children()
         with _signals_blocked():
             number = pool.submit(os.getpid)
-        (child,) = (each for each in multiprocessing.active_children() if each not in others)
-        return Process(child, pool, number)
+        children = [each for each in multiprocessing.active_children() if each not in others]
+        if not children:
+            raise RunError(
+                "a process for members ended as it began, as where memory, or the right to begin it, is short"
+            )
+        return Process(children[0], pool, number)
 
     def has_room(self, under_way: int) -> bool:
         """Up to the number of processes."""

@@ -9,6 +9,7 @@ import threading
 import h5py
 import pytest
 
+from dembound.__main__ import main
 from dembound.results.folder import Folder
 from dembound.running import job
 
@@ -161,3 +162,27 @@ def test_a_record_of_an_earlier_version_or_without_a_case_and_a_broken_summary_a
         assert answer.code == 5
         (line,) = answer.err.splitlines()
         assert said in line
+
+
+def test_memory_that_runs_out_has_one_line(dembound, written, monkeypatch) -> None:
+    def without_memory(*_: object) -> None:
+        raise MemoryError("Unable to allocate 14.5 MiB")
+
+    monkeypatch.setattr(job, "write_paraview", without_memory)
+    answer = dembound("run", written())
+    assert answer.code == 3
+    assert [line for line in answer.err.splitlines() if "warning" not in line] == [
+        "dembound: memory ran out: Unable to allocate 14.5 MiB",
+        "bar: histories so far are in results/bar.partial",
+        "bar: to continue: dembound resume results/bar.partial",
+    ]
+
+
+def test_too_few_addresses_are_said_before_libraries_are_loaded(monkeypatch, capsys) -> None:
+    monkeypatch.setattr("dembound.__main__.address_limit", lambda: 1e8)
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 3
+    assert capsys.readouterr().err == (
+        "dembound: the address space is limited to 100 MB (ulimit -v), 600 MB are needed\n"
+    )

@@ -20,7 +20,14 @@ def test_more_than_is_free_is_refused_with_both_numbers(monkeypatch) -> None:
 
 
 def test_amounts_in_words() -> None:
-    amounts = {12.4e6: "12 MB", 999.4e6: "999 MB", 999.6e6: "1 GB", 25.27e9: "25.3 GB", 1.52e12: "1.52 TB"}
+    amounts = {
+        4.2e5: "420 kB",
+        12.4e6: "12 MB",
+        999.4e6: "999 MB",
+        999.6e6: "1 GB",
+        25.27e9: "25.3 GB",
+        1.52e12: "1.52 TB",
+    }
     assert {size: ram.in_words(size) for size in amounts} == amounts
 
 
