@@ -290,9 +290,21 @@ def main() -> None:
             sys.exit(RunError.exit_code)
         if not isinstance(error, OSError):
             raise
-        # no permission, a full disk
-        _print_failure(error, [f"{error.filename or 'output'}: {error.strerror or error}"])
+        _print_failure(error, [_of_system(error)])
         sys.exit(CANNOT_WRITE)
+
+
+def _of_system(error: OSError) -> str:
+    """One line on an error of the system, as of a full disk; with its cause for a missing folder or file."""
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        return "the current folder has been deleted; change to another one"
+    named = Path(str(error.filename or ""))
+    for path in (named, *named.parents):
+        if path.is_symlink() and not path.exists():
+            return f"{path}: is a link to {path.readlink()}, which does not exist"
+    return f"{error.filename or 'output'}: {error.strerror or error}"
 
 
 def _of_memory(error: Exception) -> str:

@@ -186,3 +186,15 @@ def test_too_few_addresses_are_said_before_libraries_are_loaded(monkeypatch, cap
     assert capsys.readouterr().err == (
         "dembound: the address space is limited to 100 MB (ulimit -v), 600 MB are needed\n"
     )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are used")
+def test_a_link_to_nothing_and_a_folder_that_is_gone_are_said(dembound, written, tmp_path, monkeypatch) -> None:
+    (tmp_path / "results").symlink_to("/nowhere/results")
+    answer = dembound("run", written())
+    assert (answer.code, answer.err) == (5, "results: is a link to /nowhere/results, which does not exist\n")
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    answer = dembound("new")
+    assert (answer.code, answer.err) == (5, "the current folder has been deleted; change to another one\n")
