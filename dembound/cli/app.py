@@ -5,15 +5,18 @@ from __future__ import annotations
 import atexit
 import gc
 import logging
+import math
 import os
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from enum import StrEnum
+from functools import wraps
+from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 from typer.core import TyperGroup
@@ -88,7 +91,45 @@ class _Commands(TyperGroup):
             return super().invoke(ctx)
 
 
-app = typer.Typer(
+class _App(typer.Typer):
+    """An application in which options that are numbers must be finite."""
+
+    def command(self, *arguments: Any, **more: Any) -> Callable[[Any], Any]:
+        """A decorator that registers a function as a command."""
+        register = super().command(*arguments, **more)
+
+        def registered(function: Callable[..., Any]) -> Callable[..., Any]:
+            register(_with_finite_numbers(function))
+            return function
+
+        return registered
+
+
+def _with_finite_numbers(command: Callable[..., Any]) -> Callable[..., Any]:
+    """A command that raises CaseError for options that are infinite, or nan, before anything else."""
+
+    @wraps(command)
+    def checked(**given: Any) -> Any:
+        for name, value in given.items():
+            for number in value if isinstance(value, list | tuple) else (value,):
+                if isinstance(number, float) and not math.isfinite(number):
+                    raise CaseError([f"{_option(command, name)}: is {number}, must be a finite number"])
+        return command(**given)
+
+    return checked
+
+
+def _option(command: Callable[..., Any], parameter: str) -> str:
+    """The option of a parameter, as it is written on the command line."""
+    declared = signature(command).parameters[parameter].annotation
+    if isinstance(declared, str):
+        declared = get_type_hints(command, include_extras=True)[parameter]
+    given = (name for each in getattr(declared, "__metadata__", ()) for name in (each.default, *each.param_decls))
+    named = (name for name in given if isinstance(name, str) and name.startswith("--"))
+    return next(named, f"--{parameter.replace('_', '-')}")
+
+
+app = _App(
     name="dembound",
     cls=_Commands,
     help="Waves in bonded particles, with artificial boundaries that absorb, and in bars of rock that break.",
@@ -120,6 +161,9 @@ def png(param: typer.CallbackParam, path: Path | None) -> Path | None:
 
 PICTURE = typer.Option("--output", "-o", help="Picture to write (PNG).", callback=png)
 PictureTitle = Annotated[str | None, typer.Option("--title", help="Title of the picture; by default its content.")]
+
+MOST_REPEATS = 10_000
+"""Largest number of samples or runs that are equal but for a seed."""
 
 Cases = Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files (TOML).")]
 Output = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")]

@@ -70,8 +70,8 @@ def movie(
         typer.Option(metavar="NAME", help="Show this monitor's history below. May be repeated; by default all."),
     ] = None,
     histories: Annotated[bool, typer.Option(help="Show histories below the scene.")] = True,
-    fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1)] = 10.0,
-    size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200)] = 960,
+    fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1, max=1000.0)] = 10.0,
+    size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200, max=8192)] = 960,
     every: Annotated[int, typer.Option(help="Show only every N-th snapshot.", min=1)] = 1,
 ) -> None:
     """Write a movie of a run and its histories (GIF, or PNG frames).

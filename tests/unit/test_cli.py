@@ -912,3 +912,16 @@ def test_warnings_of_python_are_not_shown(dembound, written, monkeypatch) -> Non
 
     assert answer.code == 0
     assert "overflow" not in answer.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["boundary", "viscous", "--angle", "nan"], "--angle: is nan"),
+        (["gauge", "any.csv", "--band", "5", "inf"], "--band: is inf"),
+        (["advise", "any.toml", "--longest", "inf"], "--longest: is inf"),
+    ],
+)
+def test_options_that_are_no_finite_number_are_refused_before_anything_else(dembound, arguments, said) -> None:
+    answer = dembound(*arguments)
+    assert (answer.code, answer.err) == (2, f"{said}, must be a finite number\n")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -181,9 +182,9 @@ def specimens_of(sample: Sample, seeds: int, pressures: Sequence[float] | None =
     """
     if pressures and sample.test != "biaxial":
         raise CaseError(["--pressures: is for biaxial; other tests have free sides"])
-    if pressures and (min(pressures) < 0.0 or len(set(pressures)) < len(pressures)):
+    if pressures and not (all(0.0 <= each < inf for each in pressures) and len(set(pressures)) == len(pressures)):
         given = ",".join(f"{each:g}" for each in pressures)
-        raise CaseError([f"--pressures: is {given}, must be different numbers, none negative"])
+        raise CaseError([f"--pressures: is {given}, must be different finite numbers, none negative"])
     if seeds < 1:
         raise CaseError([f"--seeds: is {seeds}, must be 1 or more"])
     found = []

@@ -86,6 +86,7 @@ def test_only_the_first_seed_has_a_file_for_paraview_and_failures_are_raised(tmp
             {"test": "biaxial", "pressures": [1e6, -1.0]},
             "--pressures: is 1e.06,-1, must be different",
         ),
+        ({"test": "biaxial", "pressures": [float("nan")]}, "--pressures: is nan, must be different finite"),
         ({"shares": [0.5]}, "--shares: is 0.5, must be two shares of the peak"),
         ({"rate": 0.0}, "--rate: is 0, must be more than 0"),
         ({"damp": 1.0}, "material.damp: is 1"),
