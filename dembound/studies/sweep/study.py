@@ -14,7 +14,7 @@ from typing import NamedTuple
 from filelock import FileLock, Timeout
 
 from dembound.casefile.sweep import Action, Method
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RunError
 from dembound.interrupts import look
 from dembound.machine import cores_here
 from dembound.studies.sweep.members import Member
@@ -72,7 +72,8 @@ def sweep(members: Sequence[Member], options: Options, folder: Path, report: Rep
     process ends without an outcome is repeated once. After Ctrl-C or SIGTERM all members write a checkpoint;
     KeyboardInterrupt is raised when they have ended; a second one kills them.
 
-    Raises CaseError for a folder that another sweep uses, or that has other contents.
+    Raises CaseError for a folder that another sweep uses, or that has other contents, and RunError for workers out of
+    reach.
     """
     with _marks_in(folder) as marks:
         found = {m.key: None if options.anew else outcome_in(folder, m.key) for m in members}
@@ -146,7 +147,7 @@ class _Work:
                 for performed in done:
                     self._take(performed, workers)
             self._report(self._standing)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, RunError):
             self._end(workers)
             raise
         return self._found
@@ -189,7 +190,8 @@ class _Work:
             outcome = Outcome(member.name, failure=reason)
             outcome.write(self._folder, member.key)
             self._found[member.key] = outcome
-        except Exception as error:  # of the cluster: it has lost its scheduler, or has not this package
+        except Exception as error:  # of a cluster
+            workers.require_connected(error)
             self._found[member.key] = Outcome(member.name, failure=f"{type(error).__name__}: {error}")
 
     def _end(self, workers: Workers) -> None:

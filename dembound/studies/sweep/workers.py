@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
 import signal
 import threading
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
 from concurrent.futures import wait as wait_for
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -18,14 +20,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from dembound.errors import CaseError, RunError
-from dembound.interrupts import ENDING, look_at_imports
+from dembound.interrupts import ENDING, look, look_at_imports
 from dembound.studies.sweep.perform import ALONE, Outcome, Task, perform
 
 if TYPE_CHECKING:
     from distributed import Client
 
+LOGGER = logging.getLogger(__name__)
+
 CONNECTING = 30.0
-"""Seconds to wait for a cluster."""
+"""Seconds to wait for a cluster, and for its first worker until that is said."""
+
+ASKING = 1.0
+"""Seconds between two questions for the workers of a cluster."""
 
 Performing = Future[Outcome | None]
 
@@ -53,6 +60,9 @@ class Workers(ABC):
 
     def dismiss(self) -> None:  # noqa: B027  # those of a cluster are not ours
         """End the workers that have not begun a task."""
+
+    def require_connected(self, error: Exception) -> None:  # noqa: B027  # only those of a cluster may be out of reach
+        """Raise RunError if an error of a task says that its workers are out of reach."""
 
     @abstractmethod
     def kill(self) -> None:
@@ -197,11 +207,11 @@ class Cluster(Workers):
     tries = 1
     are_elsewhere = True
 
-    def __init__(self, client: Client) -> None:
+    def __init__(self, client: Client, address: str) -> None:
         from distributed.scheduler import KilledWorker
 
         self.lost = (KilledWorker,)
-        self._client = client
+        self._client, self._address = client, address
         self._executor = client.get_executor(pure=False)
 
     def has_room(self, under_way: int) -> bool:
@@ -216,6 +226,32 @@ class Cluster(Workers):
             performing = Future()
             performing.set_exception(error)
         return performing
+
+    def require_connected(self, error: Exception) -> None:
+        """Raise RunError if the scheduler has been lost, which cancels all tasks."""
+        if isinstance(error, CancelledError) or self._client.status != "running":
+            raise RunError(f"--scheduler: {self._address} was lost; the same command continues what is left") from None
+
+    def require_workers(self) -> None:
+        """Wait for a worker, with a line in the log if there is none for long.
+
+        Raises CaseError unless all workers there have the version of dembound that is here.
+        """
+        began, is_said = time.monotonic(), False
+        while not self._client.scheduler_info()["workers"]:
+            self.require_connected(RuntimeError())
+            if not is_said and time.monotonic() - began >= CONNECTING:
+                is_said = True
+                LOGGER.info("--scheduler: %s has no worker yet, which is waited for", self._address)
+            look()
+            time.sleep(ASKING)
+        found = self._client.get_versions(packages=["dembound"])
+        here = found["client"]["packages"]["dembound"]
+        for worker, versions in sorted(found["workers"].items()):
+            there = versions["packages"]["dembound"]
+            if there != here:
+                said = f"dembound {there}" if there else "no dembound"
+                raise CaseError([f"--scheduler: its worker {worker} has {said}, must have {here} as here"])
 
     def kill(self) -> None:
         """Running members continue until they find the file that requests them to stop."""
@@ -236,7 +272,7 @@ def processes(count: int, stop: Path) -> Iterator[Processes]:
 def cluster(address: str) -> Iterator[Cluster]:
     """The cluster whose scheduler has this address, such as tcp://10.0.0.1:8786.
 
-    Raises CaseError if Dask is not installed, or no scheduler answers.
+    Raises CaseError if Dask is not installed, no scheduler answers, or workers have another version of this package.
     """
     try:
         from distributed import Client
@@ -246,5 +282,10 @@ def cluster(address: str) -> Iterator[Cluster]:
         client = Client(address, timeout=CONNECTING)
     except (OSError, ValueError) as error:
         raise CaseError([f"--scheduler: {address} does not answer: {' '.join(str(error).split())}"]) from None
+    for name in list(logging.root.manager.loggerDict):  # lost connections are said here
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     with client:
-        yield Cluster(client)
+        workers = Cluster(client, address)
+        workers.require_workers()
+        yield workers
