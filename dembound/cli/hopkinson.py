@@ -18,7 +18,7 @@ from dembound.cli.signal_options import FILE, SignalOptions
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
-    from dembound.gauge.hopkinson.pulses import Faces, Setup
+    from dembound.gauge.hopkinson.pulses import Faces, Setup, Windows
     from dembound.gauge.hopkinson.slope_error import SlopeError
     from dembound.gauge.hopkinson.specimen import Specimen
     from dembound.gauge.reading.signal import Signal
@@ -155,11 +155,11 @@ def hopkinson(
     if has_second:
         sources.append((pulses.second or incident, pulses.second_column))
     files = [(results_file(path) if path.is_dir() else path, column) for path, column in sources]
-    strains = _strains(files, signal, setup.modulus)
+    windows = Windows(pulses.incident_window, pulses.reflected_window, pulses.transmitted_window)
+    strains = _strains(files, signal, setup, windows)
     for warning in contradictions(files, bars.given(signal, pulses)):
         err.print(f"warning: {warning}")
     signals = combined(*strains, opposite=pulses.opposite)
-    windows = Windows(pulses.incident_window, pulses.reflected_window, pulses.transmitted_window)
     faces = at_faces(signals, setup, windows)
     found = specimen(faces, setup, equilibrium)
     if found.equilibrium is None:
@@ -175,16 +175,20 @@ def hopkinson(
     _write(faces, found, output, title, table)
 
 
-def _strains(files: Sequence[tuple[Path, str | None]], options: SignalOptions, modulus: float) -> list[Signal]:
-    """The strains of gauges from files and columns; prints the notes on them."""
-    from dembound.gauge.hopkinson.records import read_strain
+def _strains(
+    files: Sequence[tuple[Path, str | None]], options: SignalOptions, setup: Setup, windows: Windows
+) -> list[Signal]:
+    """The strains of gauges from files and columns, the incident bar's first; prints the notes on them."""
+    from dembound.gauge.hopkinson.records import read_strain, require_pulses
 
     strains, treatment = [], options.treatment()
     for path, column in files:
         reading = options.reading(column)
-        strains.append(read_strain(path, reading, treatment, modulus, may_be_clipped=options.clipped))
+        strains.append(read_strain(path, reading, treatment, setup.modulus, may_be_clipped=options.clipped))
         for note in strains[-1].notes:
             out.print(note)
+        if len(strains) == 1:  # the other ones may be without a wave where it ends too early
+            require_pulses(strains[0], setup, windows)
     return strains
 
 

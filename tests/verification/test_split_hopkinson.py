@@ -150,8 +150,13 @@ def test_a_record_that_is_too_short_is_reported_by_the_pulses_that_it_lacks():
     """At the gauges the incident pulse begins at 100 µs, the reflected at 500, the transmitted at 460."""
     given, count = signals(), round(350e-6 / STEP)
     short = given._replace(**{name: getattr(given, name)[:count] for name in ("time", "incident", "transmitted")})
+    within = given._replace(**{name: getattr(given, name)[: 2 * count] for name in ("time", "incident", "transmitted")})
+    with pytest.raises(CaseError, match=r"INCIDENT: the record ends at .*, within the reflected pulse, which begins"):
+        at_faces(within, SETUP)
+    with pytest.raises(CaseError, match=r"the record has a sample every 0\.5 s: is the unit of its times right"):
+        at_faces(given._replace(time=given.time * 0.5 / STEP), SETUP)
     late = "the reflected at .* s, the transmitted at .* s; record longer"
-    with pytest.raises(CaseError, match=f"ends before pulses begin at their gauges: {late}"):
+    with pytest.raises(CaseError, match=f"ends before or as pulses begin at their gauges: {late}"):
         at_faces(short, SETUP)
 
 

@@ -224,10 +224,9 @@ def at_faces(signals: Signals, setup: Setup, windows: Windows | None = None) -> 
 def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Window, Window, Window]:
     """The windows of incident, reflected and transmitted pulse at their gauges, s; errors as of `at_faces`."""
     time, speed = signals.time, setup.bar.speed
-    begin = given.incident[0] if given.incident else _onset(time, signals.incident)
-    ways = 0.0, 2.0 * setup.incident_gauge, setup.incident_gauge + setup.transmitted_gauge
-    starts = [begin + way / speed if window is None else window[0] for way, window in zip(ways, given, strict=True)]
-    length = min(time[-1] - start for start in starts)
+    starts = starts_of(time, signals.incident, setup, given)
+    begin = starts[0]
+    length = recorded = min(time[-1] - start for start in starts)
     if signals.second is None:
         length = min(length, 2.0 * setup.incident_gauge / speed)
     if setup.bar_length is not None:
@@ -235,11 +234,11 @@ def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Windo
         length = min(length, 2.0 * min(ends) / speed)
     length = min([length, *(window[1] - window[0] for window in given if window is not None)])
     if not (min(starts) >= time[0] and length > 3.0 * (time[1] - time[0])):
-        raise CaseError([f"--incident-window: {_outside(time, starts)}"])
+        raise CaseError([f"--incident-window: {_outside(time, starts, length)}"])
     end = begin + length
     left = float(np.interp(end, time, signals.incident)) / float(np.abs(signals.incident).max())
     if signals.second is None and abs(left) > ENDED:
-        raise CaseError([_not_ended(end, left)])
+        raise CaseError([_broken_off(time, starts) if length == recorded else _not_ended(end, left)])
     return (begin, end), (starts[1], starts[1] + length), (starts[2], starts[2] + length)
 
 
@@ -258,14 +257,49 @@ def _not_ended(end: float, left: float) -> str:
     )
 
 
-def _outside(time: np.ndarray, starts: Sequence[float]) -> str:
-    """Problems of pulses that begin (times (3,) s) before or after a record, or are empty."""
-    whole = f"the record is from {time[0]:.6g} to {time[-1]:.6g} s"
-    names = ("incident", "reflected", "transmitted")
-    late = [f"{name} at {at:.6g} s" for name, at in zip(names, starts, strict=True) if at >= time[-1]]
-    if late:
-        return f"{whole} and ends before pulses begin at their gauges: the {', the '.join(late)}; record longer"
-    return f"the pulses begin at {', '.join(f'{start:.6g}' for start in starts)} s, {whole}: nothing of one is left"
+def starts_of(time: np.ndarray, incident: np.ndarray, setup: Setup, given: Windows) -> list[float]:
+    """Times (3,) s at which the pulses begin at their gauges.
+
+    incident : (k,), loads positive. given : as of `found_windows`.
+
+    Raises CaseError for a signal without a load, and a record that ends before a pulse begins.
+    """
+    begin = given.incident[0] if given.incident else _onset(time, incident)
+    ways = 0.0, 2.0 * setup.incident_gauge, setup.incident_gauge + setup.transmitted_gauge
+    places = zip(ways, given, strict=True)
+    starts = [begin + way / setup.bar.speed if window is None else window[0] for way, window in places]
+    last = time[-1] - max(3.0, 2.0 * MARGIN * width_of(incident)) * (time[1] - time[0])
+    if late := [f"{name} at {at:.6g} s" for name, at in zip(PULSES, starts, strict=True) if at > last]:
+        said = (
+            f"the record is from {time[0]:.6g} to {time[-1]:.6g} s and ends before or as pulses begin at their gauges"
+        )
+        raise CaseError([f"--incident-window: {said}: the {', the '.join(late)}; record longer"])
+    return starts
+
+
+PULSES = "incident", "reflected", "transmitted"
+"""Names of the pulses in the order of their windows."""
+
+
+def _broken_off(time: np.ndarray, starts: Sequence[float]) -> str:
+    """Message about a record (k,) s that ends within the last pulse; starts : (3,) s of all pulses."""
+    last = max(range(len(starts)), key=lambda pulse: starts[pulse])
+    return (
+        f"{'TRANSMITTED' if last == 2 else 'INCIDENT'}: the record ends at {time[-1]:.6g} s, within the {PULSES[last]} "
+        f"pulse, which begins at {starts[last]:.6g} s; record longer, or give an --incident-window that is shorter"
+    )
+
+
+def _outside(time: np.ndarray, starts: Sequence[float], length: float) -> str:
+    """Problems of pulses that begin (times (3,) s) before a record, or have too few samples.
+
+    length : s in which all pulses are there, and are apart.
+    """
+    begin = f"the pulses begin at {', '.join(f'{start:.6g}' for start in starts)} s"
+    if min(starts) < time[0]:
+        return f"{begin}, the record is from {time[0]:.6g} to {time[-1]:.6g} s: nothing of one is left"
+    step = f"the record has a sample every {time[1] - time[0]:.3g} s"
+    return f"{begin}, and are apart for {length:.3g} s, {step}: is the unit of its times right? --time-unit"
 
 
 def _onset(time: np.ndarray, values: np.ndarray) -> float:

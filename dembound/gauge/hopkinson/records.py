@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.gauge.hopkinson.pulses import Signals
+from dembound.gauge.hopkinson.pulses import Setup, Signals, Windows, starts_of
 from dembound.gauge.noise import undithered
 from dembound.gauge.plausibility import LARGEST_STRAIN, implausible_signal
 from dembound.gauge.reading.recorded import is_record, require_for_results
@@ -67,7 +67,7 @@ def combined(incident: Signal, transmitted: Signal, second: Signal | None = None
     if within.sum() < 10:
         raise CaseError(["TRANSMITTED: has no times in common with the incident signal"])
     time, values = incident.time[within], incident.values[within]
-    sign = float(np.sign(values[np.argmax(np.abs(values) > RISEN * np.abs(values).max())]))
+    sign = _sign(values)
     behind = (-sign if opposite else sign) * np.interp(time, transmitted.time, transmitted.values)
     if not behind.max() > -behind.min():
         raise CaseError(
@@ -76,6 +76,16 @@ def combined(incident: Signal, transmitted: Signal, second: Signal | None = None
     extra = None if second is None else sign * np.interp(time, second.time, second.values)
     digits = (undithered(incident.values)[1], undithered(transmitted.values)[1])
     return Signals(time, sign * values, behind, extra, digits)
+
+
+def require_pulses(incident: Signal, setup: Setup, windows: Windows) -> None:
+    """Raise CaseError for an incident signal that ends before all pulses have begun; windows : as `found_windows`."""
+    starts_of(incident.time, _sign(incident.values) * incident.values, setup, windows)
+
+
+def _sign(values: np.ndarray) -> float:
+    """The sign of the first wave in a signal (k,)."""
+    return float(np.sign(values[np.argmax(np.abs(values) > RISEN * np.abs(values).max())]))
 
 
 def _recorded(path: Path, reading: Reading) -> Signal:

@@ -59,7 +59,7 @@ class Columns:
         for fields in reversed(self.header):
             if place < len(fields):
                 bracketed = UNIT_IN_NAME.match(fields[place])
-                yield bracketed[2] if bracketed else fields[place]
+                yield bracketed[2] if bracketed else behind_slash(fields[place]) or fields[place]
         axis = ("x", "horizontal") if column == 0 else ("y", "vertical")
         for fields in self.header:
             words = fields[0].lower().replace(" ", "").rstrip(":")
@@ -96,6 +96,15 @@ class Columns:
                 raise CaseError([f"{self.path}: line {number} has no number in column {column + 1}"])
             found.append(value)
         return found
+
+
+def behind_slash(field: str) -> str | None:
+    """The unit in a header such as "Time/us" or "ε/%", a quantity over its unit; None for one that is a unit itself."""
+    name, _, unit = (part.strip() for part in field.partition("/"))
+    last = name.rpartition(" ")[2]
+    if _is_unit(field) or (_is_unit(last) and last.lower() not in ("strain", "ε")):
+        return None  # such as m/s, or bridge mV/V
+    return unit if _is_unit(unit) else None
 
 
 def read_columns(path: Path) -> Columns:
@@ -225,7 +234,9 @@ def _number(text: str, decimal: str) -> float | None:
 def _name(text: str) -> str:
     """The name of a column, without its unit; empty for only a unit in brackets."""
     bracketed = UNIT_IN_NAME.match(text)
-    return bracketed[1] if bracketed else text
+    if bracketed:
+        return bracketed[1]
+    return text.partition("/")[0].strip() if behind_slash(text) else text
 
 
 def _is_unit(text: str) -> bool:

@@ -17,7 +17,7 @@ from contextlib import contextmanager, suppress
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dembound.errors import CaseError, RunError
 from dembound.interrupts import ENDING, look, look_at_imports
@@ -245,7 +245,7 @@ class Cluster(Workers):
                 LOGGER.info("--scheduler: %s has no worker yet, which is waited for", self._address)
             look()
             time.sleep(ASKING)
-        found = self._client.get_versions(packages=["dembound"])
+        found: Any = self._client.get_versions(packages=["dembound"])
         here = found["client"]["packages"]["dembound"]
         for worker, versions in sorted(found["workers"].items()):
             there = versions["packages"]["dembound"]

@@ -205,3 +205,22 @@ def test_bridges_that_make_no_sense_are_refused(tmp_path):
     path.write_text("t (s),sigma (MPa)\n0,1\n1,2\n2,4\n")
     with pytest.raises(CaseError, match="--gauge-factor: is for voltages, the values are in MPa"):
         read_signal(path, Reading(bridge=Bridge(2.0, "quarter", 10.0)))
+
+
+@pytest.mark.parametrize(
+    ("header", "step", "unit", "size"),
+    [
+        ("Time/us,in/µε", 1e-6, "strain", 1e-6),
+        ("t/ms,Strain/%", 1e-3, "strain", 1e-2),
+        ("t / s,σ / MPa", 1.0, "Pa", 1e6),
+        ("t/us,U/mV", 1e-6, "V", 1e-3),
+        ("t/us,bridge mV/V", 1e-6, "", 1.0),  # units of their own, not quantities over units
+        ("t/us,mV/V", 1e-6, "", 1.0),
+        ("t/us,mm/m", 1e-6, "strain", 1e-3),
+    ],
+)
+def test_units_behind_quantities_and_a_slash_are_read(header, step, unit, size, tmp_path) -> None:
+    path = tmp_path / "scope.csv"
+    path.write_text(f"{header}\n0,1\n1,2\n2,4\n", encoding="utf-8")
+    found = read_signal(path)
+    assert (found.time[1], found.unit, found.values[0]) == (pytest.approx(step), unit, pytest.approx(size))
