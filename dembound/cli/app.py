@@ -162,8 +162,20 @@ def png(param: typer.CallbackParam, path: Path | None) -> Path | None:
 PICTURE = typer.Option("--output", "-o", help="Picture to write (PNG).", callback=png)
 PictureTitle = Annotated[str | None, typer.Option("--title", help="Title of the picture; by default its content.")]
 
-MOST_REPEATS = 10_000
-"""Largest number of samples or runs that are equal but for a seed."""
+
+def at_most(limit: int) -> Callable[[typer.CallbackParam, Any], Any]:
+    """A check of a number, of which a larger one than a limit raises CaseError."""
+
+    def check(param: typer.CallbackParam, value: Any) -> Any:
+        if value is not None and value > limit:
+            raise CaseError([f"{param.opts[0]}: is {value:g}, must be at most {limit}"])
+        return value
+
+    return check
+
+
+few = at_most(10_000)
+"""A check of a number of samples, or of runs that are repeated."""
 
 Cases = Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files (TOML).")]
 Output = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")]

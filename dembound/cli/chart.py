@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from dembound.cli.advise import Of
-from dembound.cli.app import MOST_REPEATS, Name, Output, PictureTitle, Settings, Vary, app, load_case, prepare_computing
+from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, few, load_case, prepare_computing
 from dembound.cli.console import err, out, print_rows
 from dembound.interrupts import exit_code_of
 
@@ -69,7 +69,7 @@ def chart(
     of: Of = None,
     repeats: Annotated[
         int | None,
-        typer.Option(min=1, max=MOST_REPEATS, help="Timed runs of every choice; by default 3, or the case's."),
+        typer.Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's."),
     ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Run only choices that an earlier chart does not have.")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.app import MOST_REPEATS, Name, Output, Settings, app, load_disks
+from dembound.cli.app import Name, Output, Settings, app, few, load_disks
 from dembound.cli.console import err, out, print_rows
 from dembound.cli.loading_options import LoadingOptions
 from dembound.cli.option_tables import with_tables
@@ -48,7 +48,7 @@ def laboratory(
     case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
     *,
     seeds: Annotated[
-        int, typer.Option(min=1, max=MOST_REPEATS, help="Samples, whose packings have seeds packing.seed and above.")
+        int, typer.Option(min=1, callback=few, help="Samples, whose packings have seeds packing.seed and above.")
     ] = 4,
     pressures: Annotated[
         str | None, typer.Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from dembound.cli.app import MORE, MOST_REPEATS, Output, Settings, app, load_disks
+from dembound.cli.app import MORE, Output, Settings, app, few, load_disks
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import out, print_rows
 from dembound.cli.loading_options import LoadingOptions
@@ -31,7 +31,7 @@ def material(
         float | None, typer.Option(min=0.0, help="Tensile strength (Pa) to give them, by direct tension.")
     ] = None,
     seeds: Annotated[
-        int, typer.Option(min=1, max=MOST_REPEATS, help="Samples of each test, for --ucs and --tension.")
+        int, typer.Option(min=1, callback=few, help="Samples of each test, for --ucs and --tension.")
     ] = SEEDS,
     output: Output = Path("results"),
     changes: Settings = None,

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from dembound.cli.app import MORE, app, writable
+from dembound.cli.app import MORE, app, at_most, writable
 from dembound.cli.console import INTERVAL, err, out
 from dembound.cli.plotted import SceneField
 from dembound.cli.results import results_file
@@ -70,8 +70,8 @@ def movie(
         typer.Option(metavar="NAME", help="Show this monitor's history below. May be repeated; by default all."),
     ] = None,
     histories: Annotated[bool, typer.Option(help="Show histories below the scene.")] = True,
-    fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1, max=1000.0)] = 10.0,
-    size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200, max=8192)] = 960,
+    fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1, callback=at_most(1000))] = 10.0,
+    size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200, callback=at_most(8192))] = 960,
     every: Annotated[int, typer.Option(help="Show only every N-th snapshot.", min=1)] = 1,
 ) -> None:
     """Write a movie of a run and its histories (GIF, or PNG frames).

@@ -772,10 +772,10 @@ def test_gauges_that_tell_nothing_are_bad_input(dembound, felt, tmp_path) -> Non
             "--length: is missing, must be that of the bar (m)\n",
         ),
         (
-            [*PLACED, "--attenuation", "nan", "--wave-speed", 0, "--spall", 1],
+            [*PLACED, "--attenuation", -1, "--wave-speed", 0, "--spall", 1],
             "--spall: is 1 m, must be above 0 and below the length, 0.99 m\n"
             "--wave-speed: is 0 m/s, must be finite and above 0\n"
-            "--attenuation: is nan 1/m, must be finite and not below 0\n",
+            "--attenuation: is -1 1/m, must be finite and not below 0\n",
         ),
         (
             [*PLACED, "--spall", 0.9, "--pulse-end", 0],
