@@ -6,13 +6,13 @@ path there without ending, ``zhou2018/tunnel``. A folder of cases is a group, wi
 
 from __future__ import annotations
 
-import shutil
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dembound.errors import CaseError
+from dembound.files import copy as copy_file
 
 if TYPE_CHECKING:
     from dembound.casefile import Case
@@ -62,7 +62,7 @@ def copy(name: str, target: Path) -> list[Path]:
         raise CaseError([f"{taken[0]}: exists already{others}; nothing was copied, give another folder"])
     for place, source in copies.items():
         (target / place).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(source, target / place)
+        copy_file(source, target / place, follow=True)
     return [target / place for place in copies]
 
 

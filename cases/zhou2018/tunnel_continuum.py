@@ -25,7 +25,7 @@ from skfem import Basis, ElementQuad1, ElementVector, LinearForm, MeshQuad
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from dembound import __version__
-from dembound.results.replacing import replacing
+from dembound.files import replacing
 from dembound.waves import Cosine
 
 PULSE = Cosine(type="cosine", amplitude=0.5, period=0.5)

@@ -19,14 +19,16 @@ from dembound.accuracy.repeat import Cracked, repeated
 from dembound.accuracy.runner import BUDGET, SHORT
 from dembound.casefile import Case
 from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.files import require_writable
 from dembound.motion.clock import Clock
+from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
 from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
 from dembound.results.json_files import write_json
 from dembound.results.named import Named
 from dembound.results.reader import history_of, open_record, require_run
-from dembound.results.replacing import replacing
+from dembound.results.summary_file import FILE as SUMMARY
 from dembound.results.summary_file import read_summary
 from dembound.running.recorded import recorded_case
 
@@ -46,14 +48,15 @@ def estimate_results(folder: Path, repeat: bool = False) -> Budget:
     of them is one draw of many.
 
     Raises CaseError for a run that is not complete, that has neither monitors nor many cracks, or a repetition without
-    cracks, and RecordError for a record that cannot be read.
+    cracks, and RecordError for a record that cannot be read, or a link in place of a file to write.
     """
+    require_writable(folder / FILE, folder / SUMMARY)
     clock = Clock(time.process_time)
     with clock.with_compiling(), clock.of("estimate"):
         found, recorded, summary = _estimated(folder, repeat)
     found = replace(found, cpu_seconds=clock.seconds["estimate"])
     _write(found, recorded, folder / FILE)
-    write_json(folder / "summary.json", summary | {KEY: found.summary()})
+    write_json(folder / SUMMARY, summary | {KEY: found.summary()})
     return found
 
 
@@ -171,9 +174,7 @@ def _too_little(samples: Sequence[int], until: float) -> str:
 
 def _write(found: Budget, recorded: Motions, path: Path) -> None:
     """Write the error histories, the motions corrected for errors of sides where known, and the cracks of a repeat."""
-    import h5py
-
-    with replacing(path) as part, h5py.File(part, "w") as file:
+    with new_file(path) as file:
         file.create_group("histories")
         for name, motion in found.motions.items():
             group = file.create_group(f"histories/{name}")

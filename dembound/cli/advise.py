@@ -218,7 +218,7 @@ def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> 
     """Write the text of a case with the changes of the best choice, after reading and planning it."""
     from dembound.accuracy.choice import digest
     from dembound.casefile.edit import edited
-    from dembound.results.replacing import replacing
+    from dembound.files import write_text
     from dembound.running import plan
     from dembound.schemas import loads
 
@@ -228,8 +228,7 @@ def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> 
     if digest(again) != digest(case):
         raise RuntimeError(f"{target}: the text is not that of the choice")
     plan(again)
-    with replacing(target) as part:
-        part.write_bytes(text.encode())
+    write_text(target, text)
     for line in choice.toml:
         out.print(f"  {line}", markup=False, soft_wrap=True)
     out.print(f"wrote {target}", markup=False, soft_wrap=True)

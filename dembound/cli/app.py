@@ -143,12 +143,16 @@ app = _App(
 def writable(path: Path | None) -> Path | None:
     """A file to write, if its folder exists; checked before anything is computed.
 
+    A link of the user, which is not in the folder of a run, is followed.
+
     Raises FileNotFoundError if it does not exist.
     """
     if path is not None:
-        from dembound.results.replacing import require_folder
+        from dembound.files import is_link, require_folder
 
         require_folder(path)
+        if is_link(path) and not (path.parent / "run.h5").exists():
+            return path.resolve()
     return path
 
 

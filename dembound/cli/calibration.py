@@ -92,7 +92,7 @@ def calibrate_sides(
     All other lines of the case remain. A calibrated case that differs in more than the β found is not replaced.
     """
     from dembound.casefile.edit import edited
-    from dembound.results.replacing import replacing
+    from dembound.files import write_text
     from dembound.studies.all_sides import calibrate_all, changes_of
     from dembound.studies.calibration import calibrate
 
@@ -120,8 +120,7 @@ def calibrate_sides(
         _print_result(one)
         found = [one]
         _leave(one, folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}"))
-    with replacing(target) as part:
-        part.write_bytes(edited(text, changes_of(found)).encode())
+    write_text(target, edited(text, changes_of(found)))
     out.print(f"wrote {target}")
 
 
@@ -167,7 +166,9 @@ def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> No
 
 def _leave(found: Calibration, folder: Path) -> None:
     """Write the results of a calibration, printing each file."""
-    folder.mkdir(parents=True, exist_ok=True)
+    from dembound.files import make_folder
+
+    make_folder(folder)
     found.write(folder / "calibration.h5")
     out.print(f"wrote {folder / 'calibration.h5'}")
     _leave_summary([found], found.summary(), folder, [folder / "calibration.h5"])
@@ -175,11 +176,13 @@ def _leave(found: Calibration, folder: Path) -> None:
 
 def _leave_all(found: Sequence[Calibration], folder: Path) -> None:
     """Write the results of all calibrations of a case, the passes of each in its own folder; prints each file."""
+    from dembound.files import make_folder
     from dembound.studies.all_sides import summary_of
 
+    make_folder(folder)
     records = [folder / f"{each.side}_{each.motion}" / "calibration.h5" for each in found]
     for each, record in zip(found, records, strict=True):
-        record.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(record.parent)
         each.write(record)
         out.print(f"wrote {record}")
     _leave_summary(found, summary_of(found), folder, records)
@@ -189,6 +192,7 @@ def _leave_summary(
     found: Sequence[Calibration], summary: Mapping[str, Any], folder: Path, records: Sequence[Path]
 ) -> None:
     """Write the summary and a picture of the passes; records : one of each."""
+    from dembound.files import remove
     from dembound.plot.convergence import plot_convergence
     from dembound.plot.style import save
     from dembound.results.json_files import write_json
@@ -196,7 +200,7 @@ def _leave_summary(
     write_json(folder / "summary.json", summary)
     out.print(f"wrote {folder / 'summary.json'}")
     picture = folder / "convergence.png"
-    picture.unlink(missing_ok=True)  # one of an earlier calibration with another method
+    remove(picture)  # one of an earlier calibration with another method
     if found[0].beta:
         save(plot_convergence(records), picture)
         out.print(f"wrote {picture}")

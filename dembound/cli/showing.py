@@ -21,8 +21,7 @@ def _page(path: Path) -> Path:
     """A page to write. Raises CaseError if its name does not end in ``.html``."""
     if path.suffix.lower() not in (".html", ".htm"):
         raise CaseError([f"--output: is {path}, must end in .html"])
-    writable(path)
-    return path
+    return writable(path) or path
 
 
 @app.command("report")
@@ -47,7 +46,7 @@ def _movie(path: Path) -> Path:
     from dembound.report.movie import require_movie
 
     require_movie(path)
-    return path
+    return (writable(path) if path.suffix else None) or path
 
 
 @app.command("movie", rich_help_panel=MORE)

@@ -11,6 +11,7 @@ from dembound import shipped
 from dembound.cli.app import MORE, app, writable
 from dembound.cli.console import out
 from dembound.errors import CaseError
+from dembound.files import write_text
 from dembound.starting import DEFAULT, ENDING, names, starting_point, titles
 
 SCHEMA_FILE = "dembound.schema.json"
@@ -49,7 +50,7 @@ def new(
     if schema:
         _write_schema_beside(path)
         text = f"#:schema ./{SCHEMA_FILE}\n{text}"
-    path.write_text(text, encoding="utf-8")
+    write_text(path, text)
     out.print(f"wrote {path} from the starting point {start}; try: dembound check {path}")
 
 
@@ -88,7 +89,7 @@ def _write_schema_beside(path: Path) -> None:
         if file.read_text(encoding="utf-8") == text:
             return
     writable(file)
-    file.write_text(text, encoding="utf-8")
+    write_text(file, text)
     out.print(f"wrote {file}, with which editors complete and check cases")
 
 
@@ -110,7 +111,7 @@ def schema(
     if output is None:
         typer.echo(_schema(), nl=False)
         return
-    output.write_text(_schema(), encoding="utf-8")
+    write_text(output, _schema())
     out.print(f"wrote {output}")
 
 

@@ -41,7 +41,7 @@ def match_strengths(
     Raises CaseError for a ratio that parallel bonds do not reach, and if the file to write exists.
     """
     from dembound.casefile.edit import commented, edited
-    from dembound.results.replacing import replacing
+    from dembound.files import write_text
     from dembound.studies.laboratory.strengths import (
         CLOSE,
         Search,
@@ -82,8 +82,7 @@ def match_strengths(
     tested = with_bonds(case, best.pb_ten, best.pb_coh)
     said = [f"{FOUND} {strength_in_words(test, best)}; {loading.sample(tested, test).in_words}" for test in wanted]
     text = edited(text_for(target, path, case, settings), keys)
-    with replacing(target) as part:
-        part.write_bytes(commented(text, "material.pb_ten", said, FOUND).encode())
+    write_text(target, commented(text, "material.pb_ten", said, FOUND))
     out.print(f"wrote {target}")
     if best.deviation(wanted) > CLOSE:
         missed = ", ".join(f"{test} is {excess_in_words(test, best, wanted)}" for test in wanted)

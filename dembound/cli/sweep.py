@@ -221,10 +221,11 @@ def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
 
 def _leave(swept: Swept, folder: Path, title: str | None) -> Iterator[Path]:
     """Write the results of a sweep, yielding each file."""
+    from dembound.files import remove
     from dembound.studies.sweep.tables import write_tables
 
     yield from write_tables(swept, folder)
-    (folder / "sweep.png").unlink(missing_ok=True)
+    remove(folder / "sweep.png")
     if swept.shown:
         from dembound.plot.style import save
         from dembound.plot.sweep import plot_sweep

@@ -16,8 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from filelock import FileLock, Timeout
+from filelock import Timeout
 
+from dembound.errors import RecordError
+from dembound.files import DAMAGED, arrays_of, content_of, lock_of, replacing
 from dembound.interrupts import look
 from dembound.machine import private_folder, user_cache
 from dembound.packings.brick import Brick
@@ -28,6 +30,9 @@ FORMAT = 3  # raise it whenever the packing procedure or the file layout changes
 
 LOOK = 0.5
 """Seconds between two checks for a request to end, while another process packs."""
+
+LARGEST, EXPANDED = 2**29, 16
+"""Largest size (bytes) of a file that is read, and of its arrays over the file: numbers are hardly compressed."""
 
 DIGEST = hashlib.sha256
 """Computes the digest at the end of a file, which is still a valid NPZ file."""
@@ -64,9 +69,10 @@ def _alone(path: Path) -> Iterator[bool]:
 
     If no lock can be made, as in a folder without permission to write, it does not wait.
     """
-    lock, waited = FileLock(path), False
-    with contextlib.suppress(OSError, NotImplementedError):
+    lock, waited = None, False
+    with contextlib.suppress(OSError, NotImplementedError, RecordError):
         path.parent.mkdir(parents=True, exist_ok=True)
+        lock = lock_of(path)
         try:
             lock.acquire(blocking=False)
         except Timeout:
@@ -78,7 +84,7 @@ def _alone(path: Path) -> Iterator[bool]:
     try:
         yield waited
     finally:
-        if lock.is_locked:
+        if lock is not None and lock.is_locked:
             with contextlib.suppress(OSError):  # Windows keeps a file that is open
                 path.unlink()
             lock.release()
@@ -99,15 +105,16 @@ def _digest(key_params: Mapping[str, Any]) -> str:
 
 def _load(path: Path) -> Brick | None:
     """The brick of a file; None if there is no file or it is damaged, in which case it is logged."""
+    size = DIGEST().digest_size
     try:
-        content = path.read_bytes()
+        content = content_of(path, LARGEST)
     except OSError:
         return None
-    size = DIGEST().digest_size
-    if DIGEST(content[:-size]).digest() == content[-size:]:
-        with np.load(io.BytesIO(content), allow_pickle=False) as data:
-            arrays = {name: data[name] for name in data.files}
-        with contextlib.suppress(ValueError, TypeError, KeyError):  # written by something else
+    except RecordError:  # a link, or what cannot be a brick
+        content = b""
+    if content and DIGEST(content[:-size]).digest() == content[-size:]:
+        with contextlib.suppress(*DAMAGED):  # written by something else
+            arrays = arrays_of(io.BytesIO(content), EXPANDED * len(content))
             brick = Brick(**{**arrays, "residual_ratio": float(arrays["residual_ratio"])})
             brick.check()
             return brick
@@ -118,11 +125,7 @@ def _load(path: Path) -> Brick | None:
 def _save(brick: Brick, path: Path) -> None:
     content = io.BytesIO()
     np.savez_compressed(content, **asdict(brick))
-    part = path.with_suffix(f".{os.getpid()}.part")
-    with contextlib.suppress(OSError):  # without a cache only time is lost
+    with contextlib.suppress(OSError, RecordError):  # without a cache only time is lost
         path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            part.write_bytes(content.getvalue() + DIGEST(content.getvalue()).digest())
-            part.replace(path)  # atomic, as another process may write the same brick
-        finally:
-            part.unlink(missing_ok=True)
+        with replacing(path) as file:
+            file.write(content.getvalue() + DIGEST(content.getvalue()).digest())

@@ -18,8 +18,8 @@ from matplotlib.patches import Patch
 from matplotlib.path import Path as Path2D
 from matplotlib.ticker import AutoLocator, LogLocator, ScalarFormatter
 
+from dembound.files import replacing
 from dembound.interrupts import look
-from dembound.results.replacing import replacing
 
 # Okabe & Ito: distinct with every kind of colour vision; without yellow, which is too pale for lines on white
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -250,8 +250,8 @@ def save(figure: Figure, path: Path, title: str | None = None) -> None:
         figure.suptitle(title, fontsize=11, parse_math=False)
     lay_out(figure)
     look()
-    with replacing(path) as part:  # by the canvas, as savefig draws everything twice
-        FigureCanvasAgg(figure).print_png(part, pil_kwargs={"compress_level": COMPRESSION})
+    with replacing(path) as file:  # by the canvas, as savefig draws everything twice
+        FigureCanvasAgg(figure).print_png(file, pil_kwargs={"compress_level": COMPRESSION})
 
 
 def lay_out(figure: Figure) -> None:

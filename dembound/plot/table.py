@@ -1,6 +1,5 @@
 """The lines of a picture as numbers, in the units of the picture."""
 
-import csv
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
@@ -11,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from dembound.results.replacing import replacing
+from dembound.results.csv_files import write_csv
 
 Column = tuple[str, np.ndarray]
 """A head with its unit, and the values (k,) below it."""
@@ -26,12 +25,8 @@ def write_lines(figure: Figure, path: Path) -> None:
     Raises FileNotFoundError if the folder of the path does not exist.
     """
     columns = list(columns_of(figure))
-    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow([head for head, _ in columns])
-        table.writerows(
-            zip_longest(*([f"{value + 0.0:.10g}" for value in values] for _, values in columns), fillvalue="")
-        )
+    cells = zip_longest(*([f"{value + 0.0:.10g}" for value in values] for _, values in columns), fillvalue="")
+    write_csv(path, [[head for head, _ in columns], *cells])
 
 
 def columns_of(figure: Figure) -> Iterator[Column]:

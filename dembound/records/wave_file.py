@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from dembound.files import replacing
 from dembound.records.processing import Motion
-from dembound.results.replacing import replacing
 
 HEAD = "time (s),velocity (m/s)"
 """Line above the numbers."""
@@ -21,5 +21,6 @@ def write_wave(path: Path, motion: Motion, origin: Sequence[str]) -> None:
     lines = [*origin, *motion.steps, f"times: from the first sample, {motion.time[0]:g} s of the record"]
     head = "".join(f"# {line}\n" for line in lines) + HEAD
     times = motion.time_step * np.arange(len(motion.time))
-    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        np.savetxt(file, np.column_stack([times, motion.velocity + 0.0]), "%.9g", ",", header=head, comments="")
+    columns = np.column_stack([times, motion.velocity + 0.0])
+    with replacing(path) as file:
+        np.savetxt(file, columns, "%.9g", ",", header=head, comments="", encoding="utf-8")

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.files import new_folder, replacing, require_folder
 from dembound.kinds import kind_of_record
 from dembound.motion.moving_picture import MovingPicture
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
 from dembound.plot.time_line import TimeLine
 from dembound.results.histories import monitor_names
-from dembound.results.replacing import replacing, require_folder
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -139,22 +139,20 @@ def write_movie(
 
     if path.suffix:
         colours = _common_colours(movie)
-        with replacing(path) as part:
-            _write_gif((_reduced(frame, colours) for frame in frames()), part, fps)
+        with replacing(path) as file:
+            _write_gif((_reduced(frame, colours) for frame in frames()), file, fps)
         return
-    with TemporaryDirectory(prefix=f"{path.name}.part", dir=path.parent) as aside:
-        folder = Path(aside) / path.name
-        folder.mkdir()
+    with new_folder(path) as folder:
         for number, frame in enumerate(frames()):
-            _picture(frame).save(folder / f"{number:04d}.png")
-        folder.rename(path)
+            with replacing(folder / f"{number:04d}.png") as file:
+                _picture(frame).save(file, "png")
 
 
 def require_movie(path: Path) -> None:
     """Raise CaseError if no movie of such a name can be written here, FileNotFoundError if there is no such folder."""
     if path.suffix.lower() not in (".gif", ""):
         raise CaseError([f"--output: is {path}, must end in .gif, or have no ending: a folder for frames as PNG files"])
-    if not path.suffix and path.exists():
+    if not path.suffix and os.path.lexists(path):
         raise CaseError([f"--output: {path} is there already, frames are written to a new folder"])
     require_folder(path)
 
@@ -198,9 +196,9 @@ def _reduced(frame: np.ndarray, colours: Image) -> Image:
     return _picture(frame).quantize(palette=colours, dither=Dither.NONE)
 
 
-def _write_gif(pictures: Iterator[Image], path: Path, fps: float) -> None:
+def _write_gif(pictures: Iterator[Image], file: BinaryIO, fps: float) -> None:
     """Write an animated picture that repeats."""
     first = next(pictures)
     duration = 10 * max(FASTEST_GIF, math.floor(100.0 / fps + 0.5))
     looks = {"save_all": True, "append_images": pictures, "duration": duration, "loop": 0, "optimize": False}
-    first.save(path, "gif", **looks)
+    first.save(file, "gif", **looks)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.errors import CaseError, RecordError, visible
+from dembound.files import require_folder, write_text
 from dembound.plot.energy import plot_energy
 from dembound.plot.field import evenly_chosen
 from dembound.plot.histories import largest_values, plot_histories
@@ -24,7 +25,6 @@ from dembound.report.pictures import Picture, picture_of, uri_of
 from dembound.report.runs import ReportedRun, read_runs
 from dembound.results.histories import read_histories
 from dembound.results.reader import reading, snapshots_of, understood
-from dembound.results.replacing import replacing, require_folder
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -98,8 +98,7 @@ def write_report(records: Sequence[Path], path: Path, say: Callable[[str], None]
     runs = read_runs(records)
     with understood(*records):
         text = _render(runs, say)
-    with replacing(path) as part:
-        part.write_text(text, encoding="utf-8")
+    write_text(path, text)
 
 
 def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:

@@ -7,9 +7,7 @@ rows.
 
 from __future__ import annotations
 
-import io
 import json
-import math
 import os
 import time
 import zipfile
@@ -21,10 +19,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.errors import CaseError, RecordError
+from dembound.files import DAMAGED, arrays_of, opened, replacing
 from dembound.interrupts import Stopped, caught
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
-from dembound.results.replacing import replacing
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -47,9 +45,9 @@ class Checkpoint:
     arrays: Arrays
 
     def write(self, path: Path, *, durable: bool = True) -> None:
-        """Write to a temporary file and rename it; durable : wait until it is on the disk."""
+        """Write to a temporary file and rename it; durable : wait until it is on the disk; errors as of `replacing`."""
         text = np.frombuffer(json.dumps(dict(self.facts)).encode(), dtype=np.uint8)
-        with replacing(path) as part, part.open("wb") as file:
+        with replacing(path) as file:
             np.savez(file, allow_pickle=False, **{FACTS: text, **self.arrays})  # type: ignore[arg-type]
             if durable:
                 file.flush()
@@ -57,38 +55,22 @@ class Checkpoint:
 
     @classmethod
     def read(cls, path: Path) -> Checkpoint:
-        """Read a checkpoint; raises RecordError for a file that is damaged, CaseError for one of another version."""
-        try:
-            content = path.read_bytes()
-            _require_small(content)
-            with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-                arrays = {name: archive[name] for name in archive.files}
-            facts = json.loads(arrays.pop(FACTS).tobytes())
-            version = facts["version"]
-        except (KeyError, zipfile.BadZipFile) as error:
-            raise RecordError([f"{path}: is damaged: {error}"]) from None
-        except (ValueError, TypeError, EOFError, NotImplementedError, MemoryError, RecursionError, AttributeError):
-            # whose messages are about numpy's options
-            raise RecordError([f"{path}: is damaged, no archive of arrays"]) from None
+        """Read a checkpoint.
+
+        Raises RecordError for a file that is damaged, a link, or no file, CaseError for one of another version.
+        """
+        with opened(path) as file:
+            try:
+                arrays = arrays_of(file, os.fstat(file.fileno()).st_size)
+                facts = json.loads(arrays.pop(FACTS).tobytes())
+                version = facts["version"]
+            except (KeyError, zipfile.BadZipFile) as error:
+                raise RecordError([f"{path}: is damaged: {error}"]) from None
+            except DAMAGED:  # whose messages are about numpy's options
+                raise RecordError([f"{path}: is damaged, no archive of arrays"]) from None
         if version != __version__:
             raise CaseError([f"{path}: is of dembound {version}, this is {__version__}; run the case anew"])
         return cls(facts, arrays)
-
-
-def _require_small(content: bytes) -> None:
-    """Raise ValueError for a compressed archive, or for arrays that declare more bytes than the archive has."""
-    if content[:2] != b"PK":
-        raise ValueError("no archive")
-    with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        for each in archive.infolist():
-            if each.compress_type != zipfile.ZIP_STORED:
-                raise ValueError("compressed")
-            with archive.open(each) as file:
-                version = np.lib.format.read_magic(file)
-                read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-                shape, _, dtype = read(file)
-            if dtype.itemsize * math.prod(shape) > each.file_size:
-                raise ValueError("declares more than it has")
 
 
 class Checkpoints(Tracker):

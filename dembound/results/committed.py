@@ -19,7 +19,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from dembound.results.replacing import replacing
+from dembound.files import NEW, content_of, created, opened, replacing, require_plain
 
 if TYPE_CHECKING:
     import h5py
@@ -35,6 +35,9 @@ HEADER = struct.Struct("<4sQQI")
 
 MAGIC = b"dbl1"
 
+LONGEST = 2**26
+"""Bytes by which a log may be longer than twice its file, and by which a commit may make a file longer."""
+
 
 class CommittedFile(io.RawIOBase):
     """A file that is changed only by `commit`.
@@ -45,6 +48,8 @@ class CommittedFile(io.RawIOBase):
     mode : "w" creates it with the first commit; until then it is called ``<file>.new``. "a" completes an interrupted
     commit and continues, "r" only reads.
 
+    Raises RecordError where there is a link or no regular file; a record is read through a link, too.
+
     Attributes
     ----------
     failure : the first write that failed; nothing is written after it.
@@ -52,15 +57,18 @@ class CommittedFile(io.RawIOBase):
 
     def __init__(self, path: Path, mode: Literal["w", "a", "r"]) -> None:
         self.path, self.log = path, log_of(path)
-        self._place = path.with_name(f"{path.name}.new") if mode == "w" else path
         self.failure: OSError | None = None
         self._pages: dict[int, bytearray] = {}
         self._at = 0
-        self._file = io.FileIO(self._place, {"w": "w+", "a": "r+", "r": "r"}[mode])
+        if mode == "w":
+            require_plain(self.log)
+            self._place, self._file = created(path, NEW)
+        else:
+            self._place, self._file = path, opened(path, "r+" if mode == "a" else "r", follow=mode == "r")
         self._size = os.fstat(self._file.fileno()).st_size
         self._kept = self._size  # at the last commit
-        if mode != "w" and self.log.is_file():
-            self._take_log(self.log.read_bytes())
+        if mode != "w" and os.path.lexists(self.log):
+            self._take_log(content_of(self.log, LONGEST + 2 * self._size))
             if mode == "a":
                 self.commit()
 
@@ -160,7 +168,7 @@ class CommittedFile(io.RawIOBase):
         self.log.unlink(missing_ok=True)
         self._place.replace(self.path)
         self._place = self.path
-        self._file = io.FileIO(self.path, "r+")
+        self._file = opened(self.path, "r+")
 
     def _read(self, at: int, view: memoryview) -> int:
         """Read bytes of the file at a position; returns their number, which is smaller at the end of the file."""
@@ -181,15 +189,10 @@ class CommittedFile(io.RawIOBase):
         """Write all pages to a log, completely or not at all; wait : function that waits for the disk, or not."""
         numbers = struct.pack(f"<{len(self._pages)}Q", *self._pages)
         body = numbers + b"".join(self._pages.values())
-        part = self.log.with_name(f"{self.log.name}.part")
-        try:
-            with io.FileIO(part, "w") as file:
-                _write_all(file, memoryview(HEADER.pack(MAGIC, self._size, len(self._pages), zlib.crc32(body)) + body))
-                wait(file.fileno())
-            part.replace(self.log)
-        except OSError:
-            part.unlink(missing_ok=True)
-            raise
+        with replacing(self.log) as file:
+            file.write(HEADER.pack(MAGIC, self._size, len(self._pages), zlib.crc32(body)) + body)
+            file.flush()
+            wait(file.fileno())
 
     def _take_log(self, log: bytes) -> None:
         """Take the pages of a log; one that is not complete was never applied."""
@@ -200,6 +203,8 @@ class CommittedFile(io.RawIOBase):
         if magic != MAGIC or len(body) != count * (8 + PAGE) or zlib.crc32(body) != checksum:
             return
         numbers = struct.unpack_from(f"<{count}Q", body)
+        if max(size, PAGE * max(numbers, default=0)) > LONGEST + 2 * self._size:
+            return
         starts = range(8 * count, len(body), PAGE)
         self._pages = {number: bytearray(body[at : at + PAGE]) for number, at in zip(numbers, starts, strict=True)}
         self._size = size
@@ -228,7 +233,7 @@ def new_file(path: Path) -> Iterator[h5py.File]:
     """
     import h5py
 
-    with replacing(path) as part, CommittedFile(part, "w") as store:
+    with CommittedFile(path, "w") as store:
         with h5py.File(store, "w", libver=FORMAT) as file:
             yield file
         store.commit(durable=False)
@@ -242,7 +247,7 @@ def changed_file(path: Path) -> Iterator[h5py.File]:
     """
     import h5py
 
-    if not path.is_file():
+    if not os.path.lexists(path):
         with new_file(path) as file:
             yield file
         return

@@ -1,8 +1,8 @@
 """The folder of a run: written under another name, locked against a second run, and renamed when it is complete."""
 
 import errno
+import os
 import re
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import Self
 from filelock import FileLock, Timeout
 
 from dembound.errors import CONTROL, CaseError
+from dembound.files import below, is_link, lock_of, require_no_link, require_plain
 
 PARTIAL = ".partial"
 """Ending of the folder of a run that is not complete."""
@@ -21,11 +22,15 @@ REPLACED = ".replaced"
 LOCK = "run.lock"
 
 OWN = re.compile(
-    r"run\.(h5|h5\.new|h5\.log|h5\.log\.part|lock)|checkpoint\.npz(\.part)?|settled/[a-z.]+\.npz(\.part)?|(summary\.json|estimate\.h5)(\.part)?"
-    r"|(scene|histories|histories_stress)\.png(\.part)?"
-    r"|paraview/((particles|contacts|bar|continuum)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py)(\.part)?"
+    r"(run\.(h5|h5\.log|lock)|checkpoint\.npz|settled/[a-z.]+\.npz|summary\.json|estimate\.h5"
+    r"|(scene|histories|histories_stress)\.png"
+    r"|paraview/((particles|contacts|bar|continuum)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py))"
+    r"((\.\w{8})?\.(part|new)(/[^/]+)?)?"
 )
 """The files that a run writes, by their paths in its folder; all other files are kept."""
+
+FOLDERS = ("settled", "paraview")
+"""The folders that a run makes in its folder."""
 
 
 NO_NAMES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.IGNORECASE)
@@ -74,7 +79,8 @@ class Folder:
     def check(self) -> None:
         """Raise CaseError where results cannot be written: at a link, a file, a folder without a run or one in use.
 
-        Also for names that end like the partial folder of another run, or are impossible on some system.
+        Also for names that end like the partial folder of another run, or are impossible on some system. Raises
+        RecordError for a link, or no file, in place of a file or folder of a run within it.
         """
         if problem := problem_of(self.name):
             raise CaseError([f"{self.name!r}: is not a valid name for results, {problem}; give another --name"])
@@ -83,17 +89,25 @@ class Folder:
                 raise CaseError(
                     [f"{self.name}: is not a valid name of a case, must not end in {ending}; give another --name"]
                 )
-        for path in (self.final, self.partial):
-            if path.is_symlink():
-                raise CaseError([f"{path}: is a link, must be a folder; a link may lead to the folder above it"])
+        self.require_own()
+        for path in (self.final, self.partial, self._old):
             if path.exists() and not path.is_dir():
                 raise CaseError([f"{path}: is a file, give another --output or --name"])
         if self.final.is_dir() and any(self.final.iterdir()) and not (self.final / "run.h5").is_file():
             raise CaseError([f"{self.final}: exists and holds no run, give another --output or --name"])
         self.require_unused()
 
+    def require_own(self) -> None:
+        """Raise RecordError for a link, or what is no file, in place of a folder or file that a run writes."""
+        folders = self.final, self.partial, self._old
+        require_no_link(*folders, *(folder / name for folder in folders for name in FOLDERS))
+        for folder in filter(Path.is_dir, folders):
+            own = (each for each in below(folder) if OWN.fullmatch(each.relative_to(folder).as_posix()))
+            require_plain(*(each for each in own if is_link(each) or not each.is_dir()))
+
     def require_unused(self) -> None:
-        """Raise CaseError if a run is writing to it."""
+        """Raise CaseError if a run is writing to it, RecordError if it is a link."""
+        require_no_link(self.partial)
         if (self.partial / LOCK).is_file():
             self._lock().release()
 
@@ -127,7 +141,7 @@ class Folder:
 
     def _lock(self) -> FileLock:
         """The lock of the partial folder, acquired; raises CaseError if another run has it."""
-        lock = FileLock(self.partial / LOCK)
+        lock = lock_of(self.partial / LOCK)
         try:
             lock.acquire(blocking=False)
         except Timeout:
@@ -159,9 +173,9 @@ class Folder:
 
 def _remove_own(folder: Path, but: str = "") -> None:
     """Remove the files that a run has written, except one, and folders that are then empty."""
-    for path in sorted(folder.rglob("*"), reverse=True):
+    for path in below(folder):
         name = path.relative_to(folder).as_posix()
-        if path.is_dir() and not path.is_symlink():
+        if path.is_dir() and not is_link(path):
             if not any(path.iterdir()):
                 path.rmdir()
         elif name != but and OWN.fullmatch(name):
@@ -169,14 +183,22 @@ def _remove_own(folder: Path, but: str = "") -> None:
 
 
 def _move_all(here: Path, there: Path) -> None:
-    """Move all files of a folder into another one, unless there is one of that name, and remove it if it is empty."""
-    for path in sorted(here.rglob("*"), reverse=True):
+    """Move all files of a folder into another one, unless there is one of that name, and remove it if it is empty.
+
+    Folders that are links are not entered, here and there.
+    """
+    for path in below(here):
         target = there / path.relative_to(here)
-        if path.is_dir() and not path.is_symlink():
+        if path.is_dir() and not is_link(path):
             if not any(path.iterdir()):
                 path.rmdir()
-        elif not target.exists():
+        elif not os.path.lexists(target) and not any(is_link(each) for each in _between(there, target)):
             target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.move(path, target)
+            path.rename(target)
     if not any(here.iterdir()):
         here.rmdir()
+
+
+def _between(folder: Path, path: Path) -> Iterator[Path]:
+    """The folders within a folder that lead to a path in it."""
+    yield from (each for each in path.parents if folder in each.parents)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dembound.errors import CaseError
+from dembound.files import make_folder
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.checkpoint import Checkpoint, Checkpoints, differences
+from dembound.results.json_files import checked
 from dembound.results.reader import understood
 from dembound.version import __version__
 
@@ -30,9 +33,16 @@ def settled_state(folder: Path, name: str, keys: Mapping[str, Any]) -> Arrays:
     if not path.is_file():
         raise CaseError([f"static.from: {folder} has no settled state ({name}.npz)"])
     kept = Checkpoint.read(path)
-    if different := differences(keys, kept.facts["keys"]):
+    if different := differences(keys, checked(_Kept, kept.facts, path).keys):
         raise CaseError([f"static.from: {folder} has settled another body", *different])
     return kept.arrays
+
+
+@dataclass
+class _Kept:
+    """The facts of a stage."""
+
+    keys: dict[str, Any]
 
 
 class KeptStages(Stages):
@@ -81,7 +91,7 @@ class KeptStages(Stages):
     def finish(self, name: str, arrays: Arrays) -> None:
         """Keep the stage and its checkpoint, with which a run can be resumed before its first step."""
         if self._folder is not None:
-            self._folder.mkdir(parents=True, exist_ok=True)
+            make_folder(self._folder)
             facts = {"version": __version__, "keys": self._keys}
             Checkpoint(facts, arrays).write(self._folder / f"{name}.npz")
             simulation, checkpoints = self._begun

@@ -6,13 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from dembound.errors import CaseError, RecordError
+from dembound.files import content_of
+from dembound.results.json_files import LARGEST
 from dembound.results.named import missing
 from dembound.results.reader import open_record, text_of, understood
 
 FILE = "summary.json"
-
-LARGEST = 2**26
-"""Largest size (bytes) of a file that is read."""
 
 
 class Summary(dict[str, Any]):
@@ -36,10 +35,9 @@ def read_json(path: Path, kind: type[Summary] = Summary) -> dict[str, Any]:
 
     Raises RecordError, in one line, for any other file.
     """
+    content = content_of(path, LARGEST)
     try:
-        if path.stat().st_size > LARGEST:
-            raise RecordError([f"{path}: is longer than {LARGEST:,} bytes, as no such file is"])
-        found = json.loads(path.read_text(encoding="utf-8"), object_hook=kind)
+        found = json.loads(content, object_hook=kind)
     except (ValueError, RecursionError):
         raise RecordError([f"{path}: is damaged, no JSON"]) from None
     if not isinstance(found, Summary):

@@ -11,6 +11,7 @@ from matplotlib.image import imsave
 
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError, DemboundError
+from dembound.files import replacing
 from dembound.results.reader import (
     cracks_until,
     is_line,
@@ -21,7 +22,6 @@ from dembound.results.reader import (
     snapshots_of,
     text_of,
 )
-from dembound.results.replacing import replacing
 
 if TYPE_CHECKING:
     import pyvista
@@ -98,8 +98,8 @@ def view(
         if picture is None:
             plotter.show(title=f"dembound: {text_of(file.attrs['name'])}")
         else:
-            with replacing(picture) as part:
-                imsave(part, plotter.screenshot(), format="png")
+            with replacing(picture) as file:
+                imsave(file, plotter.screenshot(), format="png")
 
 
 def require_rendering(in_window: bool) -> None:

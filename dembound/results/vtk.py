@@ -25,11 +25,11 @@ from xml.etree import ElementTree
 import numpy as np
 
 from dembound.casefile.output import ParaView
+from dembound.files import make_folder, replacing, replacing_by_name, write_text
 from dembound.interrupts import look
 from dembound.motion.kind import Kind
 from dembound.motion.state import Arrays
 from dembound.results.reader import cracks_until, datasets_in, open_record, snapshots_of, until
-from dembound.results.replacing import replacing
 from dembound.results.vtkhdf import temporal_file
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
 
     PVD files are written last, so all files they list exist.
 
-    Raises CaseError when the record cannot be read, OSError when a file cannot be written.
+    Raises CaseError when the record cannot be read, OSError or RecordError when a file cannot be written.
     """
     if files == "none":
         return
@@ -64,7 +64,7 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
         if not snapshots:
             return
         digits = max(map(len, snapshots))
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         particles = {name: dataset[:] for name, dataset in file["particles"].items()}
         particles |= {f"continuum/{name}": dataset[:] for name, dataset in file.get("continuum", {}).items()}
         cracks = cracks_until(file, np.inf)
@@ -80,7 +80,7 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
                     series[name](number.zfill(digits), time, mesh)
         if len(cracks["time"]) > 0:
             _write(folder / "cracks.vtu", _cracks(cracks))
-    (folder / "view.py").write_text(kind.view_script, encoding="utf-8")
+    write_text(folder / "view.py", kind.view_script)
 
 
 def _number_of(snapshot: h5py.Group) -> str:
@@ -130,9 +130,9 @@ def shown(fields: Arrays) -> dict[str, np.ndarray]:
 
 def _write(path: Path, mesh: meshio.Mesh) -> None:
     """Write a VTU file, either completely or not at all."""
-    with replacing(path) as part:
-        import meshio
+    import meshio
 
+    with replacing_by_name(path) as part:
         meshio.write(part, mesh, file_format="vtu", compression=None)
 
 
@@ -150,5 +150,5 @@ def _write_index(path: Path, times: dict[str, float]) -> None:
     for name, time in times.items():
         ElementTree.SubElement(collection, "DataSet", timestep=repr(time), part="0", file=name)
     ElementTree.indent(root)
-    with replacing(path) as part:
-        ElementTree.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
+    with replacing(path) as file:
+        ElementTree.ElementTree(root).write(file, encoding="utf-8", xml_declaration=True)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from filelock import FileLock, Timeout
+from filelock import Timeout
 
+from dembound.files import lock_of, make_folder
 from dembound.interrupts import look
 
 LOOK = 0.5
@@ -45,8 +46,8 @@ class Shared:
         if folder is None:
             yield
             return
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        lock = FileLock(folder.with_suffix(".lock"))
+        make_folder(folder.parent)
+        lock = lock_of(folder.with_suffix(".lock"))
         while not lock.is_locked:
             look()
             with suppress(Timeout):

@@ -1,25 +1,26 @@
 """Runs that can be continued: from a folder of results to its case and its last checkpoint."""
 
 import json
-import math
-import shutil
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import tomli_w
+from pydantic import ConfigDict, Field
 
 from dembound.casefile import Case
 from dembound.casefile.run import ENDING
 from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.files import copy, make_folder
 from dembound.kinds import load, loads
 from dembound.motion.scene import Scene
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
 from dembound.results.damage import require_readable
 from dembound.results.folder import PARTIAL, Folder, with_name
+from dembound.results.json_files import checked
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.new_record import require_laid_out
 from dembound.results.reader import increasing, open_record, text_of, understood
@@ -30,16 +31,38 @@ from dembound.waves.file_wave import read_text
 MOST_KEYS = 5
 """Largest number of changed keys of a case that are listed."""
 
-FACTS: Mapping[str, tuple[type, ...]] = {
-    **dict.fromkeys(("name", "case"), (str,)),
-    **dict.fromkeys(("files", "keys", "seconds"), (dict,)),
-    **dict.fromkeys(("step", "regular_steps"), (int,)),
-    "time_step": (float,),
-    "stage": (str, type(None)),
-    "counts": (dict, type(None)),
-    "resumed": (list,),
-}
-"""The facts of the checkpoint of a run, and their types."""
+Count = Annotated[int, Field(ge=0, le=2**53)]
+
+
+@dataclass
+class _Counts:
+    """The numbers of rows at a checkpoint, see `Recorder.counts`."""
+
+    histories: Count
+    sides: Count
+    cracks: Count
+    energy: Count
+    laws: Count
+    snapshots: Count
+
+
+@dataclass
+class _Facts:
+    """The facts of the checkpoint of a run, as JSON has them."""
+
+    name: str
+    case: str
+    files: dict[str, str]
+    keys: dict[str, Any]
+    seconds: dict[Literal["settle", "step", "record"], Annotated[float, Field(ge=0.0)]]
+    step: Count
+    regular_steps: Annotated[Count, Field(ge=1)]
+    time_step: Annotated[float, Field(gt=0.0)]
+    stage: str | None
+    counts: _Counts | None
+    resumed: list[dict[str, Any]]
+
+    __pydantic_config__ = ConfigDict(allow_inf_nan=False)
 
 
 @dataclass(frozen=True)
@@ -100,10 +123,11 @@ class Unfinished:
             raise CaseError([f"{self.path}: has been changed by another run meanwhile; nothing is left to resume"])
         if self.path == partial:
             return
-        for name in ("run.h5", FILE):
-            shutil.copy(self.path / name, partial / name)
-        if (self.path / STAGES).is_dir():
-            shutil.copytree(self.path / STAGES, partial / STAGES, dirs_exist_ok=True)
+        kept = sorted((self.path / STAGES).glob("*.npz"))
+        if kept:
+            make_folder(partial / STAGES)
+        for path in (self.path / "run.h5", self.path / FILE, *kept):
+            copy(path, partial / path.relative_to(self.path))
 
 
 def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
@@ -115,7 +139,7 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
     results.require_unused()
     path = _place_of_checkpoint(with_name(folder), results.partial)
     facts = dict(Checkpoint.read(path / FILE).facts)
-    _require_facts(facts, path / FILE)
+    checked(_Facts, facts, path / FILE)
     case = replace(_case_of(facts, path), name=results.name)
     is_complete = not path.name.endswith(PARTIAL)
     if until is None and is_complete:
@@ -178,15 +202,6 @@ def _changed_inputs(folder: Path, inputs: Mapping[str, str]) -> Iterator[str]:
         if is_other:
             of_it = f"{folder / name}: has changed since the run began; its values as they were go on"
             yield f"{of_it}, dembound run begins with the changed ones"
-
-
-def _require_facts(facts: Mapping[str, Any], path: Path) -> None:
-    """Raise RecordError for a checkpoint that lacks one of the facts of a run, or has one of another type."""
-    for name, kinds in FACTS.items():
-        if name not in facts or not isinstance(facts[name], kinds):
-            raise RecordError([f"{path}: is damaged, or not of a run: {name} is missing or invalid"])
-    if not (facts["step"] >= 0 and 0.0 < facts["time_step"] < math.inf):
-        raise RecordError([f"{path}: is damaged: its time is invalid"])
 
 
 def _place_of_checkpoint(folder: Path, partial: Path) -> Path:

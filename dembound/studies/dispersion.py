@@ -1,6 +1,5 @@
 """Dispersion of bars of nodes: lattices from numbers or cases, their table, and simulations for comparison."""
 
-import csv
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import product
@@ -24,7 +23,7 @@ from dembound.methods.bonds import Bonds
 from dembound.methods.method import WIDEST
 from dembound.methods.rod import Rod
 from dembound.motion.simulation import Simulation
-from dembound.results.replacing import replacing
+from dembound.results.csv_files import write_csv
 
 COLUMNS = (
     "horizon",
@@ -149,11 +148,7 @@ def write_table(rows: Sequence[Lattice], path: Path) -> None:
 
     Cells are empty where a wave grows.
     """
-    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(COLUMNS)
-        for lattice in rows:
-            table.writerows(_lines(lattice))
+    write_csv(path, [COLUMNS, *(line for lattice in rows for line in _lines(lattice))])
 
 
 def _lines(lattice: Lattice) -> Iterator[list[str]]:

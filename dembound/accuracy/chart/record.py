@@ -12,6 +12,7 @@ import numpy as np
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.runner import Run
 from dembound.errors import CaseError, RecordError
+from dembound.files import make_folder, remove, require_plain
 from dembound.motion.kind import Finding
 from dembound.results.committed import changed_file
 from dembound.results.reader import finite, increasing, open_record, text_of, understood
@@ -24,7 +25,7 @@ LOGGER = logging.getLogger(__name__)
 
 FILE = "chart.h5"
 
-OWN = (FILE, f"{FILE}.new", f"{FILE}.log", f"{FILE}.log.part", "chart.csv", "chart.png")
+OWN = (*(f"{FILE}{ending}" for ending in ("", ".new", ".log", ".log.part")), "chart.csv", "chart.png")
 """The files of a chart; all others in its folder are somebody else's, and are kept."""
 
 NUMBERS = ("failure", "time_step", "step_limit", "steps", "count", "work", "threads", "late")
@@ -102,16 +103,16 @@ class Record:
 def record_in(folder: Path, resume: bool) -> Record:
     """The record of a chart in its folder; with `resume` an earlier chart is kept, otherwise it is deleted.
 
-    Other files in the folder remain. Raises CaseError for a folder that holds something else.
+    Other files in the folder remain. Raises CaseError for a folder that holds something else, RecordError for links.
     """
     path = folder / FILE
+    require_plain(*(folder / name for name in OWN))
     if folder.exists() and any(folder.iterdir()) and not path.is_file():
         raise CaseError([f"{folder}: exists and holds no chart, give another --output or --name"])
     if path.is_file() and not resume:
         LOGGER.info("%s: replacing the chart of before, whose runs --resume would keep", folder)
-        for name in OWN:
-            (folder / name).unlink(missing_ok=True)
-    folder.mkdir(parents=True, exist_ok=True)
+        remove(*(folder / name for name in OWN))
+    make_folder(folder)
     return Record(path)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +14,7 @@ from dembound.accuracy.chart.record import write_motions
 from dembound.accuracy.chart.study import Charted, Line
 from dembound.accuracy.choice import digest
 from dembound.results.committed import changed_file
-from dembound.results.replacing import replacing
+from dembound.results.csv_files import write_csv
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -108,13 +107,11 @@ def write_table(charted: Charted, path: Path) -> None:
     """Write a row for every choice as CSV, SI units, errors as parts of one; completely or not at all."""
     findings = sorted({name for line in charted.lines for name in line.outcome.findings})
     keys = list(dict.fromkeys(key for line in charted.lines for key in line.choice.changes))
-    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow([*COLUMNS, *(part for name in findings for part in (name, f"{name} error")), *keys])
-        for number, line in enumerate(charted.lines):
-            changed = (line.choice.changes.get(key) for key in keys)
-            row = [line.choice.name, *_numbers(charted, number, line), *_found(charted, line, findings), *changed]
-            table.writerow(["" if value is None else value for value in row])
+    rows: list[list[Any]] = [[*COLUMNS, *(part for name in findings for part in (name, f"{name} error")), *keys]]
+    for number, line in enumerate(charted.lines):
+        changed = (line.choice.changes.get(key) for key in keys)
+        rows.append([line.choice.name, *_numbers(charted, number, line), *_found(charted, line, findings), *changed])
+    write_csv(path, rows)
 
 
 def _numbers(charted: Charted, number: int, line: Line) -> list[Any]:

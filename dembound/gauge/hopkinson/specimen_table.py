@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from dembound.files import replacing
 from dembound.gauge.hopkinson.specimen import Specimen
-from dembound.results.replacing import replacing
 
 HEAD = (
     "time (s),stress 3 waves (Pa),stress 2 waves (Pa),stress 1 wave (Pa),strain 3 waves,strain 1 wave,"
@@ -28,5 +28,5 @@ def write_specimen(found: Specimen, path: Path) -> None:
         found.ratio,
         found.in_equilibrium.astype(float),
     )
-    with replacing(path) as part:
-        np.savetxt(part, np.column_stack(columns), delimiter=",", header=HEAD, comments="", fmt="%.9g")
+    with replacing(path) as file:
+        np.savetxt(file, np.column_stack(columns), delimiter=",", header=HEAD, comments="", fmt="%.9g")

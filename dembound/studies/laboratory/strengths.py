@@ -14,6 +14,7 @@ from dembound.casefile.disks.scatter import Scatter
 from dembound.casefile.types import LAWS
 from dembound.disks.material.scatter import drawn
 from dembound.errors import CaseError, RunError
+from dembound.files import require_no_link
 from dembound.kinds import with_changes
 from dembound.results.loading_curve import TestName
 from dembound.studies.laboratory.sample import LAW, Sample
@@ -257,8 +258,9 @@ def measure_in(
 ) -> Measure:
     """The strengths of samples that `make` cuts from a case; every trial has a folder of its own within a folder.
 
-    Raises RunError when a run has failed or has no peak.
+    Raises RunError when a run has failed or has no peak, RecordError for a folder that is a link.
     """
+    require_no_link(folder)
 
     def measure(test: TestName, pb_ten: float, pb_coh: float) -> Statistic:
         sample = make(with_bonds(case, pb_ten, pb_coh), test)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.files import remove
 from dembound.kinds import loads
 from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.loading_curve import LoadingCurve, read_test
@@ -218,7 +219,7 @@ def perform(
     outcomes = sweep([each.member for each in specimens], options, folder, report)
     found = Tested(sample, specimens, outcomes, folder, (shares[0], shares[1]))
     for each in found.done:  # past its peak, so there is nothing to continue
-        found.record(each).with_name(CHECKPOINT).unlink(missing_ok=True)
+        remove(found.record(each).with_name(CHECKPOINT))
     return found
 
 

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from dembound.results.json_files import write_json
+from dembound.errors import RecordError
+from dembound.files import make_folder, write_text
+from dembound.results.csv_files import write_csv
+from dembound.results.json_files import read_json, write_json
 from dembound.results.loading_curve import TestName
-from dembound.results.replacing import replacing
 from dembound.studies.laboratory.study import UNITS, Tested
-from dembound.studies.sweep.tables import write_csv
+from dembound.studies.sweep.statistics import Statistic
 from dembound.version import __version__
 
 MOST_POINTS = 400
@@ -41,6 +43,22 @@ class Ratio(NamedTuple):
     folder: Path
 
 
+@dataclass
+class _Mean:
+    """A mean that another test has left; None where it is not finite."""
+
+    quantity: str
+    mean: float | None
+
+
+@dataclass
+class _Summary:
+    """What is read of the summary of another test."""
+
+    material: dict[str, Any]
+    statistics: list[_Mean]
+
+
 def write_tables(tested: Tested, ratios: Sequence[Ratio]) -> list[Path]:
     """Write all tables, and the case of each run, into the folder of a test; returns the paths."""
     folder = tested.folder
@@ -49,10 +67,9 @@ def write_tables(tested: Tested, ratios: Sequence[Ratio]) -> list[Path]:
     write_csv(paths[1], _points(tested))
     write_json(paths[2], _summary(tested, ratios))
     cases = folder / "cases"
-    cases.mkdir(exist_ok=True)
+    make_folder(cases)
     for specimen in tested.specimens:
-        with replacing(cases / f"{specimen.member.name}.toml") as part:
-            part.write_text(specimen.member.case.text, encoding="utf-8")
+        write_text(cases / f"{specimen.member.name}.toml", specimen.member.case.text)
     return [*paths, cases]
 
 
@@ -126,7 +143,7 @@ def _summary(tested: Tested, ratios: Sequence[Ratio]) -> dict[str, Any]:
 def ratios_of(tested: Tested, output: Path) -> Iterator[Ratio]:
     """Uniaxial compressive over tensile strength, with each other test of the same material in a folder of results."""
     sample = tested.sample
-    own = _uniaxial(sample.test, [{"quantity": s.quantity, "mean": s.mean} for s in tested.statistics])
+    own = _uniaxial(sample.test, tested.statistics)
     for other in OPPOSITES[sample.test]:
         folder = output / f"{sample.case.name}_{other}"
         found = _strength_in(folder, other, sample.material)
@@ -137,13 +154,13 @@ def ratios_of(tested: Tested, output: Path) -> Iterator[Ratio]:
 def _strength_in(folder: Path, test: TestName, material: dict[str, Any]) -> float | None:
     """The strength (Pa) that a test has left in a folder; None without one of this material."""
     try:
-        there = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-        return _uniaxial(test, there["statistics"]) if there["material"] == material else None
-    except (OSError, ValueError, KeyError, TypeError):
+        there = read_json(folder / SUMMARY, _Summary)
+    except (OSError, RecordError):
         return None
+    return _uniaxial(test, there.statistics) if there.material == material else None
 
 
-def _uniaxial(test: TestName, statistics: Sequence[dict[str, Any]]) -> float | None:
+def _uniaxial(test: TestName, statistics: Sequence[_Mean | Statistic]) -> float | None:
     """The mean uniaxial strength (Pa) among the statistics of a test."""
     name = UNIAXIAL.get(test, "strength")
-    return next((float(each["mean"]) for each in statistics if each["quantity"] == name), None)
+    return next((each.mean for each in statistics if each.quantity == name and each.mean), None)

@@ -17,6 +17,7 @@ from dembound.casefile.toml import parsed
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
+from dembound.files import remove
 from dembound.kinds import loads, with_changes
 from dembound.motion.kind import Plan
 from dembound.results.folder import Folder
@@ -102,7 +103,7 @@ def build_library(
     lead = _lead(planned, spacing)
     base = _base(planned, spacing, case.run.duration if duration is None else duration, lead)
     folder = results / f"{case.name}_library"
-    (folder / FILE).unlink(missing_ok=True)
+    remove(folder / FILE)
     names = inputs_of(case)
     plain = _of_runs(base, lead * spacing)
     cases = [] if is_at_rest(case) else [under(plain, {}, REST)]

@@ -1,24 +1,43 @@
 """A library: the responses of a scene to its inputs, and histories under any record as sums of them."""
 
-import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 import numpy as np
+from pydantic import ConfigDict, Field
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, RecordError
 from dembound.kinds import loads
+from dembound.results.json_files import read_json
 from dembound.results.reader import open_record
-from dembound.studies.library.build import FILE, HAT, REST, is_at_rest
+from dembound.studies.library.build import FILE, HAT, REST, inputs_of, is_at_rest
 from dembound.studies.library.record import RecordTimes
 from dembound.version import __version__
 
+MOST_LEAD = 10**6
+"""Largest number of spacings before the values of a record."""
+
 WIDTH = 6
 """Columns of a monitor: displacement x, y, rotation (m, rad), velocity x, y, rotation (m/s, rad/s)."""
+
+
+@dataclass
+class _Facts:
+    """The contents of the file of a library."""
+
+    version: str
+    name: str
+    spacing: Annotated[float, Field(gt=0.0)]
+    lead: Annotated[int, Field(ge=0, le=MOST_LEAD)]
+    inputs: Annotated[list[str], Field(min_length=1)]
+    case: str
+
+    __pydantic_config__ = ConfigDict(allow_inf_nan=False)
 
 
 class Library:
@@ -38,16 +57,15 @@ class Library:
         self.folder = folder
         if not (folder / FILE).is_file():
             raise CaseError([f"{folder}: contains no library, must be a folder written by `dembound library`"])
-        try:
-            facts: dict[str, Any] = json.loads((folder / FILE).read_text(encoding="utf-8"))
-            self.name, self.spacing, self.inputs = str(facts["name"]), float(facts["spacing"]), list(facts["inputs"])
-            self.lead = int(facts["lead"])
-            text, version = str(facts["case"]), facts["version"]
-        except (ValueError, KeyError, TypeError):
-            raise RecordError([f"{folder / FILE}: is damaged"]) from None
-        if version != __version__:
-            raise CaseError([f"{folder}: is a library of dembound {version}, this is {__version__}; make it anew"])
-        self.case = as_kind(loads(text, folder, self.name), DiskCase, "is the case of a bar")
+        facts = read_json(folder / FILE, _Facts)
+        self.name, self.spacing, self.inputs, self.lead = facts.name, facts.spacing, facts.inputs, facts.lead
+        if facts.version != __version__:
+            raise CaseError(
+                [f"{folder}: is a library of dembound {facts.version}, this is {__version__}; make it anew"]
+            )
+        self.case = as_kind(loads(facts.case, folder, self.name), DiskCase, "is the case of a bar")
+        if facts.inputs != inputs_of(self.case):
+            raise RecordError([f"{folder / FILE}: is damaged: its inputs are not those of its case"])
         with open_record(self._record(f"{HAT}{self.inputs[0]}")) as file:
             groups = file["histories"]
             self.monitors = list(groups)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
+from dembound.files import make_folder
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
 from dembound.results.new_record import DISPLACEMENT_UNIT, VELOCITY_UNIT
@@ -52,7 +53,7 @@ def write_response(library: Library, record: Record, path: Path) -> np.ndarray:
     """
     motion = library.motion(record.values)
     case, files = case_of(library, record), _texts(record)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     with new_file(path) as file:
         own = {"name": record.name, "title": case.title, "case": case.text, "keys": json.dumps(case.keys)}
         inherited = {name: library.attributes[name] for name in COPIED if name in library.attributes}

@@ -1,6 +1,5 @@
 """One member of a sweep, in its own process or on a cluster: it is run or calibrated, and its outcome written."""
 
-import json
 import logging
 import math
 import threading
@@ -9,6 +8,9 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import chdir, contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Annotated
+
+from pydantic import ConfigDict, Field
 
 from dembound.accuracy.choice import digest
 from dembound.accuracy.estimate import estimate_if_asked
@@ -16,12 +18,13 @@ from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.casefile.sweep import Action, Method
-from dembound.errors import CaseError, DemboundError
+from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.files import content_of, require_writable, write_text
 from dembound.interrupts import Interrupts, Stopped, look
 from dembound.kinds import loads
 from dembound.motion.trackers import Run
 from dembound.results.folder import Folder
-from dembound.results.json_files import write_json
+from dembound.results.json_files import read_json, write_json
 from dembound.results.summary_file import read_summary
 from dembound.running import Progress, Shared, resume_case, run_case
 from dembound.studies.sweep.values import values_of_calibration, values_of_run
@@ -31,6 +34,9 @@ MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"
 
 BETWEEN = 1.0
 """Seconds between two entries of the time of a run under way."""
+
+LONGEST_TIME = 64
+"""Bytes of a number in a file."""
 
 ALONE = threading.Lock()
 """Lock held by a running member: workers of a cluster may have several threads, but the solver has its own."""
@@ -69,8 +75,10 @@ class Outcome:
     folder: str = ""
     failure: str = ""
     values: dict[str, float] = field(default_factory=dict)
-    seconds: float = 0.0
+    seconds: Annotated[float, Field(ge=0.0)] = 0.0
     warnings: list[str] = field(default_factory=list)
+
+    __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     def write(self, folder: Path, key: str) -> None:
         """Write the outcome into the folder of a sweep, completely or not at all."""
@@ -79,10 +87,15 @@ class Outcome:
 
 
 def outcome_in(folder: Path, key: str) -> Outcome | None:
-    """The outcome of the member with this key in the folder of a sweep; None without one that can be read."""
+    """The outcome of the member with this key in the folder of a sweep; None without one that can be read.
+
+    Raises RecordError for a link or what is no file.
+    """
+    path = folder / OUTCOMES / f"{key}.json"
+    require_writable(path)
     try:
-        return Outcome(**json.loads((folder / OUTCOMES / f"{key}.json").read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):
+        return read_json(path, Outcome)
+    except (OSError, RecordError):
         return None
 
 
@@ -138,7 +151,7 @@ class Begun(Progress):
         """Make the file, once."""
         if not self._is_made:
             self._is_made = True
-            self._path.touch()
+            write_text(self._path, "")
 
     def settling(self, steps: int, ratio: float, stage: str) -> None:
         """Report the progress of a static stage."""
@@ -149,7 +162,7 @@ class Begun(Progress):
         self.make()
         if (now := time.monotonic()) - self._written >= BETWEEN:
             self._written = now
-            self._own.write_text(f"{run.time!r}", encoding="utf-8")
+            write_text(self._own, f"{run.time!r}")
 
     def end(self) -> None:
         """The run is over."""
@@ -160,8 +173,8 @@ def times_in(folder: Path) -> dict[str, float]:
     """The time (s) that the run of each member under way has come to, by key; members not yet stepped have none."""
     found = {}
     for path in folder.glob("begun-*-*"):
-        with suppress(OSError, ValueError):  # it is being written, or the run is over
-            found[path.name.rsplit("-", 1)[-1]] = float(path.read_text(encoding="utf-8"))
+        with suppress(OSError, ValueError, RecordError):  # it is being written, or the run is over
+            found[path.name.rsplit("-", 1)[-1]] = float(content_of(path, LONGEST_TIME))
     return found
 
 

@@ -11,14 +11,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from filelock import FileLock, Timeout
+from filelock import Timeout
 
 from dembound.casefile.sweep import Action, Method
 from dembound.errors import CaseError, RunError
+from dembound.files import lock_of, make_folder, remove, require_no_link, write_text
 from dembound.interrupts import look
 from dembound.machine import cores_here
+from dembound.results.folder import Folder
 from dembound.studies.sweep.members import Member
-from dembound.studies.sweep.perform import OUTCOMES, Outcome, Task, forget_replaced, outcome_in
+from dembound.studies.sweep.perform import MEMBERS, OUTCOMES, Outcome, Task, forget_replaced, outcome_in
 from dembound.studies.sweep.workers import Here, Performing, Workers, cluster, processes
 
 LOOK = 0.2
@@ -72,14 +74,16 @@ def sweep(members: Sequence[Member], options: Options, folder: Path, report: Rep
     process ends without an outcome is repeated once. After Ctrl-C or SIGTERM all members write a checkpoint;
     KeyboardInterrupt is raised when they have ended; a second one kills them.
 
-    Raises CaseError for a folder that another sweep uses, or that has other contents, and RunError for workers out of
-    reach.
+    Raises CaseError for a folder that another sweep uses, or that has other contents, RecordError for links in it, and
+    RunError for workers out of reach.
     """
     with _marks_in(folder) as marks:
         found = {m.key: None if options.anew else outcome_in(folder, m.key) for m in members}
         missing = [member for member in members if (kept := found[member.key]) is None or kept.failure]
         if missing:
             if options.action == "run":
+                for member in missing:
+                    Folder(folder / MEMBERS, member.name).require_own()
                 forget_replaced(folder, {member.name for member in missing})
             with _workers(options, len(missing), marks.stop) as workers:
                 work = _Work(members, missing, options, folder, marks, report)
@@ -103,8 +107,9 @@ def _marks_in(folder: Path) -> Iterator[Marks]:
         raise CaseError([f"{folder}: exists and holds no sweep, give another --output or --name"])
     if folder.exists() and not folder.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(folder))
-    (folder / OUTCOMES).mkdir(parents=True, exist_ok=True)
-    lock, name = FileLock(folder / LOCK), uuid.uuid4().hex[:8]
+    require_no_link(folder, folder / MEMBERS)
+    make_folder(folder / OUTCOMES)
+    lock, name = lock_of(folder / LOCK), uuid.uuid4().hex[:8]
     try:
         lock.acquire(blocking=False)
     except Timeout:
@@ -112,7 +117,7 @@ def _marks_in(folder: Path) -> Iterator[Marks]:
     try:
         yield Marks(folder / f"begun-{name}", folder / f"stop-{name}")
         for mark in (*folder.glob("begun-*"), *folder.glob("stop-*")):  # also of sweeps that were killed
-            mark.unlink(missing_ok=True)
+            remove(mark)
     finally:
         lock.release()
 
@@ -197,7 +202,7 @@ class _Work:
     def _end(self, workers: Workers) -> None:
         """Request all members to end, and wait for running ones; kill them if another signal arrives."""
         try:
-            self._marks.stop.touch()
+            write_text(self._marks.stop, "")
             workers.dismiss()
             wait([each for each in self._under_way if not each.cancel()])
         except KeyboardInterrupt:
@@ -205,7 +210,7 @@ class _Work:
             raise
         if not workers.are_elsewhere:  # else members that still have to see it may be under way
             for mark in (self._marks.stop, *self._folder.glob(f"{self._marks.begun.name}*")):
-                mark.unlink(missing_ok=True)
+                remove(mark)
 
     @property
     def _standing(self) -> Standing:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from collections import Counter
@@ -17,8 +16,8 @@ from dembound.casefile import Case
 from dembound.casefile.sweep import Action
 from dembound.errors import CaseError
 from dembound.results.committed import new_file
+from dembound.results.csv_files import write_csv
 from dembound.results.datasets import describe, text, write
-from dembound.results.replacing import replacing
 from dembound.studies.sweep.members import Member
 from dembound.studies.sweep.perform import Outcome
 from dembound.studies.sweep.statistics import Statistic, quantities, statistics
@@ -103,13 +102,6 @@ def write_tables(swept: Swept, folder: Path) -> list[Path]:
     write_csv(paths[1], _rows_of_statistics(swept, averages))
     _write_record(paths[2], swept, averages)
     return paths
-
-
-def write_csv(path: Path, rows: Iterable[Sequence[Any]]) -> None:
-    """Write rows, completely or not at all; missing values are empty."""
-    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        for row in rows:
-            csv.writer(file).writerow(["" if each is None or each != each else each for each in row])
 
 
 def _rows_of_members(swept: Swept) -> Iterable[Sequence[Any]]:

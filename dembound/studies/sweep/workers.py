@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dembound.errors import CaseError, RunError
+from dembound.files import write_text
 from dembound.interrupts import ENDING, look, look_at_imports
 from dembound.studies.sweep.perform import ALONE, Outcome, Task, perform
 
@@ -173,8 +174,8 @@ def _end_with_parent(stop: Path) -> None:
     parent = multiprocessing.parent_process()
     assert parent is not None
     wait([parent.sentinel])
-    with suppress(OSError):
-        stop.touch()
+    with suppress(OSError, CaseError):
+        write_text(stop, "")
     with ALONE:  # the member under way has written its checkpoint
         os._exit(1)
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError, RecordError
+from dembound.files import replacing
 from dembound.results.reader import (
     cracks_until,
     energy_of,
@@ -22,7 +23,6 @@ from dembound.results.reader import (
     snapshots_of,
     text_of,
 )
-from dembound.results.replacing import replacing
 from dembound.results.results import Results
 from dembound.results.sides import read_side_history
 
@@ -195,14 +195,14 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
 
     def write_half():
         with replacing(path) as part:
-            part.write_text("half")
+            part.write(b"half")
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
         write_half()
     assert path.read_text() == "old"
     with replacing(path) as part:
-        part.write_text("new")
+        part.write(b"new")
         assert path.read_text() == "old"
     assert path.read_text() == "new"
     assert list(tmp_path.iterdir()) == [path]

@@ -19,6 +19,7 @@ from dembound.accuracy.of_disks.exact.scattering import ScatteringProblem
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
+from dembound.files import make_folder
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
 from dembound.results.new_record import DISPLACEMENT_UNIT, VELOCITY_UNIT, header_of_monitor
@@ -75,7 +76,7 @@ def write_exact(case: DiskCase, path: Path, name: str | None = None) -> Problem:
     """
     scene = build(case)
     problem, motions = exact_motions(scene, name)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     with new_file(path) as file:
         facts = {"name": case.name, "case": case.text, "version": __version__, "size": scene.size, "complete": True}
         facts |= {"late": 0.0}
