@@ -190,9 +190,10 @@ def write_text(path: Path, text: str) -> None:
 
 
 def copy(source: Path, target: Path, *, follow: bool = False) -> None:
-    """Copy the contents of a file, completely or not at all; errors as of `opened` and `created`."""
+    """Copy a file with its permissions, completely or not at all; errors as of `opened` and `created`."""
     with opened(source, follow=follow) as file, replacing(target) as copied:
         shutil.copyfileobj(file, copied)
+        shutil.copymode(source, copied.name)
 
 
 @contextmanager
@@ -229,6 +230,8 @@ def arrays_of(file: BinaryIO | io.FileIO, most: int) -> dict[str, Any]:
     import numpy as np
 
     total = 0
+    if file.read(2) != b"PK":
+        raise ValueError("no archive")
     with zipfile.ZipFile(file) as archive:
         for each in archive.infolist():
             with archive.open(each) as member:
