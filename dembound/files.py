@@ -230,6 +230,7 @@ def arrays_of(file: BinaryIO | io.FileIO, most: int) -> dict[str, Any]:
     import numpy as np
 
     total = 0
+    file.seek(0)
     if file.read(2) != b"PK":
         raise ValueError("no archive")
     with zipfile.ZipFile(file) as archive:

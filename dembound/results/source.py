@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dembound.casefile import Case
+from dembound.files import opened
 
 PLACE, DIGEST = "source", "source_digest"
 """Attributes of a record: the case file's path relative to the parent of the folder of results, and its SHA-256."""
@@ -40,4 +41,5 @@ def recorded_source(attributes: Mapping[str, Any], results: Path) -> tuple[Path,
 
 
 def _digest(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    with opened(path, follow=True) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

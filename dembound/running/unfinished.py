@@ -13,7 +13,7 @@ from pydantic import ConfigDict, Field
 from dembound.casefile import Case
 from dembound.casefile.run import ENDING
 from dembound.errors import CaseError, DemboundError, RecordError
-from dembound.files import copy, make_folder
+from dembound.files import copy, make_folder, require_plain
 from dembound.kinds import load, loads
 from dembound.motion.scene import Scene
 from dembound.motion.state import Arrays
@@ -207,11 +207,12 @@ def _changed_inputs(folder: Path, inputs: Mapping[str, str]) -> Iterator[str]:
 def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
     """The folder that has a checkpoint: the one that was given, or the partial one.
 
-    Raises CaseError if none has, RecordError if there is no record either.
+    Raises CaseError if none has, RecordError if there is no record either, or a link.
     """
     places = [place for place in (folder, partial) if place.is_dir()]
     if not places:
         raise CaseError([f"{folder}: there is no such folder of results"])
+    require_plain(*(place / FILE for place in places))
     if found := [place for place in places if (place / FILE).is_file()]:
         return found[0]
     records = [place / "run.h5" for place in places if (place / "run.h5").is_file()]

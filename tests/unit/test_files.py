@@ -1,0 +1,213 @@
+"""No file that is written or read back leads out of its folder: links, pipes and huge files are refused in one line."""
+
+import csv
+import io
+import os
+import zipfile
+from functools import partial
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from dembound.accuracy.chart.record import OWN, record_in
+from dembound.errors import RecordError
+from dembound.files import arrays_of, content_of, copy, lock_of, make_folder, remove, replacing, replacing_by_name
+from dembound.plot.style import save
+from dembound.results.checkpoint import Checkpoint
+from dembound.results.committed import CommittedFile, changed_file, new_file
+from dembound.results.csv_files import write_csv
+from dembound.results.folder import Folder
+from dembound.results.json_files import write_json
+from dembound.results.summary_file import read_json
+from dembound.studies.sweep.perform import outcome_in, times_in
+
+STATE = Checkpoint({"version": "1"}, {"a": np.zeros(3)})
+
+
+def by_name(path: Path) -> None:
+    with replacing_by_name(path) as part:
+        part.write_text("mesh")
+
+
+def record(path: Path) -> None:
+    with new_file(path) as file:
+        file["a"] = 1.0
+
+
+def change(path: Path) -> None:
+    with changed_file(path) as file:
+        file["b"] = 1.0
+
+
+WRITERS = {
+    "json": (lambda path: write_json(path, {}), ".part"),
+    "table": (lambda path: write_csv(path, [["a"]]), ".part"),
+    "picture": (lambda path: save(Figure(), path), ".part"),
+    "mesh": (by_name, ".part"),
+    "checkpoint": (STATE.write, ".part"),
+    "copy": (lambda path: copy(Path(__file__), path), ".part"),
+    "record": (record, ".new"),
+    "changed record": (change, ".new"),
+}
+
+
+@pytest.fixture
+def planted(tmp_path):
+    """Puts a link, a link that leads nowhere, or a pipe at a path; afterwards its target must be as before."""
+    target = tmp_path / "precious"
+    target.write_text("precious")
+
+    def plant(path: Path, kind: str) -> None:
+        path.parent.mkdir(exist_ok=True)
+        if kind == "pipe":
+            os.mkfifo(path)
+        else:
+            path.symlink_to(target if kind == "link" else tmp_path / "none")
+
+    yield plant
+    assert target.read_text() == "precious"
+    assert not (tmp_path / "none").exists()
+
+
+def refused(act, path: Path) -> None:
+    """An action ends with one line that names a path, and exit code 5."""
+    with pytest.raises(RecordError) as found:
+        act()
+    (line,) = str(found.value).splitlines()
+    assert line.startswith(f"{path}: is ")
+    assert found.value.exit_code == 5
+
+
+@pytest.mark.parametrize("kind", ["link", "nowhere", "pipe"])
+@pytest.mark.parametrize("name", WRITERS)
+def test_nothing_is_written_through_what_is_planted(name, kind, planted, tmp_path) -> None:
+    write, ending = WRITERS[name]
+    for place in ("file", f"file{ending}"):
+        planted(tmp_path / kind / place, kind)
+        refused(lambda: write(tmp_path / kind / "file"), tmp_path / kind / place)
+        assert [path.name for path in (tmp_path / kind).iterdir()] == [place]
+        (tmp_path / kind / place).unlink()
+    write(tmp_path / kind / "file")
+
+
+@pytest.mark.parametrize("kind", ["link", "nowhere", "pipe"])
+def test_nothing_planted_is_read_removed_or_locked(kind, planted, tmp_path) -> None:
+    (tmp_path / "a" / "outcomes").mkdir(parents=True)
+    for place, act in (
+        ("x", lambda path: content_of(path, 10)),
+        ("x", remove),
+        ("x", lock_of),
+        ("x", Checkpoint.read),
+        ("x", read_json),
+        ("x", lambda path: copy(path, path.with_name("copy"))),
+        ("outcomes/k.json", lambda path: outcome_in(tmp_path / "a", "k")),
+        *((name, lambda path: record_in(tmp_path / "a", resume=True)) for name in OWN),
+    ):
+        path = tmp_path / "a" / place
+        planted(path, kind)
+        refused(partial(act, path), path)
+        path.unlink()
+    planted(tmp_path / "a" / "begun-1-2", kind)
+    assert times_in(tmp_path / "a") == {}
+
+
+@pytest.mark.parametrize("folder", ["run", "run.partial", "run.replaced"])
+@pytest.mark.parametrize(
+    "place", ["", "settled", "paraview", "run.h5", "run.lock", "checkpoint.npz.part", "paraview/view.py"]
+)
+def test_a_run_refuses_links_in_its_folders_and_follows_those_above(folder, place, planted, tmp_path) -> None:
+    (tmp_path / "elsewhere" / "results").mkdir(parents=True)
+    (tmp_path / "results").symlink_to(tmp_path / "elsewhere" / "results")
+    with Folder(tmp_path / "results", "run").writing(anew=True) as folder_of_run:
+        (folder_of_run / "run.h5").write_text("a run")
+    path = tmp_path / "results" / folder / place
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.exists():
+        path.rename(path.with_name("kept"))
+    planted(path, "link")
+    refused(Folder(tmp_path / "results", "run").check, path)
+    if place in ("", "settled", "paraview"):
+        refused(lambda: make_folder(path), path)
+
+
+def test_removing_and_moving_do_not_enter_links(tmp_path) -> None:
+    results, other = tmp_path / "results", tmp_path / "other"
+    other.mkdir()
+    (other / "run.h5").write_text("precious")
+    for name in ("run", "run.partial"):
+        (results / name).mkdir(parents=True)
+        (results / name / "notes").symlink_to(other)
+        (results / name / "run.h5").write_text(name)
+    folder = Folder(results, "run")
+    with folder.writing(anew=True) as folder_of_run:
+        (folder_of_run / "run.h5").write_text("new")
+        folder._old.mkdir()
+        (folder._old / "notes").mkdir()
+        (folder._old / "notes" / "mine").write_text("mine")
+        with pytest.raises(Exception, match="has files that"):
+            folder.finish()
+    assert [path.name for path in other.iterdir()] == ["run.h5"]
+    assert (other / "run.h5").read_text() == "precious"
+
+
+def test_what_a_killed_process_left_is_replaced_and_two_can_write_the_same_file(tmp_path) -> None:
+    path = tmp_path / "file"
+    (tmp_path / "file.part").write_text("half")
+    with replacing(path) as first:
+        first.write(b"first")
+        with replacing(path) as second:
+            second.write(b"second")
+        assert path.read_bytes() == b"second"
+    assert path.read_bytes() == b"first"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_texts_that_spreadsheets_take_for_formulas_begin_with_an_apostrophe(tmp_path) -> None:
+    row = ["=1+1", "@a", "-a", "+a", "\t=1", "-1.5", "+2", "a=1", -1.5, None, float("nan"), "-inf"]
+    write_csv(tmp_path / "a.csv", [row])
+    with (tmp_path / "a.csv").open(newline="") as file:
+        (found,) = csv.reader(file)
+    assert found == ["'=1+1", "'@a", "'-a", "'+a", "'\t=1", "-1.5", "+2", "a=1", "-1.5", "", "", "-inf"]
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
+@pytest.mark.parametrize(("dtype", "shape"), [("<f8", (2**40,)), ("|O", (1,)), ("|V0", (2**60,)), ("<f8", (-1,))])
+def test_archives_that_declare_more_than_they_have_are_not_read(method, dtype, shape) -> None:
+    head, content = io.BytesIO(), io.BytesIO()
+    np.lib.format.write_array_header_1_0(head, {"descr": dtype, "fortran_order": False, "shape": shape})
+    with zipfile.ZipFile(content, "w", method) as archive:
+        archive.writestr("a.npy", head.getvalue() + bytes(64))
+    with pytest.raises(ValueError, match=r"declares more|no plain array"):
+        arrays_of(content, 10_000)
+
+
+def test_files_longer_than_any_are_not_read(tmp_path) -> None:
+    for name, read in (("s.json", read_json), ("a", lambda path: content_of(path, 10))):
+        with (tmp_path / name).open("wb") as file:
+            file.truncate(2**40)
+        with pytest.raises(RecordError, match="is longer than"):
+            read(tmp_path / name)
+
+
+def test_a_log_does_not_make_its_file_huge(tmp_path) -> None:
+    record(tmp_path / "a.h5")
+    with CommittedFile(tmp_path / "a.h5", "a") as store:
+        store._pages = {2**40: bytearray(4096)}
+        store._write_log(lambda descriptor: None)
+    size = (tmp_path / "a.h5").stat().st_size
+    with CommittedFile(tmp_path / "a.h5", "a") as store, h5py.File(store, "r") as file:
+        assert file["a"][()] == 1.0
+    assert (tmp_path / "a.h5").stat().st_size == size
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["[]", "{}", '{"name": 1}', '{"name": "a", "values": {"x": "1"}}', '{"name": "a", "seconds": -1}', "[" * 10**5],
+)
+def test_outcomes_of_other_types_count_as_none(text, tmp_path) -> None:
+    (tmp_path / "outcomes").mkdir()
+    (tmp_path / "outcomes" / "k.json").write_text(text)
+    assert outcome_in(tmp_path, "k") is None
