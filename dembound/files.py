@@ -36,6 +36,9 @@ MOUNT_POINT = 0xA0000003
 PLAIN_KINDS = "biufSU"
 """Kinds of numpy types that archives of arrays have: numbers, truth values and texts."""
 
+MOST_ARRAYS = 1000
+"""Largest number of arrays of an archive."""
+
 
 def is_link(path: Path) -> bool:
     """Whether there is a link, also one that leads nowhere, or a junction of Windows."""
@@ -234,6 +237,8 @@ def arrays_of(file: BinaryIO | io.FileIO, most: int) -> dict[str, Any]:
     if file.read(2) != b"PK":
         raise ValueError("no archive")
     with zipfile.ZipFile(file) as archive:
+        if len(archive.infolist()) > MOST_ARRAYS:
+            raise ValueError(f"more than {MOST_ARRAYS} arrays")
         for each in archive.infolist():
             with archive.open(each) as member:
                 version = np.lib.format.read_magic(member)

@@ -36,7 +36,8 @@ def recorded_source(attributes: Mapping[str, Any], results: Path) -> tuple[Path,
     """The case file of a record, and whether it has changed since; None if it no longer exists."""
     if PLACE not in attributes or not (path := results / str(attributes[PLACE])).is_file():
         return None
-    path = Path(os.path.normpath(path))
+    plain = Path(os.path.normpath(path))  # another place if the folder of results is a link
+    path = plain if plain.is_file() and plain.samefile(path) else path.resolve()
     return path, _digest(path) != attributes.get(DIGEST)
 
 

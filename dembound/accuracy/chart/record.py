@@ -12,7 +12,7 @@ import numpy as np
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.runner import Run
 from dembound.errors import CaseError, RecordError
-from dembound.files import make_folder, remove, require_plain
+from dembound.files import make_folder, remove, require_no_link, require_writable
 from dembound.motion.kind import Finding
 from dembound.results.committed import changed_file
 from dembound.results.reader import finite, increasing, open_record, text_of, understood
@@ -106,7 +106,8 @@ def record_in(folder: Path, resume: bool) -> Record:
     Other files in the folder remain. Raises CaseError for a folder that holds something else, RecordError for links.
     """
     path = folder / FILE
-    require_plain(*(folder / name for name in OWN))
+    require_no_link(folder)
+    require_writable(*(folder / name for name in OWN))
     if folder.exists() and any(folder.iterdir()) and not path.is_file():
         raise CaseError([f"{folder}: exists and holds no chart, give another --output or --name"])
     if path.is_file() and not resume:

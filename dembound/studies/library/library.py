@@ -63,7 +63,10 @@ class Library:
             raise CaseError(
                 [f"{folder}: is a library of dembound {facts.version}, this is {__version__}; make it anew"]
             )
-        self.case = as_kind(loads(facts.case, folder, self.name), DiskCase, "is the case of a bar")
+        try:
+            self.case = as_kind(loads(facts.case, folder, self.name), DiskCase, "is the case of a bar")
+        except CaseError as error:
+            raise RecordError([f"{folder / FILE}: is damaged, its case: {error.problems[0]}"]) from None
         if facts.inputs != inputs_of(self.case):
             raise RecordError([f"{folder / FILE}: is damaged: its inputs are not those of its case"])
         with open_record(self._record(f"{HAT}{self.inputs[0]}")) as file:

@@ -102,12 +102,12 @@ def _workers(options: Options, most: int, stop: Path) -> AbstractContextManager[
 
 @contextmanager
 def _marks_in(folder: Path) -> Iterator[Marks]:
-    """The marks of a sweep in its folder, which no other one uses inside; raises CaseError as `sweep`."""
+    """The marks of a sweep in its folder, which no other one uses inside; errors as of `sweep`."""
+    require_no_link(folder, folder / OUTCOMES, folder / MEMBERS)
     if folder.is_dir() and any(folder.iterdir()) and not (folder / OUTCOMES).is_dir():
         raise CaseError([f"{folder}: exists and holds no sweep, give another --output or --name"])
     if folder.exists() and not folder.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(folder))
-    require_no_link(folder, folder / MEMBERS)
     make_folder(folder / OUTCOMES)
     lock, name = lock_of(folder / LOCK), uuid.uuid4().hex[:8]
     try:
