@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dembound.errors import CaseError
-from dembound.files import make_folder
+from dembound.files import make_folder, require_plain
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE as CHECKPOINT
@@ -27,9 +27,10 @@ FOLDER = "settled"
 def settled_state(folder: Path, name: str, keys: Mapping[str, Any]) -> Arrays:
     """The arrays of a stage that a run has kept in a folder; name : of the stage, keys : that determine its result.
 
-    Raises CaseError if it is not there or depends on other keys, RecordError if it is damaged.
+    Raises CaseError if it is not there or depends on other keys, RecordError if it is damaged, or a link.
     """
     path = folder / f"{name}.npz"
+    require_plain(path)
     if not path.is_file():
         raise CaseError([f"static.from: {folder} has no settled state ({name}.npz)"])
     kept = Checkpoint.read(path)
