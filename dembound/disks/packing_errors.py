@@ -12,7 +12,7 @@ from dembound.disks.material import bragg
 from dembound.disks.scene import DiskScene
 from dembound.outside import sizing
 from dembound.outside.sizing import Signal
-from dembound.words import Entries, percent
+from dembound.words import Entries, percent, with_unit
 
 LEAST_SHOWN = 1e-5
 """Share of the velocity reflected by copies below which it is not printed."""
@@ -44,13 +44,15 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
     if len(ground.brick.radii) > bragg.MOST_DISKS:
         return f"send back short waves, which is not computed for bricks of more than {bragg.MOST_DISKS:,} disks"
     axes = sorted({normal_axis(side) for side in case.driving})
-    share = bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
+    found = bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
+    share, accuracy = found.share, case.outside.accuracy
+    beyond = f"waves above {with_unit(found.highest, 'Hz')}, which have {percent(found.above)} of the energy"
     if share < LEAST_SHOWN:
-        return ""
-    accuracy = case.outside.accuracy
+        return f"send back {beyond}, by a part that is not computed" if found.above > 0.0 else ""
     more = f"; more than outside.accuracy = {percent(accuracy)}, shorter bricks send back less"
     return (
         f"send back up to {percent(share)} of the velocity over the ground's length, which a continuum does not"
+        f"{f', and a part that is not computed of {beyond}' if found.above > 0.0 else ''}"
         f"{more if share > accuracy else ''}"
     )
 

@@ -89,6 +89,13 @@ def energies(signal: Signal, lowest: float = math.inf) -> tuple[np.ndarray, np.n
     stays constant is included. lowest : frequency (Hz) above which the energies are those of displacements, which are
     (lowest/frequency)² times as large.
     """
+    frequency, energy = _of_velocities(signal)
+    return frequency, energy / (1.0 + (frequency / lowest) ** 2)
+
+
+@lru_cache(maxsize=8)
+def _of_velocities(signal: Signal) -> tuple[np.ndarray, np.ndarray]:
+    """The energies of velocities, see `energies`; kept, as long records take tenths of a second."""
     wave = signal.wave
     length = (wave.peak_time() if wave.stays else wave.duration()) - wave.start
     samples = 2 ** math.ceil(math.log2(min(max(POINTS_IN_TIME * length * wave.highest_frequency(), 2**12), 2**18)))
@@ -97,8 +104,7 @@ def energies(signal: Signal, lowest: float = math.inf) -> tuple[np.ndarray, np.n
     spectrum = np.abs(np.fft.rfft(np.diff(velocity), LONGER * samples)) ** 2
     frequency = np.fft.rfftfreq(LONGER * samples, step)
     change = 2.0 * np.sin(math.pi * frequency[1:] * step)  # of a step from sample to sample
-    energy = spectrum[1:] / change**2 * (frequency[1:] if signal.is_force else 1.0)
-    return frequency[1:], energy / (1.0 + (frequency[1:] / lowest) ** 2)
+    return frequency[1:], spectrum[1:] / change**2 * (frequency[1:] if signal.is_force else 1.0)
 
 
 def jumps(signal: Signal) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.beyond.settings import signals_of
-from dembound.disks.material.bragg import coupling, sent_back
+from dembound.disks.material.bragg import couplings, sent_back
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import with_changes
@@ -37,14 +37,15 @@ def returned(scene: DiskScene) -> tuple[float, float]:
     record = Simulation(scene, step, beside).advance(int(2.0 * height / speed / step))
     energy = float(np.sum(record[:, :, 3:5].mean(axis=1) ** 2))
     behind = height - 0.5 * speed * pulse.duration()
-    expected = sent_back(scene.ground, signals_of(scene.case), (BRICK[0], behind), [1])
+    expected = sent_back(scene.ground, signals_of(scene.case), (BRICK[0], behind), [1]).share
     return np.sqrt(energy / np.sum(pulse.velocity(step * np.arange(len(record))) ** 2)), expected
 
 
 def test_it_is_what_coupled_waves_send_back(lab) -> None:
     """Reflections of copies, and of ties and shorter waves, add up; the latter are those of the other pulse."""
     seed = 1
-    bragg = coupling(column(lab, seed, 0.1).ground, 1, 1).frequency
+    ((_, first),) = couplings(column(lab, seed, 0.1).ground, {1: 1})
+    bragg = first.frequency
     (strong, expected), (weak, nothing) = (returned(column(lab, seed, times / bragg)) for times in (1.42, 2.0))
 
     assert nothing < 1e-6

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from dembound.disks.material.bragg import Coupling, coupling
+from dembound.disks.material import bragg
+from dembound.disks.material.bragg import Coupling, couplings
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.outside.sizing import Signal, energies
+from dembound.waves.cosine import Cosine
 
 
 def frequencies(ground: PackedMaterial, k: np.ndarray) -> np.ndarray:
@@ -22,7 +25,7 @@ def frequencies(ground: PackedMaterial, k: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("axis", [0, 1])
 def test_coupled_waves_have_the_frequencies_of_the_copies(dense: PackedMaterial, axis: int) -> None:
     """ω² = ω0²(1 ± 2κ/k); static relaxation leaves out terms of second order in k times the size of the disorder."""
-    found = coupling(dense, axis, 1)
+    ((_, found),) = couplings(dense, {axis: 1})
     lower, upper = frequencies(dense, found.wavenumber * np.eye(2)[axis])[:2]
 
     assert found.wavenumber == pytest.approx(math.pi / (6.0, 5.0)[axis])
@@ -30,6 +33,37 @@ def test_coupled_waves_have_the_frequencies_of_the_copies(dense: PackedMaterial,
     assert 2.0 * found.per_length / found.wavenumber == pytest.approx(
         (upper**2 - lower**2) / (upper**2 + lower**2), rel=0.05
     )
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_all_numbers_are_coupled_as_each_by_itself(dense: PackedMaterial, axis: int) -> None:
+    """ω² a = N F⁻¹ N a, with the complex phases of each number; what is held faintly changes some 1e-6."""
+    brick, network = dense.brick, Network.of_brick(dense.brick, dense.stiffness)
+    mass = np.concatenate([dense.mass, dense.mass, dense.inertia])
+    for along, found in couplings(dense, {0: 3, 1: 4}):
+        if along != axis:
+            continue
+        k = found.wavenumber * np.eye(2)[axis]
+        ways = network.motion_matrix(np.exp(1j * network.vectors @ k)).toarray()
+        stiffness = ways.conj().T @ (network.springs[:, None] * ways)
+        counts = np.mgrid[-9:10, -9:10].reshape(2, -1).T
+        waves = k + 2.0 * np.pi * counts / brick.size
+        waves = waves[np.hypot(*waves.T) < found.wavenumber * (1.0 + 1e-9)]
+        waves = waves[np.argsort(np.abs(waves - k).sum(axis=1))]  # k itself is the first, −k the one with the least dot
+        opposite = int(np.argmin(waves @ k))
+        phases = np.exp(1j * brick.positions @ (waves - k).T)
+        moved = np.concatenate([np.kron(phases, row) for row in np.eye(3, 2)])
+        pushed = mass[:, None] * moved
+        faint = 1e-9 * found.wavenumber**2 * float(dense.wave_speeds(axis)[0]) ** 2
+        flexibility = pushed.conj().T @ np.linalg.solve(stiffness + faint * np.diag(mass), pushed)
+        masses = moved.conj().T @ pushed
+        whole = masses @ np.linalg.solve(flexibility, masses)
+        both = [0, 1, 2 * opposite, 2 * opposite + 1]
+        lower, upper = np.sqrt(eigh(whole[np.ix_(both, both)], masses[np.ix_(both, both)], eigvals_only=True)[:2])
+        assert 2.0 * math.pi * found.frequency == pytest.approx(math.sqrt(0.5 * (lower**2 + upper**2)), rel=1e-3)
+        assert 2.0 * found.per_length / found.wavenumber == pytest.approx(
+            (upper**2 - lower**2) / (upper**2 + lower**2), rel=0.02
+        )
 
 
 def test_a_band_has_the_energy_that_coupled_waves_send_back() -> None:
@@ -45,3 +79,23 @@ def test_a_band_has_the_energy_that_coupled_waves_send_back() -> None:
         speed = 2.0 * math.pi * 30.0 / 0.2
         band = float(np.sum(np.abs(ratio) ** 2)) * 1e-5 * speed / (2.0 * math.pi)
         assert found.band(length) == pytest.approx(band, rel=5e-3)
+
+
+def test_work_is_bounded_and_the_rest_is_named(dense: PackedMaterial, monkeypatch) -> None:
+    """The columns of all solves times the disks stay below the bound, for waves along both axes."""
+    signals = [Signal(Cosine(type="cosine", amplitude=1.0, period=0.004), is_force=True)]
+    columns = []
+    inner = bragg._matrices
+    monkeypatch.setattr(bragg, "_matrices", lambda *given: columns.append(4 * len(given[1])) or inner(*given))
+    whole = bragg.sent_back(dense, signals, (30.0, 30.0), (0, 1))
+    asked, count = sum(columns), len(dense.brick.radii)
+    columns.clear()
+    monkeypatch.setattr(bragg, "WORK", 0.4 * asked * count)
+    part = bragg.sent_back(dense, signals, (30.0, 30.0), (0, 1))
+
+    assert 0 < sum(columns) * count < bragg.WORK
+    assert part.share < whole.share
+    assert part.highest < whole.highest
+    assert part.above > whole.above
+    frequencies, energy = energies(signals[0])
+    assert part.above == pytest.approx(energy[frequencies > part.highest].sum() / energy.sum())

@@ -74,7 +74,7 @@ def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
     of_forces = with_changes(case, {"packing": RANDOM, "wave": {"pulse": short}})
     for changed, axes in ((of_forces, (0, 1)), (with_changes(of_forces, {"load": [], "boundary": below}), (1,))):
         scene = build(changed)
-        share = percent(sent_back(scene.ground, signals_of(changed), (40.0, 20.0), axes))
+        share = percent(sent_back(scene.ground, signals_of(changed), (40.0, 20.0), axes).share)
         fact = dict(continuum_facts(scene))["copies of the brick"]
         assert fact.startswith(f"send back up to {share} of the velocity")
         assert fact.endswith("shorter bricks send back less")
