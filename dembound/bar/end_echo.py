@@ -8,7 +8,8 @@ more of them return.
 Both bars are stepped (linear_steps.py) under a unit value of the wave in one step, and the motion is convolved with the
 wave's values. Where this would take too long, a bar is represented by `CELLS` of the range at this end, with the load
 or the wave at its other end, and a run by as many ways along it: a longer bar returns less, as short waves disperse.
-Changes of bonds are not included.
+Steps shorter than those of the Courant number `LEAST` are represented by these. The work is bounded for all ends and
+waves together; waves that would take more are named. Changes of bonds are not included.
 """
 
 from __future__ import annotations
@@ -30,8 +31,12 @@ CELLS = 128
 LONGEST = 1000
 """Nodes of a layer up to which this is computed."""
 
-WORK, KEPT = 3e7, 4e6
-"""Most bonds times steps, some 0.5 s, and velocities of all nodes and steps: 32 MB."""
+LEAST = 0.05
+"""Least Courant number that is stepped: with 0.005 to 0.05 the reflections of 20-cell pulses by layers and dashpots
+differ by at most 0.4 %, for they approach their limit with its square."""
+
+WORK, KEPT = 6e7, 4e6
+"""Most bonds times steps in all motions, some 0.5 s, and values that are convolved in all, as long."""
 
 BEYOND = 0.6
 """Cells of the bar that goes on, over the cells that a wave passes in the time for which it is followed."""
@@ -39,10 +44,10 @@ BEYOND = 0.6
 FADED = 0.25
 """Last part of this time in which remaining motion is faded out if the run goes on: a sudden end would be a force."""
 
-LONG = 2**20
-"""Number of steps of a wave's values that are included."""
+FEWEST, FINER = 9, 16
+"""Fewest nodes, of which both ends are two, at which a long wave is convolved; values that are averaged in a step."""
 
-SAMPLES = 2**22
+SAMPLES = 2**19
 """Values that are convolved at once."""
 
 ROUNDING = 1e-12
@@ -54,11 +59,14 @@ class Returned:
     """The reflection of an end.
 
     shares : by wave the largest reflected motion over the largest motion of the wave, including `ROUNDING`. within :
-    time (s) after the wave for which it was followed, infinite for the whole run.
+    time (s) after the wave for which it was followed, infinite for the whole run. part : share of the bar's nodes at
+    which it was sought; below 1 for waves of many steps. unknown : waves of too many steps, or shorter than some.
     """
 
     shares: dict[str, float]
     within: float = math.inf
+    part: float = 1.0
+    unknown: tuple[str, ...] = ()
 
 
 def returned_of_waves(scene: BarScene, side: str, time_step: float) -> Returned:
@@ -67,38 +75,56 @@ def returned_of_waves(scene: BarScene, side: str, time_step: float) -> Returned:
     Nothing is computed for ends that do not absorb, where a wave enters through dashpots, and for very long bonds and
     layers.
     """
-    case, layer = scene.case, scene.layers.get(side)
-    end = case.side(side)
-    absorbs = end.is_artificial and 0 not in end.prescribed(0) and (layer is not None or not end.waves)
+    case = scene.case
     longest = max([0, *(each.layer.nodes for each in scene.layers.values())])
-    if not absorbs or case.method.largest_horizon > WIDEST or longest > LONGEST:
+    if not _absorbs(scene, side) or case.method.largest_horizon > WIDEST or longest > LONGEST:
         return Returned({})
     own, part = scene, scene.rod.end(side)
+    given, time_step = time_step, max(time_step, LEAST * part.spacing / part.speed)
     courant, reach = time_step * part.speed / part.spacing, max(1, case.method.largest_horizon)
+    known = {name: pushes for name, pushes in _pushes(scene).items() if name}
+    motions = sum(map(len, known.values())) * sum(_absorbs(scene, each) for each in scene.edges)
+    work, kept = 0.5 * WORK / max(1, motions), KEPT / max(1, motions)
     run = steps = whole = math.ceil(case.run.duration / time_step) + 1
     opens = any(given.interface == "contact" for given in case.bar.range)
-    if opens or run * (BEYOND * courant * run + own.count) * reach > WORK or run * own.count > KEPT:
+    if opens or run * (BEYOND * courant * run + own.count) * reach > work or run * own.count > kept:
         own = build_bar(_short(case, side))
         ways = case.run.duration / case.bar.travel_time
         whole = min(run, math.ceil((ways * own.count + 4.0 * longest) / courant) + 1)
-        steps = int(min(whole, math.sqrt(WORK / (BEYOND * courant * reach)), KEPT / own.count))
+        steps = int(min(whole, math.sqrt(work / (BEYOND * courant * reach)), kept / own.count))
     endless = build_bar(_layered(own.case, side))
     beyond = endless.layers[side].endless(BEYOND * steps * time_step)
     bars = LinearSteps(own, own.layers, time_step), LinearSteps(endless, {**own.layers, side: beyond}, time_step)
-    shares = {}
-    known = {name: pushes for name, pushes in _pushes(own).items() if name}
-    for name, pushes in known.items():
-        both = [[bar.after(*push, steps) for bar in bars] for push in pushes.values()]
-        signals = [_signal(own.case, name, time_step, 0.5 * time_step * prescribed) for prescribed in pushes]
+    shares, fewest, unknown = {}, own.count, []
+    for name, pushes in _pushes(own).items():
+        if name not in known:
+            continue
+        count, least = _length(own.case, name, time_step), 4.0 * time_step * (time_step > given)
+        if FEWEST * (steps + count) > 2.0 * kept or case.wave[name].duration() - case.wave[name].start < least:
+            unknown.append(name)
+            continue
+        spread = math.ceil(own.count * (steps + count) / (2.0 * kept))
+        some = np.unique(np.append(np.arange(0, own.count, spread), own.count - 1))
+        fewest = min(fewest, len(some))
+        both = [[bar.after(*push, steps)[:, some] for bar in bars] for push in pushes.values()]
+        finer = min(FINER, round(time_step / given))
+        signals = [_signal(own.case, name, time_step, 0.5 * time_step * each, count, finer) for each in pushes]
         if steps < run:
             past = np.clip((np.arange(steps) / steps - 1.0) / FADED + 1.0, 0.0, 1.0)
             both = [[np.cos(0.5 * np.pi * past)[:, None] ** 2 * each for each in pair] for pair in both]
-        last = min(run, len(signals[0]) + steps)
+        last = min(run, count + steps)
         arrived = _largest([there for _, there in both], signals, last)
         returned = _largest([here - there for here, there in both], signals, last)
         if arrived > 0.0:
             shares[name] = returned / arrived + ROUNDING
-    return Returned(shares, math.inf if steps == whole else case.run.duration * steps / whole)
+    within = math.inf if steps == whole else case.run.duration * steps / whole
+    return Returned(shares, within, fewest / own.count, tuple(unknown))
+
+
+def _absorbs(scene: BarScene, side: str) -> bool:
+    """Whether an end is to absorb waves, without a wave that enters through dashpots."""
+    end = scene.case.side(side)
+    return end.is_artificial and 0 not in end.prescribed(0) and (side in scene.layers or not end.waves)
 
 
 def _short(case: BarCase, side: str) -> BarCase:
@@ -131,12 +157,22 @@ def _pushes(scene: BarScene) -> dict[str, dict[bool, tuple[np.ndarray, np.ndarra
     return found
 
 
-def _signal(case: BarCase, name: str, step: float, ahead: float) -> np.ndarray:
-    """Values (k,) of a wave at whole steps plus `ahead` s, from its start until it is over or the run is."""
-    wave = case.wave[name]
-    first = step * math.floor(min(wave.start, case.run.duration) / step)
-    count = min(math.ceil((min(wave.duration(), case.run.duration) - first) / step), LONG) + 1
-    return np.asarray(wave.velocity(first + ahead + step * np.arange(count)))
+def _first(case: BarCase, name: str, step: float) -> float:
+    """Time (s) of the last whole step before a wave starts."""
+    return step * math.floor(min(case.wave[name].start, case.run.duration) / step)
+
+
+def _length(case: BarCase, name: str, step: float) -> int:
+    """Number of steps from a wave's start until it is over or the run is."""
+    until = min(case.wave[name].duration(), case.run.duration)
+    return math.ceil((until - _first(case, name, step)) / step) + 1
+
+
+def _signal(case: BarCase, name: str, step: float, ahead: float, count: int, finer: int) -> np.ndarray:
+    """Values (count,) of a wave at whole steps plus `ahead` s, from its start; means of `finer` values round them."""
+    parts = step * ((np.arange(finer) + 0.5) / finer - 0.5)
+    times = _first(case, name, step) + ahead + step * np.arange(count)
+    return sum((np.asarray(case.wave[name].velocity(times + part)) for part in parts), np.zeros(count)) / finer
 
 
 def _largest(motions: list[np.ndarray], signals: list[np.ndarray], last: int) -> float:

@@ -67,11 +67,14 @@ def _echo_in_words(scene: BarScene, side: str, time_step: float) -> str:
     words = []
     if most:
         words.append(f"at most {', '.join(f'{_rounded_up(share)} of wave {name}' for name, share in most.items())}")
+        if found.part < 1.0:
+            words[0] += f", at {100.0 * found.part:.2g} % of the nodes,"
         if np.isfinite(found.within):
             words[0] += f" within {found.within:.2g} s after it"
     if nothing := [name for name in found.shares if name not in most]:
         words.append(f"nothing of wave {', '.join(nothing)} but rounding errors")
-    return f"; returns {' and '.join(words)}" if words else ""
+    unknown = f"; not computed for wave {', '.join(found.unknown)}, too long or too short" if found.unknown else ""
+    return (f"; returns {' and '.join(words)}" if words else "") + unknown
 
 
 def _rounded_up(share: float) -> str:

@@ -44,7 +44,7 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
     yield from too_many(tables["monitor"])
     bar = tables["bar"]
     written = given.get("bar", {})
-    if isinstance(written, Mapping) and written.keys().isdisjoint({"length", "range"}):
+    if isinstance(written, Mapping) and "length" not in written and not written.get("range"):
         yield "bar.length: is missing, must be a number greater than 0 (m)"
         bar = None
     if bar:
