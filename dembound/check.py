@@ -13,7 +13,7 @@ from dembound.motion.ram import has_in_words, in_words
 from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
 from dembound.results.estimates import split_in_words
-from dembound.running import plan, require_stages, space_in_words, space_warnings, warnings_before
+from dembound.running import plan, require_ready, space_in_words, space_warnings, warnings_before
 from dembound.words import Entries, percent, with_unit
 
 TRIAL_STEPS, TRIALS = 20, 3
@@ -25,7 +25,7 @@ def check(case: Case, results: Path = Path("results")) -> tuple[dict[str, str], 
     results : folder in which the run would write its own; the free space of its disk is checked.
     """
     planned = plan(case)
-    require_stages(planned)
+    require_ready(planned)
     facts = [
         *_run_facts(planned, results),
         *planned.kind.facts(planned.scene, planned.time_step),

@@ -12,6 +12,7 @@ from dembound.disks.contacts.breaks import first_break
 from dembound.disks.entry import all_late_by
 from dembound.disks.far import FarDisks
 from dembound.disks.following import Membranes
+from dembound.disks.intact import require_room
 from dembound.disks.material.wave_front import front_of
 from dembound.disks.membrane import follows, in_run
 from dembound.disks.ram import expected_bytes
@@ -25,7 +26,7 @@ from dembound.disks.reports.storage import storage_of
 from dembound.disks.reports.summary import asked_stress, describe_static, summarise_disks
 from dembound.disks.reports.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.rest.settled import Settled, settling_keys
-from dembound.disks.rest.stage import settle, stage_names
+from dembound.disks.rest.stage import require_stages, settle, stage_names
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
@@ -60,8 +61,15 @@ class Disks(Kind[DiskCase, DiskScene]):
     work_unit = "particle-steps"
 
     def build(self, case: DiskCase) -> DiskScene:
-        """The scene of a case; raises the errors for loads without particles and for a singular material."""
+        """The scene of a case that is to run.
+
+        Raises the errors for loads without particles, a singular material, and too large zones without broken bonds;
+        strips and columns that are built from parts of a case may be smaller.
+        """
         scene = with_incident_waves(build(case))
+        for each in filter(None, (scene.before, scene)):
+            if each.has_history:  # under other laws zones matter to load factors only
+                require_room(case, each.intact_zones, each.disk_count - each.column_count)
         _ = scene.steady_load, [layer.material_tensor for layer in scene.ground.materials]
         return scene
 
@@ -124,6 +132,11 @@ class Disks(Kind[DiskCase, DiskScene]):
     def stage_keys(self, scene: DiskScene) -> dict[str, Any]:
         """All inputs that determine the result of the static stage, by key."""
         return settling_keys(scene)
+
+    def require_ready(self, scene: DiskScene, stepped: DiskScene) -> None:
+        """Find when waves enter, and build the scenes of the static stage."""
+        self.late(scene)
+        require_stages(stepped)
 
     def stage_names(self, scene: DiskScene) -> list[str]:
         """Names of the parts of the static stage, none without one."""

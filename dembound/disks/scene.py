@@ -23,7 +23,6 @@ from dembound.disks.body_sides import sides_of, tied_of
 from dembound.disks.contact_types import with_half_contacts, with_layers
 from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.layout import lay_out
-from dembound.disks.intact import require_room
 from dembound.disks.loads import steady
 from dembound.disks.material.layered import layered
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
@@ -227,8 +226,6 @@ def _scene(
         between=between,
         ground_waves=waves,
     )
-    if scene.has_history:  # under other laws they matter to load factors only
-        require_room(case, scene.intact_zones, scene.disk_count - scene.column_count)
     return with_waves(scene, case.wave)
 
 

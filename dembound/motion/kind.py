@@ -193,6 +193,12 @@ class Kind(ABC, Generic[C, S]):
     def storage(self, scene: S) -> Storage:
         """Bytes on disk of the results of a scene."""
 
+    def require_ready(self, scene: S, stepped: S) -> None:
+        """Raise the errors of what a run computes after its plan and before its first step; by default nothing.
+
+        stepped : the scene whose motion is computed.
+        """
+
     def stage_keys(self, scene: S) -> dict[str, Any]:
         """All inputs that determine the results of the stages before a run, as plain JSON values by key."""
         return {}

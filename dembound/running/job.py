@@ -29,7 +29,7 @@ from dembound.results.summary import summarise
 from dembound.results.vtk import write_paraview
 from dembound.results.warnings import never_past_peak, never_silent
 from dembound.running.disk_space import bytes_left, space_in_words, space_warnings
-from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
+from dembound.running.planning import about, plan, require_ready, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
 from dembound.running.recorded import require_replaceable
 from dembound.running.shared import Shared
@@ -124,7 +124,7 @@ class _Job:
         case, clock = self.case, self.clock
         with Interrupts(), clock.with_compiling():
             planned = self._plan()
-            require_stages(planned)
+            require_ready(planned)
             self._announce_size(planned)
             with about(case), self.folder.writing(anew=self.found is None) as partial, self._without_copies():
                 if self.found is not None:

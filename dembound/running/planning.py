@@ -70,11 +70,11 @@ def preflight(case: Case) -> None:
     """Find errors that would stop a case later, if this takes little time.
 
     Builds the scene, whose brick is then cached. Where the time step is found quickly, it also plans the run. Raises
-    the errors of `plan` and `require_stages`.
+    the errors of `plan` and `require_ready`.
     """
     kind = kind_of(case)
     if kind.is_planned_quickly(case):
-        require_stages(plan(case))
+        require_ready(plan(case))
         return
     with about(case):
         scene = kind.build(case)
@@ -82,10 +82,14 @@ def preflight(case: Case) -> None:
             _require_stages(kind, kind.reduced(scene).scene)
 
 
-def require_stages(planned: Plan) -> None:
-    """Raise CaseError if the case uses stages of another run that are missing, damaged, or of another body."""
+def require_ready(planned: Plan) -> None:
+    """Raise all further errors that stop a run before its first step, so that a check and a run refuse the same cases.
+
+    They are those of stages of another run that are missing, damaged, or of another body, and those of `Kind`.
+    """
     with about(planned.scene.case):
         _require_stages(planned.kind, planned.stepped)
+        planned.kind.require_ready(planned.scene, planned.stepped)
 
 
 def _require_stages(kind: Kind[Any, Any], stepped: Scene) -> None:

@@ -49,6 +49,15 @@ def settle(scene: DiskScene, on_look: OnLook | None = None, stages: Stages | Non
     return _settle_built(scene, _Stage("body", "the static stage", on_look, kept))
 
 
+def require_stages(scene: DiskScene) -> None:
+    """Raise the errors of building the scenes of a static stage, if the case has one."""
+    if (static := scene.case.static) is None:
+        return
+    for each in filter(None, (scene.before, scene)):
+        for built in (each, *([column_alone(each)] if each.seam is not None else [])):
+            StaticScene(built, static)
+
+
 def stage_names(scene: DiskScene) -> list[str]:
     """The names of a scene's stages in the `Stages` that `settle` receives, in their order."""
     if scene.before is None:
