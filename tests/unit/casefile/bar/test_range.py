@@ -99,3 +99,6 @@ def test_a_bar_without_ranges_needs_its_length() -> None:
     bare, line = GOOD[: GOOD.index("[[bar.range]]")] + GOOD[GOOD.index("[[load]]") :], "bar.length: is missing, must be"
     assert [each[: len(line)] for each in problems_of(bare)] == [line]
     assert any(each.startswith(line) for each in problems_of(bare.replace("spacing = 0.01", "")))
+    assert any(
+        each.startswith(line) for each in problems_of(bare.replace("spacing = 0.01", "spacing = 0.01\nrange = []"))
+    )
