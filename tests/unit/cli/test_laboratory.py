@@ -77,7 +77,7 @@ def test_options_that_have_no_effect_or_no_meaning(dembound) -> None:
     for options, message in (
         (["ucx"], "test: is ucx, must be one of ucs, tension, brazilian, biaxial"),
         (["ucs", "--pressures", "1e6"], "--pressures: is for biaxial"),
-        (["biaxial", "--pressures", "1e6,1e6"], "--pressures: is 1e+06,1e+06, must be different numbers"),
+        (["biaxial", "--pressures", "1e6,1e6"], "--pressures: is 1e+06,1e+06, must be different finite numbers"),
         (["biaxial", "--pressures", "1e6,x"], "--pressures: is 1e6,x, must be numbers"),
         (["ucs", "--width", "0"], "--width: is 0, must be more than 0"),
         (["ucs", "--seeds", "1", "--shares", "0.5,0.1"], "--shares: is 0.5,0.1, must be two shares"),
