@@ -20,7 +20,6 @@ BY_NAME = {
     "hardlink_to",
     "savefig",
     "mkstemp",
-    "mkdtemp",
     "copytree",
 }
 """Methods and functions that write to a file or link given by its name."""
