@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -23,11 +24,8 @@ if TYPE_CHECKING:
     from dembound.records.formats import Reading
     from dembound.records.processing import Motion, Processing
 
-STEPS = "Processing"
-"""Panel of the help."""
-
-READING = "Files that state too little"
-"""Another panel."""
+_step = partial(typer.Option, rich_help_panel="Processing")
+_given = partial(typer.Option, rich_help_panel="Files that state too little")
 
 HEADS = (
     *("com-\nponent", "sam-\nples", "rate\n(Hz)", "PGA\n(m/s²)", "PGA\n(g)", "PGV\n(m/s)", "PGD\n(m)"),
@@ -64,48 +62,27 @@ class Baseline(StrEnum):
 class ProcessingOptions:
     """How a record becomes a wave, in the order of the steps; None: as usual, or with --raw nothing."""
 
-    raw: Annotated[
-        bool, typer.Option("--raw", help="Process nothing but what other options name.", rich_help_panel=STEPS)
-    ] = False
-    begin: Annotated[
-        float | None, typer.Option("--from", help="Keep what is from this time on (s).", rich_help_panel=STEPS)
-    ] = None
-    end: Annotated[
-        float | None, typer.Option("--to", help="Keep what is up to this time (s).", rich_help_panel=STEPS)
-    ] = None
+    raw: Annotated[bool, _step("--raw", help="Process nothing but what other options name.")] = False
+    begin: Annotated[float | None, _step("--from", help="Keep what is from this time on (s).")] = None
+    end: Annotated[float | None, _step("--to", help="Keep what is up to this time (s).")] = None
     baseline: Annotated[
         Baseline | None,
-        typer.Option(
+        _step(
             metavar="KIND",
             help="mean: remove that of the samples before the motion, if there are any, else of all; linear: a fitted "
             "line; zero-velocity: the mean, and then the velocity left at the end; none. By default mean.",
-            rich_help_panel=STEPS,
         ),
     ] = None
     taper: Annotated[
-        float | None,
-        typer.Option(
-            help="Cosine tapers at both ends (s); by default 2, in short records less.", rich_help_panel=STEPS
-        ),
+        float | None, _step(help="Cosine tapers at both ends (s); by default 2, in short records less.")
     ] = None
     high_pass: Annotated[
-        float | None,
-        typer.Option(
-            help="Keep what is above (Hz), 0: all; by default 0.1, in short records more.", rich_help_panel=STEPS
-        ),
+        float | None, _step(help="Keep what is above (Hz), 0: all; by default 0.1, in short records more.")
     ] = None
-    low_pass: Annotated[
-        float | None, typer.Option(help="Keep what is below (Hz); by default all.", rich_help_panel=STEPS)
-    ] = None
-    order: Annotated[
-        int,
-        typer.Option(help="Order of the Butterworth filters, in each direction.", min=1, rich_help_panel=STEPS),
-    ] = 4
-    pga: Annotated[
-        float | None,
-        typer.Option(help="Scale each component to this peak of its acceleration (m/s²).", rich_help_panel=STEPS),
-    ] = None
-    scale: Annotated[float, typer.Option(help="Multiply by this factor.", rich_help_panel=STEPS)] = 1.0
+    low_pass: Annotated[float | None, _step(help="Keep what is below (Hz); by default all.")] = None
+    order: Annotated[int, _step(help="Order of the Butterworth filters, in each direction.", min=1)] = 4
+    pga: Annotated[float | None, _step(help="Scale each component to this peak of its acceleration (m/s²).")] = None
+    scale: Annotated[float, _step(help="Multiply by this factor.")] = 1.0
 
     def of(self, channel: Channel) -> Processing:
         """What is done to a channel; raises CaseError for a scale beside a PGA, or one without meaning."""
@@ -133,29 +110,14 @@ class ProcessingOptions:
 class ReadingOptions:
     """What is known about a file beside its header."""
 
-    unit: Annotated[
-        str | None,
-        typer.Option(help="Unit of the values, e.g. g, cm/s² or m/s; replaces the file's.", rich_help_panel=READING),
-    ] = None
-    time_step: Annotated[
-        float | None, typer.Option("--dt", metavar="X", help="Time step (s).", rich_help_panel=READING)
-    ] = None
+    unit: Annotated[str | None, _given(help="Unit of the values, e.g. g, cm/s² or m/s; replaces the file's.")] = None
+    time_step: Annotated[float | None, _given("--dt", metavar="X", help="Time step (s).")] = None
     columns: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME,NAME,…",
-            help='Columns of a text in their order, as time,NS,EW; "-" leaves one out.',
-            rich_help_panel=READING,
-        ),
+        _given(metavar="NAME,NAME,…", help='Columns of a text in their order, as time,NS,EW; "-" leaves one out.'),
     ] = None
-    series: Annotated[
-        bool,
-        typer.Option("--series", help="Take all numbers, line by line, as one channel.", rich_help_panel=READING),
-    ] = False
-    skip: Annotated[
-        int,
-        typer.Option(metavar="N", min=0, help="Leave out lines at the beginning of a text.", rich_help_panel=READING),
-    ] = 0
+    series: Annotated[bool, _given("--series", help="Take all numbers, line by line, as one channel.")] = False
+    skip: Annotated[int, _given(metavar="N", min=0, help="Leave out lines at the beginning of a text.")] = 0
 
     def given(self) -> Reading:
         """The same for readers."""

@@ -5,6 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from dembound.gauge.reading.scope import BROKEN_OFF, SIGNS, UNIT_IN_NAME, joined
 from dembound.records.formats.source import END, MOTIONS, Flaw, Source, Unknown, number_of, quantity_named
@@ -70,7 +71,7 @@ class Table:
     rows: Sequence[Sequence[float]]
     numbers: Sequence[int]
 
-    @property
+    @cached_property
     def width(self) -> int:
         """Numbers in most lines."""
         return Counter(map(len, self.rows)).most_common(1)[0][0]
@@ -80,7 +81,7 @@ class Table:
         """All numbers."""
         return sum(map(len, self.rows))
 
-    @property
+    @cached_property
     def ragged(self) -> int:
         """Index of the first line with another number of numbers than most; that of no line without any."""
         return next((at for at, row in enumerate(self.rows) if len(row) != self.width), len(self.rows))
@@ -93,21 +94,18 @@ def read_table(source: Source) -> Table:
     Flaw for a text without numbers at its end, for other text between them, and for lines of the header that may be
     numbers of the series.
     """
-    lines = [(number, text.translate(SIGNS).strip(" \r\f\v")) for number, text in enumerate(source.lines, start=1)]
-    lines = lines[source.given.skip :]
-    lines = [(number, text) for number, text in lines if text and not END.match(text)]
+    numbered = enumerate(source.lines[source.given.skip :], start=source.given.skip + 1)
+    lines = [(number, text.translate(SIGNS).strip(" \r\f\v")) for number, text in numbered if not END.match(text)]
     separator = _separator([text for _, text in lines])
-    found = [(number, text, _numbers(text, separator)) for number, text in lines]
+    found = [(number, text, _numbers(text, separator)) for number, text in lines if text]
     first = len(found)
     while first > 0 and found[first - 1][2]:
         first -= 1
     if first == len(found):
         if any(numbers for _, _, numbers in found):
             raise Flaw(f"line {found[-1][0]} is no line of numbers, there must be none behind them")
-        text = next(
-            (f', as line {number} "{text[:30]}"' for number, text in reversed(lines) if re.search(r"\d", text)), ""
-        )
-        raise Unknown(f"has no lines of numbers alone{text}")
+        said = (f', but line {number}: "{text[:30]}"' for number, text in reversed(lines) if re.search(r"\d", text))
+        raise Unknown(f"has no lines of numbers alone{next(said, '')}")
     rows = [numbers for _, _, numbers in found[first:]]
     above = [len(numbers) for _, _, numbers in found[:first] if numbers]
     if above.count(len(rows[0])) >= (BROKEN_OFF if len(rows[0]) == 1 else 1):
@@ -117,9 +115,9 @@ def read_table(source: Source) -> Table:
         raise Flaw("has whole numbers between commas; if numbers have decimal commas, separate columns by semicolons")
     if not source.given.series:
         _require_no_header(rows, [text for _, text, _ in found[first:]], found[first][0])
-    gaps = [number for number, text, numbers in found[:first] if not numbers and _has_gaps(text, separator)]
-    if gaps:
-        raise Flaw(f"line {gaps[-1]} has empty fields beside numbers; --skip {gaps[-1]} leaves out all above")
+    for number, text, _ in found[:first]:
+        if _numbers(separator.join(filter(None, _fields(text, separator))) or MARKS, separator):
+            raise Flaw(f"line {number} has empty fields beside numbers; --skip {number} leaves it out")
     header = [(number, text.lstrip(MARKS + " ")) for number, text, _ in found[:first] if not RULER.fullmatch(text)]
     table = Table(header, (), rows, [number for number, _, _ in found[first:]])
     if source.given.columns or source.given.series:
@@ -160,12 +158,6 @@ def _numbers(text: str, separator: str) -> list[float]:
     return numbers if len(numbers) == len(fields) else []
 
 
-def _has_gaps(text: str, separator: str) -> bool:
-    """Whether a line has numbers and empty fields, and nothing else."""
-    fields = _fields(text, separator) if text[0] not in MARKS else []
-    return "" in fields and any(fields) and all(not field or number_of(field) is not None for field in fields)
-
-
 def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], number: int) -> None:
     """Raise Flaw if the first lines seem to state the number of samples or the time step, or to name columns.
 
@@ -176,16 +168,12 @@ def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], nu
         top = [value for row in rows[:lines] for value in row]
         stands_out = len(rows) > lines and widths[0] < widths[lines] and len(set(widths[:lines])) == 1
         if total - len(top) in top or stands_out:
-            raise Flaw(
-                f"line {number} may state the number of samples: --skip {number + lines - 1} leaves it out, --dt gives "
-                "the time step"
-            )
+            said = f"--skip {number + lines - 1} leaves it out, --dt gives the time step"
+            raise Flaw(f"line {number} may state the number of samples: {said}")
     first, *others = [_decimals(text) for text in texts]
     if len(others) > 2 and first != others[0] and len(set(others)) == 1 and any(rows[0]):
-        raise Flaw(
-            f"line {number} has other digits than all lines below: --skip {number} leaves it out of the numbers, "
-            "--series takes all as one series"
-        )
+        said = f"--skip {number} leaves it out, --series takes all as one series"
+        raise Flaw(f"line {number} has other digits than all lines below: {said}")
 
 
 def _decimals(text: str) -> tuple[int, ...]:

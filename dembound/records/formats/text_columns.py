@@ -126,9 +126,7 @@ def _is_series(source: Source, table: Table, heads: Sequence[Head], step: Stated
     if width == 1 or (table.ragged == lines and are_columns):
         return width == 1
     if step is None:
-        raise Flaw(
-            f"has {width} numbers in a line and states neither times nor a time step: give --dt, and {EITHER[5:]}"
-        )
+        raise Flaw(f"has {width} numbers in a line, and neither times nor a time step: give --dt, and {EITHER[5:]}")
     if table.ragged < lines or (count is not None and count[0] == table.total):
         return True
     if (count is not None and count[0] == lines) or width < LONG:
@@ -179,10 +177,7 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
 def _single(source: Source, table: Table, numbers: np.ndarray, step: Stated) -> Channel:
     """The channel of a series."""
     if step is None:
-        raise Flaw(
-            'has one column and states no time step, must have a line above the values such as "dt = 0.01 s" or '
-            '"sampling: 100 Hz"; or give --dt'
-        )
+        raise Flaw('has one column and states no time step; give --dt, or a line "dt = 0.01 s" or "sampling: 100 Hz"')
     unit = next((head.unit for head in table.heads if table.width == 1 and head.unit), "") or _unit_of_title(table)
     return _channel(source, table, Head("", unit), numbers, step[0], 0.0, alone=True)
 
@@ -259,20 +254,16 @@ def _times(source: Source, table: Table, head: Head, at: int) -> np.ndarray:
     """The times of a column, s; raises Flaw, with its line, for those that go back, and for steps without a unit."""
     unit = unit_named(head.unit)
     values = np.array([row[at] for row in table.rows])
+    otherwise = f"if column {at + 1} has no times, name the columns by --columns and give --dt"
     try:
         require_increasing(values)
     except Flaw as flaw:
         steps = np.diff(values)
         line = f" in line {table.numbers[int(np.argmin(steps)) + 1]}" if (steps < 0.0).any() else ""
-        raise Flaw(
-            f"{flaw}{line}; if column {at + 1} has no times, name the columns by --columns and give --dt"
-        ) from None
+        raise Flaw(f"{flaw}{line}; {otherwise}") from None
     step = (values[-1] - values[0]) / (len(values) - 1)
     if unit is None and step > BARE:
-        raise Flaw(
-            f"has times {step:.4g} apart without a unit: write it in their head, as time (ms); if column {at + 1} has "
-            "no times, name the columns by --columns and give --dt"
-        )
+        raise Flaw(f"has times {step:.4g} apart without a unit: write it in their head, as time (ms); {otherwise}")
     if unit is None and head.unit == "" and not head.name:
         source.chosen.append(f"column {at + 1}: times in s")
     return (1.0 if unit is None else unit.size) * values
@@ -282,9 +273,7 @@ def _require_step(step: Stated, between: float, at: int) -> None:
     """Raise Flaw if the header or an option states another time step (s) than that of a column of times."""
     if step is not None and abs(step[0] - between) > SAME * between:
         said = f"line {step[1]} states" if step[1] else "--dt: is"
-        raise Flaw(
-            f"{said} {step[0]:g} s, times in column {at + 1} are {between:g} s apart; name the columns by --columns"
-        )
+        raise Flaw(f"{said} {step[0]:g} s, times in column {at + 1} are {between:g} s apart; name them by --columns")
 
 
 def _require_order(table: Table, *, series: bool) -> None:
