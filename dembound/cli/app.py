@@ -13,13 +13,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from enum import StrEnum
-from functools import wraps
-from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from dembound.cli.console import err, flush, out, prepare_streams
 from dembound.errors import CaseError, DemboundError, RunError, UnusableTypeWarning
@@ -91,42 +89,26 @@ class _Commands(TyperGroup):
             return super().invoke(ctx)
 
 
+class _Command(TyperCommand):
+    """A command whose options that are numbers must be finite."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run it; raises CaseError for options that are infinite, or nan, before anything else."""
+        for option in self.params:
+            value = ctx.params.get(option.name)
+            for number in value if isinstance(value, list | tuple) else (value,):
+                if isinstance(number, float) and not math.isfinite(number):
+                    name = next(name for name in option.opts if name.startswith("--"))
+                    raise CaseError([f"{name}: is {number}, must be a finite number"])
+        return super().invoke(ctx)
+
+
 class _App(typer.Typer):
-    """An application in which options that are numbers must be finite."""
+    """An application of such commands."""
 
     def command(self, *arguments: Any, **more: Any) -> Callable[[Any], Any]:
         """A decorator that registers a function as a command."""
-        register = super().command(*arguments, **more)
-
-        def registered(function: Callable[..., Any]) -> Callable[..., Any]:
-            register(_with_finite_numbers(function))
-            return function
-
-        return registered
-
-
-def _with_finite_numbers(command: Callable[..., Any]) -> Callable[..., Any]:
-    """A command that raises CaseError for options that are infinite, or nan, before anything else."""
-
-    @wraps(command)
-    def checked(**given: Any) -> Any:
-        for name, value in given.items():
-            for number in value if isinstance(value, list | tuple) else (value,):
-                if isinstance(number, float) and not math.isfinite(number):
-                    raise CaseError([f"{_option(command, name)}: is {number}, must be a finite number"])
-        return command(**given)
-
-    return checked
-
-
-def _option(command: Callable[..., Any], parameter: str) -> str:
-    """The option of a parameter, as it is written on the command line."""
-    declared = signature(command).parameters[parameter].annotation
-    if isinstance(declared, str):
-        declared = get_type_hints(command, include_extras=True)[parameter]
-    given = (name for each in getattr(declared, "__metadata__", ()) for name in (each.default, *each.param_decls))
-    named = (name for name in given if isinstance(name, str) and name.startswith("--"))
-    return next(named, f"--{parameter.replace('_', '-')}")
+        return super().command(*arguments, cls=_Command, **more)
 
 
 app = _App(
