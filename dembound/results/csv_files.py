@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,8 @@ from dembound.files import replacing
 
 FORMULAS = ("=", "+", "-", "@", "\t", "\r")
 """Beginnings of texts that spreadsheets take for formulas, which might do anything."""
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+|inf|nan)(e[+-]?\d+)?$", re.IGNORECASE)
 
 
 def write_csv(path: Path, rows: Iterable[Sequence[Any]]) -> None:
@@ -26,13 +29,4 @@ def _cell(value: Any) -> Any:
     """A value as a cell."""
     if value is None or value != value:
         return ""
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULAS) and not _is_number(value) else value
-
-
-def _is_number(text: str) -> bool:
-    """Whether a text is a number, with a sign or without."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULAS) and not NUMBER.match(value) else value
