@@ -16,7 +16,7 @@ from dembound.casefile.bar.range import BarRange
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted, show
 from dembound.exact.dispersion import cells_per_wavelength
-from dembound.words import Entries, with_unit
+from dembound.words import Entries, percent, with_unit
 
 ERROR = 0.01
 """Error of the phase speed that the shortest wavelength may have without a warning."""
@@ -68,7 +68,7 @@ def _echo_in_words(scene: BarScene, side: str, time_step: float) -> str:
     if most:
         words.append(f"at most {', '.join(f'{_rounded_up(share)} of wave {name}' for name, share in most.items())}")
         if found.part < 1.0:
-            words[0] += f", at {100.0 * found.part:.2g} % of the nodes,"
+            words[0] += f", at {percent(found.part)} of the nodes,"
         if np.isfinite(found.within):
             words[0] += f" within {found.within:.2g} s after it"
     if nothing := [name for name in found.shares if name not in most]:

@@ -71,9 +71,9 @@ def test_a_disk_with_less_space_is_warned_of_with_both_numbers(bar, tmp_path, mo
     (warning,) = space_warnings(planned, tmp_path)
 
     assert warning.startswith(f"output.snapshots: the results take about {need}, ")
-    assert warning.endswith("the disk has 0 MB free")
+    assert warning.endswith("the disk has 100 kB free")
     facts, warnings = check.check(planned.scene.case)
-    assert facts["disk"] == f"about {need} of results; the disk has 0 MB free"
+    assert facts["disk"] == f"about {need} of results; the disk has 100 kB free"
     assert warning in warnings
 
 
