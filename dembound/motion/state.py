@@ -102,8 +102,13 @@ class State:
         return {name: np.array(values) for name, values in arrays.items()} if copies else arrays
 
     def take(self, arrays: Arrays) -> None:
-        """Restore the arrays returned by `arrays` in another run of the same case."""
+        """Restore the arrays returned by `arrays` in another run of the same case.
+
+        Raises ValueError for those of another one, numbers that are not finite, and trackers that were due before.
+        """
         for name in _ARRAYS:
+            if not np.isfinite(arrays[name]).all():
+                raise ValueError(f"{name} is not finite")
             if name != "switch_velocity" and arrays[name].shape != getattr(self, name).shape:  # absent at first
                 raise ValueError(f"{name} has the shape {arrays[name].shape}, must have {getattr(self, name).shape}")
             setattr(self, name, arrays[name].copy())
@@ -112,6 +117,8 @@ class State:
         self.laws = list(zip(arrays["laws/name"].tolist(), arrays["laws/step"].tolist(), strict=True))
         for owner, kept in self.owners.items():
             kept.restore(within(arrays, owner))
+            if getattr(kept, "due", self.step) < self.step:
+                raise ValueError(f"{owner} was due before step {self.step}")
 
 
 _ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity", "supplied", "side_work")

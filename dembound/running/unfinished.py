@@ -99,8 +99,11 @@ class Unfinished:
         return sum(path.stat().st_size for path in self.path.rglob("*") if path.is_file())
 
     def arrays(self) -> Arrays:
-        """The arrays of the checkpoint, read anew."""
-        return Checkpoint.read(self.path / FILE).arrays
+        """The arrays of the checkpoint, read anew; raises RecordError if they are of another step than its facts."""
+        arrays = Checkpoint.read(self.path / FILE).arrays
+        if arrays["step"] != self.facts["step"]:
+            raise RecordError([f"{self.path / FILE}: is damaged: its arrays are not of step {self.facts['step']}"])
+        return arrays
 
     def require_record(self, scene: Scene) -> None:
         """Raise RecordError if the record of the run, if it has begun, lacks datasets that the scene appends to.

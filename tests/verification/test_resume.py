@@ -250,6 +250,29 @@ def test_a_run_cut_and_rebuilt_from_its_arrays_comes_to_the_same_bits(name) -> N
         assert (cracks + broken > 0) == (name in BREAKING)
 
 
+def test_arrays_that_kernels_must_not_see_are_refused() -> None:
+    """Types without constants are read beyond the end of an array, and a step before the present one never comes."""
+    case = case_of("law changes, bonds break")
+    kind = kind_of(case)
+    scene = kind.build(case)
+    step, probes = kind.choose_step(scene)[0], list(scene.monitors.values())
+    simulation = Simulation(scene, step, probes, system=kind.begin(scene, step, lambda *_: None).system)
+    simulation.track(Ledger(simulation, 57))
+    simulation.advance(10)
+    good = simulation.state.arrays()
+    for name, value, said in (
+        ("system/body/contact_type", 10**6, "types without constants"),
+        ("system/body/constants", good["system/body/constants"][:, :-1], "of another law"),
+        ("velocity", np.nan, "velocity is not finite"),
+        ("ledger/due", 3, "ledger was due before step 10"),
+    ):
+        bad = good[name].copy() if np.isscalar(value) else value
+        if np.isscalar(value):
+            bad[...] = value
+        with pytest.raises(ValueError, match=said):
+            simulation.state.take(good | {name: bad})
+
+
 @pytest.fixture(
     scope="module", params=[name if name in FILED else pytest.param(name, marks=pytest.mark.slow) for name in CASES]
 )

@@ -337,7 +337,11 @@ class ContactList(PairList):
         return saved | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
 
     def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        """Restore the arrays returned by `saved_arrays` in another run of the same case; ValueError for others."""
+        if saved["constants"].shape[1:] != self._constants.shape[1:]:
+            raise ValueError("constants of contacts are of another law")
+        if saved["contact_type"].max(initial=0) >= max(len(saved["constants"]), 1):
+            raise ValueError("contacts have types without constants")
         self._constants = saved["constants"]
         self._set_origin(saved["origin"][:, self._slot - self._slots.start])
         self.keeps_slip = bool(saved["keeps_slip"])
