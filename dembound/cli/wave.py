@@ -120,7 +120,7 @@ class ReadingOptions:
     skip: Annotated[int, _given(metavar="N", min=0, help="Leave out lines at the beginning of a text.")] = 0
 
     def given(self) -> Reading:
-        """The same for readers."""
+        """These options as the readers of formats take them."""
         from dembound.records.formats import Reading
 
         names = tuple(name.strip() for name in self.columns.split(",")) if self.columns else ()

@@ -53,7 +53,7 @@ def read_record(path: Path, given: Reading = Reading()) -> Record:  # noqa: B008
     name = "SAC or MiniSEED" if "\0" in text else form.name
     try:
         record = read_binary(content, source) if "\0" in text else form.read(source)
-        if given.unit is not None and len({channel.quantity for channel in record.channels}) > 1:
+        if given.unit is not None and len(source.quantities) > 1:
             raise Flaw(f"--unit: is {given.unit}, but the channels are different quantities; leave it out")
     except Flaw as flaw:
         known = f"; known formats: {', '.join(known.name for known in FORMATS)}" if isinstance(flaw, Unknown) else ""

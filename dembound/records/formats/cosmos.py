@@ -81,4 +81,7 @@ def _channel(source: Source, begin: int) -> tuple[Channel, int]:
     if at < len(source.lines) and not END.match(source.lines[at]):
         raise Flaw(f"line {at + 1} does not end the channel, after {len(values)} samples")
     name = code[1] if code and component.lower() in ("", "other") else component
-    return source.channel(name, unit, values, 1e-3 * float(reals[STEP]), peak=peak, length=samples[2] or ""), at
+    step, length = 1e-3 * float(reals[STEP]), samples[2] or ""
+    if length and abs(len(values) * step - int(length)) <= 1.0:  # in whole seconds, rounded in any direction
+        length = ""
+    return source.channel(name, unit, values, step, peak=peak, length=length), at

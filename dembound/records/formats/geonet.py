@@ -52,8 +52,8 @@ def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
     name = source.found(r"^component\s+(\S+)", begin, begin + TEXTS, "the component")[1]
     integers = source.fixed(begin + TEXTS, 10 * INTEGERS, "(10i8)")
     reals = source.fixed(begin + TEXTS + INTEGERS, 10 * REALS, "(10f8.0)")
-    length = source.found(rf"^number of points\s+\d+\s+duration\s+({DECIMAL})", begin, begin + TEXTS, "the duration")[1]
-    points = source.found(rf"^number of points\s+{COUNT}\b", begin, begin + TEXTS, "the number of points")[1]
+    pattern = rf"^number of points\s+{COUNT}\s+duration\s+({DECIMAL})"
+    points, length = source.found(pattern, begin, begin + TEXTS, "number of points and duration").groups()
     step = source.found(rf"\bat (?:intervals of )?({DECIMAL}) s", begin, begin + TEXTS, "the interval")[1]
     if int(points) != integers[COUNTS][0] or abs(float(step) - reals[STEP]) > SAME * reals[STEP]:
         raise Flaw(f"line {begin + 1} begins a text of {points} points every {step} s, the numbers below state others")
@@ -63,11 +63,10 @@ def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
             raise Flaw(f"line {begin + TEXTS + INTEGERS} states {count} samples, must be 0 or more")
         if count:
             values = source.fixed(at, count, LAYOUT)
-            stated = source.found(rf"^{quantity}:?\s+(?:peak\s+({DECIMAL})\s+{unit})?", begin, begin + TEXTS, quantity)[
-                1
-            ]
+            pattern = rf"^{quantity}:?\s+(?:peak\s+({DECIMAL})\s+{unit})?"
+            peak = source.found(pattern, begin, begin + TEXTS, quantity)[1] or ""
             measured = source.measured(unit, quantity)
-            found.append(source.channel(name, measured, values, float(reals[STEP]), peak=stated or "", length=length))
+            found.append(source.channel(name, measured, values, float(reals[STEP]), peak=peak, length=length))
             at += rows_of(count, LAYOUT)
     if not found:
         raise Flaw(f"states no samples of component {name}")

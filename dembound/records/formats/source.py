@@ -93,7 +93,8 @@ class Source:
     """A file that is being read.
 
     path; lines : without their ends; given : what is known beside its header; remarks : what the reader notices on its
-    way, warnings; chosen : what it took for what, where a text could be read otherwise.
+    way, warnings; chosen : what it took for what, where a text could be read otherwise; quantities : that the header
+    states, also where a unit is given.
     """
 
     path: Path
@@ -101,6 +102,7 @@ class Source:
     given: Reading = Reading()
     remarks: list[str] = field(default_factory=list)
     chosen: list[str] = field(default_factory=list)
+    quantities: set[str] = field(default_factory=set)
 
     def line(self, index: int) -> str:
         """A line by its index; raises Flaw if the file ends before."""
@@ -177,6 +179,7 @@ class Source:
         and if these words name another quantity than a unit of the header.
         """
         stated = unit_named(text)
+        self.quantities.update(filter(None, [stated.quantity if stated else quantity_named(named)]))
         if stated is not None and stated.quantity in ("counts", "voltages"):
             raise Flaw(f"has {stated.quantity} ({text.strip()}), must be converted to {' or '.join(MOTIONS)} before")
         if self.given.unit is not None:

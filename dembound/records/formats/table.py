@@ -15,10 +15,14 @@ MARKS = "#%!"
 """Signs that begin a comment."""
 
 TOUCHING = re.compile(r"(?<=[.\d])(?=[+-]\d*\.)")
+"""Where two numbers of Fortran touch: before the sign of the second one."""
+
 VALUE = re.compile(r"[=:]\s*[-+.\d]")
 """A field of the header that states a value and heads no column."""
 
 RULER = re.compile(r"[-=+*_|\s]+")
+"""A line that only separates others."""
+
 EITHER = "give --columns NAME,NAME,… for columns or --series for one series"
 
 LOWEST = 4
@@ -115,8 +119,8 @@ def read_table(source: Source) -> Table:
         raise Flaw("has whole numbers between commas; if numbers have decimal commas, separate columns by semicolons")
     if not source.given.series:
         _require_no_header(rows, [text for _, text, _ in found[first:]], found[first][0])
-    for number, text, _ in found[:first]:
-        if _numbers(separator.join(filter(None, _fields(text, separator))) or MARKS, separator):
+    for number, text, numbers in found[:first]:
+        if not numbers and _numbers(separator.join(filter(None, _fields(text, separator))) or MARKS, separator):
             raise Flaw(f"line {number} has empty fields beside numbers; --skip {number} leaves it out")
     header = [(number, text.lstrip(MARKS + " ")) for number, text, _ in found[:first] if not RULER.fullmatch(text)]
     table = Table(header, (), rows, [number for number, _, _ in found[first:]])

@@ -120,10 +120,15 @@ def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], in
 
 
 def _in_tenths(source: Source, begin: int, at: int) -> tuple[int, Named, float]:
-    """The number of points of uncorrected data, their unit, and its part in which they are: g, or a tenth of it."""
+    """The number of points of uncorrected data, their unit, and its part in which they are: g, or a tenth of it.
+
+    Raises Flaw for a unit that is given in place of tenths.
+    """
     count = int(source.found(rf"no\. of points\s*=\s*{COUNT}\b", begin, at, "the number of points")[1])
     unit = TENTHS.search("\n".join(source.lines[begin:at]))
-    is_tenth = unit is not None and unit[2] is not None and source.given.unit is None
+    is_tenth = unit is not None and unit[2] is not None
+    if is_tenth and source.given.unit is not None:
+        raise Flaw(f"--unit: is {source.given.unit}, the header states tenths of g; leave it out")
     return count, source.measured(unit[1] if unit else ""), 0.1 if is_tenth else 1.0
 
 

@@ -204,6 +204,19 @@ def test_a_given_unit_replaces_one_of_the_same_quantity(tmp_path):
     assert refusal(without, Reading("kPa")) == "--unit: is kPa, must be one of g, gal, cm/s², m/s², cm/s, m/s, cm or m"
 
 
+@pytest.mark.parametrize("name", ["sample.v2", "sample.s0a", "sample.V2A"])
+def test_one_unit_is_not_given_to_several_quantities(tmp_path, name):
+    """Velocities and displacements would become accelerations."""
+    said = "--unit: is g, but the channels are different quantities; leave it out"
+    assert refusal(changed(tmp_path, name), Reading("g")).endswith(said)
+
+
+@pytest.mark.parametrize("name", ["sample_film.RAW", "sample_bhrc.V1", "sample.e0a"])
+def test_a_unit_is_not_given_in_place_of_its_tenths(tmp_path, name):
+    said = "--unit: is g, the header states tenths of g; leave it out"
+    assert refusal(changed(tmp_path, name), Reading("g")).endswith(said)
+
+
 @pytest.mark.parametrize(
     ("name", "change", "said"),
     [

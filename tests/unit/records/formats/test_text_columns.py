@@ -44,6 +44,7 @@ def read(folder: Path, text: str, given: Reading = Reading()) -> Record:  # noqa
     [
         f"{SERIES}, 60 points\n{in_lines(4)}",
         f"# Somewhere, dt = 0.01 s\n# acceleration [g]\n{in_lines(5)}",
+        f"1994\nSomewhere\n{SERIES}\n{in_lines(1)}",
         f"{SERIES}\n{in_lines(8)}",  # the last line is shorter
         f"dt = 0,01 s; acceleration (g)\n{in_lines(1)}",
         f"dt = 0,01 s; acceleration (g)\n{in_lines(1).replace('.', ',')}",
