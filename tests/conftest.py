@@ -8,10 +8,10 @@ from importlib.machinery import PathFinder
 from pathlib import Path
 
 # The installed package, which commands that tests start have too: its kernels are compiled once for both. Without one,
-# or with one that is installed as a link to this folder, the package here.
+# or with one that is installed as a link, to this folder or to another checkout, the package here.
 others = [folder for folder in sys.path if Path(folder or ".").resolve() != Path(__file__).parents[1]]
 installed = PathFinder.find_spec("dembound", others)
-if installed is not None and installed.loader is not None:  # a link leaves a folder of that name with the cases alone
+if installed is not None and "site-packages" in Path(installed.origin or "").parts:
     sys.path[:] = others
 
 for library in ("OPENBLAS", "OMP", "MKL"):  # before numpy: their threads would wait for each other in small matrices
