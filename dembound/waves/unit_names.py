@@ -79,6 +79,9 @@ NO_UNITS = frozenset(re.findall(r"\S+", "x y z n e w ns ew ud n-s e-w u-d h1 h2 
 
 _SIGNS = str.maketrans("⁰¹²³⁴⁻−μµ·⋅×*", "01234--uu    ")
 _FACTOR = re.compile(r"\s*(/?)\s*([a-zε]+)\s?\^?(-?\d)?")
+_PARTS = re.compile(r"(.+?) ?/ ?(10+)")
+"""A tenth of a unit, or another decimal part of it: G/10 in volumes of corrected records."""
+
 _SPLIT_POWER = re.compile(r"(\b[a-z]+)[ .]((?:s|sec|cm|mm|m)\^?-\d)", re.IGNORECASE)
 _BRACKETS = re.compile(r"[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]")
 _SUFFIX = re.compile(r"(?<=[a-z0-9])_([a-zµμ²/^_]+?)(?=[\s,;:\"']|$)", re.IGNORECASE)
@@ -96,6 +99,9 @@ def unit_named(text: str, read: str = "") -> Named | None:
         return Named(text, OTHERS[plain], 1.0)
     if plain == "kn" and read == "m/s":
         plain = "knots"
+    if parted := _PARTS.fullmatch(plain):
+        whole = unit_named(parted[1], read)
+        return whole and whole._replace(spelled=text, size=whole.size / int(parted[2]))
     size, powers, place = 1.0, [0, 0, 0], 0
     for found in _FACTOR.finditer(plain):
         if found.start() != place or found[2] not in UNITS:
