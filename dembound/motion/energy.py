@@ -243,15 +243,16 @@ class Ledger(Tracker):
         }
 
     def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        """Restore the arrays returned by `saved_arrays` in another run of the same case; raises ValueError for others."""
         self.due = int(saved["due"])
         self.entries = [Entry(*row) for row in saved["entries"].tolist()]
         self.sides = list(saved["sides"])
-        self._first = tuple(saved["first"].tolist())
-        self._counted = float(saved["counted"])
-        self._came, self._most = float(saved["came"]), tuple(saved["most"].tolist())
+        self._first, self._most = ((float(one), float(two)) for one, two in (saved["first"], saved["most"]))
+        self._counted, self._came = float(saved["counted"]), float(saved["came"])
         begun = _Begun(saved["u"].copy(), saved["before"].copy(), float(saved["balancing"]), int(saved["laws"]))
         self._begun = begun if saved["has_begun"] else None
+        if self.due > (self._step_of_last() if self.entries else 0) + self._interval + 1:
+            raise ValueError(f"{self.name} is not due before step {self.due}")
         self._drop_end()
 
     @property

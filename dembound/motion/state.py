@@ -116,6 +116,10 @@ class State:
         self.step = int(arrays["step"])
         self.laws = list(zip(arrays["laws/name"].tolist(), arrays["laws/step"].tolist(), strict=True))
         for owner, kept in self.owners.items():
+            for name, fresh in kept.saved_arrays().items():
+                saved = arrays[f"{owner}/{name}"]
+                if (saved.dtype.kind, saved.ndim) != (fresh.dtype.kind, fresh.ndim):
+                    raise ValueError(f"{owner}/{name} has {saved.ndim} axes of {saved.dtype}")
             kept.restore(within(arrays, owner))
             if getattr(kept, "due", self.step) < self.step:
                 raise ValueError(f"{owner} was due before step {self.step}")

@@ -265,6 +265,10 @@ def test_arrays_that_kernels_must_not_see_are_refused() -> None:
         ("system/body/constants", good["system/body/constants"][:, :-1], "of another law"),
         ("velocity", np.nan, "velocity is not finite"),
         ("ledger/due", 3, "ledger was due before step 10"),
+        ("ledger/due", 10**6, "ledger is not due before step 1000000"),
+        ("ledger/due", good["ledger/due"].astype(float), "ledger/due has 0 axes of float64"),
+        ("ledger/most", good["ledger/most"][:1], "not enough values"),
+        ("system/side_watch/turn", np.zeros(0), "could not broadcast"),
     ):
         bad = good[name].copy() if np.isscalar(value) else value
         if np.isscalar(value):

@@ -81,10 +81,10 @@ class Balance:
         """The balance restored from the arrays returned by `saved_arrays` in another run of the same case."""
         balance = cls(scene, saved["force"].copy(), *(saved[name].copy() for name in _FIXED))
         for name in _EVOLVING:
-            setattr(balance, f"_{name}", saved[name].copy())
+            getattr(balance, f"_{name}")[...] = saved[name]
         balance._note_begin()
         balance._of_ended = float(saved["of_ended"])
-        balance.let_go = saved["let_go"].copy()
+        balance.let_go[...] = saved["let_go"]
         for name in _FOLLOWING:
             getattr(balance.followers, name)[...] = saved[f"follower_{name}"]
         return balance

@@ -148,7 +148,7 @@ class SideWatch:
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self._work, self._turn, self._reached = (saved[name].copy() for name in ("work", "turn", "reached"))
+        self._work[:], self._turn[:], self._reached[:] = (saved[name] for name in ("work", "turn", "reached"))
         self.ended, self._energy = float(saved["ended"]), float(saved["energy"])
 
 
