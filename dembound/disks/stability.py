@@ -130,6 +130,7 @@ def _largest_with(scene: DiskScene, continua: Sequence[Surroundings]) -> float:
     equation, and is found by iteration from below: each larger step makes the ties less stiff.
     """
     mass = np.concatenate([scene.mass[: scene.disk_count], *(each.body.mass_for_limit for each in continua)])
+    moving = scene.layout.spread(scene.moves.astype(float))  # ties and continua also push what does not move
     fill, adding = filling_forces(scene), [each.adds_forces(scene.layout) for each in continua]
     times = 1.0
     largest = 0.0
@@ -139,6 +140,7 @@ def _largest_with(scene: DiskScene, continua: Sequence[Surroundings]) -> float:
             fill(u, force)
             for add in adding:
                 add(u, force, times)
+            force *= moving
 
         found = largest_eigenvalue(scene.layout, mass, scene.inertia, scene.free, scene.moves, forces)
         if found <= largest * (1.0 + CONVERGED):

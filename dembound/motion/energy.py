@@ -243,7 +243,7 @@ class Ledger(Tracker):
         }
 
     def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case; raises ValueError for others."""
+        """Restore the arrays returned by `saved_arrays` in another run; raises ValueError for those of another case."""
         self.due = int(saved["due"])
         self.entries = [Entry(*row) for row in saved["entries"].tolist()]
         self.sides = list(saved["sides"])

@@ -79,8 +79,8 @@ NO_UNITS = frozenset(re.findall(r"\S+", "x y z n e w ns ew ud n-s e-w u-d h1 h2 
 
 _SIGNS = str.maketrans("⁰¹²³⁴⁻−μµ·⋅×*", "01234--uu    ")
 _FACTOR = re.compile(r"\s*(/?)\s*([a-zε]+)\s?\^?(-?\d)?")
-_PARTS = re.compile(r"(.+?) ?/ ?(10+)")
-"""A tenth of a unit, or another decimal part of it: G/10 in volumes of corrected records."""
+_PARTS = re.compile(r"g ?/ ?(10+)")
+"""A decimal part of g: G/10 in volumes of uncorrected records."""
 
 _SPLIT_POWER = re.compile(r"(\b[a-z]+)[ .]((?:s|sec|cm|mm|m)\^?-\d)", re.IGNORECASE)
 _BRACKETS = re.compile(r"[\[(]\s*((?:[^\[\]()]|\([^()]*\))*?)\s*[\])]")
@@ -100,8 +100,7 @@ def unit_named(text: str, read: str = "") -> Named | None:
     if plain == "kn" and read == "m/s":
         plain = "knots"
     if parted := _PARTS.fullmatch(plain):
-        whole = unit_named(parted[1], read)
-        return whole and whole._replace(spelled=text, size=whole.size / int(parted[2]))
+        return Named(text, "accelerations", STANDARD_GRAVITY / int(parted[1]))
     size, powers, place = 1.0, [0, 0, 0], 0
     for found in _FACTOR.finditer(plain):
         if found.start() != place or found[2] not in UNITS:

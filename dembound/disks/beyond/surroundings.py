@@ -231,7 +231,7 @@ def surroundings_of(
     layout : of the nodes before its own, of which the body's disks are those from number `first` on. twin : (m,) for
     each disk its twin in the free-field column; None without a column.
 
-    Raises CaseError if the packing's sides cut no bonds.
+    Raises CaseError if the packing's sides cut no bonds, and for a body so thin that one side is no disk's first.
     """
     sides, size, rim, mesh = outline
     cut = cut_contacts(ground.brick, body, sides, mesh.periodic, rim.ends)
@@ -254,9 +254,13 @@ def surroundings_of(
     bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
     surface_mass = rim.massless.get("top", 0.0) * ground.at(rim.surface or rim.box[3]).density
-    return Surroundings(
+    found = Surroundings(
         sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twin, surface_mass
     )
+    if thin := [side for side in sides if len(found.tied_by_side[side]) == 0]:
+        said = "has no disk that is not tied by another side; make the body two disks wide and high, or more"
+        raise CaseError([f"boundary.{thin[0]}: {said}"])
+    return found
 
 
 def _on_edges(ground: Ground, mesh: Mesh) -> Ground:

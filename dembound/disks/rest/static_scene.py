@@ -9,16 +9,21 @@ from dembound.boundaries import Boundary
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
 from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.loads import forces_of
 from dembound.disks.rest.tractions import Tractions
 from dembound.disks.scene import DiskScene
 from dembound.disks.side_forces import forces_at_rest
 from dembound.disks.side_media import media_of
 from dembound.disks.stepping.system import DiskSystem
+from dembound.errors import CaseError
 from dembound.motion.state import State
 
 
 class StaticScene:
-    """A scene under its static supports and tractions."""
+    """A scene under its static supports and tractions.
+
+    Raises CaseError for a target stress at sides without disks, and for steady loads on a continuum that is left out.
+    """
 
     def __init__(self, scene: DiskScene, static: Static) -> None:
         case = scene.case
@@ -32,6 +37,7 @@ class StaticScene:
         stressed = scene.at_rest is not None
         self._tractions = None if static.stress is None or stressed else Tractions(scene, static.stress)
         self.scene = without_own_continua(scene)
+        _require_loads_within(scene, self.scene)
         self._beyond = forces_at_rest(self.scene) if stressed else None
         for each in self.scene.continua:
             each.support(builder)
@@ -101,6 +107,15 @@ def without_own_continua(scene: DiskScene) -> DiskScene:
     """
     beyond = scene.outside if scene.outside is not None and scene.outside.twin is not None else None
     return replace(scene, outside=beyond, foot=None)
+
+
+def _require_loads_within(scene: DiskScene, static: DiskScene) -> None:
+    """Raise CaseError for steady loads of a scene on the continuum that its static stage is without."""
+    steady = [load for load in scene.case.load if load.wave is None and static.outside is None]
+    nodes = {load.name: forces_of(load, scene)[0] for load in steady if scene.outside is not None}
+    said = "acts on the surface of the continuum, which the static stage is without; give it a wave, or load particles"
+    if problems := [f"load.{name}: {said}" for name, on in nodes.items() if (on >= scene.disk_count).any()]:
+        raise CaseError(problems)
 
 
 def _of_disks(supports: Supports, disks: int) -> np.ndarray:

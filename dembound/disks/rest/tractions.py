@@ -7,6 +7,7 @@ from dembound.disks.material.constants import limits_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.side_forces import side_forces
 from dembound.disks.stepping.balance import mean_rotations
+from dembound.errors import CaseError
 from dembound.kernels.contacts import UPDATED
 from dembound.packings.cut import BEYOND
 
@@ -24,12 +25,17 @@ class Tractions:
     Attributes
     ----------
     nodes : (k,) disks on which they act, ascending.
+
+    Raises CaseError for sides without disks.
     """
 
     def __init__(self, scene: DiskScene, stress: tuple[float, float, float]) -> None:
         self.scene = scene
         self._follow = limits_of(scene.case.material).geometry == UPDATED
         self._sides = {side: (each.node, each.under(np.array(stress))) for side, each in side_forces(scene).items()}
+        if empty := [side for side, (node, _) in self._sides.items() if len(node) == 0]:
+            said = f"acts on no disk at {' and '.join(empty)}; let packing.size end at the body"
+            raise CaseError([f"static.stress: {said}"])
         self.nodes = np.unique(np.concatenate([node for node, _ in self._sides.values()]))
 
     def forces(self, displacement: np.ndarray) -> np.ndarray:

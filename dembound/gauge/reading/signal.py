@@ -22,8 +22,15 @@ from dembound.gauge.reading.units import (
 EVEN = 1e-6
 """Largest deviation of times from even ones, in steps, for times that are used as given."""
 
-ROUNDED = 0.75
-"""Largest deviation of rounded times from even ones, in steps: with few digits two times may even be equal."""
+ROUNDED, COARSE = 1e-2, 0.75
+"""Deviations of times from even ones, in steps, that are always taken for rounding, as of single precision, and that
+the last digit may explain: with few digits two times may be equal."""
+
+DIGITS = 9
+"""Digits behind the point, of times in s, up to which they are looked at."""
+
+REGULAR = 0.8
+"""Share of equal steps from which on the others are no uneven sampling: lines are missing, or there twice."""
 
 LARGEST_GAP = 3.0
 """Largest step over the median step of times that are resampled."""
@@ -175,13 +182,22 @@ def evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
     Raises CaseError for equal times that rounding does not explain, and for gaps.
     """
     even = np.linspace(time[0], time[-1], len(time))
-    step = float(even[1] - even[0])
+    step, steps = float(even[1] - even[0]), np.diff(time)
     off = float(np.abs(time - even).max()) / step
     if off < EVEN:
         return time, values, []
-    if off < ROUNDED:
+    unit = _last_digit(time)
+    irregular = np.flatnonzero(np.abs(steps - np.median(steps)) > max(0.5 * unit, ROUNDED * step))
+    are_few = len(irregular) <= (1.0 - REGULAR) * len(steps)
+    if not are_few and (steps == 0.0).any():  # times as of a slower clock
+        unit = max(unit, float(steps[steps > 0.0].min()))
+    is_rounded = len(irregular) > 2 and off * step <= min(unit, COARSE * step) and np.abs(steps - step).max() < unit
+    if is_rounded or off < ROUNDED:
         return even, values, [f"times: rounded by up to {off:.2g} steps, replaced by even ones"]
-    steps = np.diff(time)
+    if are_few:
+        at = int(irregular[0])
+        said = f"{time[at + 1]:.6g} s is behind {time[at]:.6g} s, most steps are {np.median(steps):.4g} s"
+        raise CaseError([f"{path}: must have even times: {said}; is a line missing, or there twice?"])
     if not (steps > 0.0).all():
         raise CaseError([f"{path}: must have increasing times, two are {time[int(steps.argmin())]:.6g} s"])
     step = float(np.median(steps))
@@ -193,6 +209,14 @@ def evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
         )
     even = time[0] + step * np.arange(int((time[-1] - time[0]) / step) + 1)
     return even, np.interp(even, time, values), [f"times: uneven, resampled every {step:.4g} s by straight lines"]
+
+
+def _last_digit(time: np.ndarray) -> float:
+    """What one unit of the last digit of rounded times (k,) is, s: errors of rounding are half of it at most."""
+    for unit in 10.0 ** -np.arange(DIGITS):
+        if (np.abs(time / unit - np.round(time / unit)) <= 1e-6 * np.maximum(1.0, np.abs(time / unit))).all():
+            return float(unit)
+    return 0.0
 
 
 def _converted(values: np.ndarray, unit: Unit, reading: Reading) -> tuple[np.ndarray, str, list[str]]:

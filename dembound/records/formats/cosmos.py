@@ -72,7 +72,7 @@ def _channel(source: Source, begin: int) -> tuple[Channel, int]:
     code = CODE.search("\n".join(source.lines[at + 1 : at + 1 + comments]))
     at += 1 + comments
     samples = source.found(SAMPLES, at, at + 1, "number, unit and layout of samples")
-    unit = source.measured(samples[3])
+    unit = source.measured(samples[3], source.line(at))
     of_peak = PEAK_UNIT.search("\n".join(source.lines[begin : begin + int(first[1])]))
     if of_peak and (named := unit_named(of_peak[1])) is not None and named[1:] != unit[1:] and not source.given.unit:
         raise Flaw(f"line {at + 1} states {samples[3]}, the text a peak in {of_peak[1]}; give the unit by --unit")

@@ -55,7 +55,7 @@ FORTRAN = re.compile(r"([+-]?(?:\d+\.\d*|\.\d+))(?:[Dd]([+-]?\d+)|([+-]\d{3}))")
 """A number that float() does not read: double precision, or without the letter before an exponent of three digits."""
 
 LAYOUT = re.compile(r"\(\s*(\d*)\s*[a-z]+(\d+)(?:\.\d+)?[^()]*\)", re.IGNORECASE)
-END = re.compile(r"\s*(/&|end-of-data|\*+\s*end\b)", re.IGNORECASE)
+END = re.compile(r"\s*(/&|end-of-data|\*+\s*end\b|end\s*$)", re.IGNORECASE)
 """The line behind the samples of a channel."""
 
 
@@ -325,9 +325,14 @@ def seconds_of(number: str, unit: str, line: int) -> float:
     return step * (1e-3 if unit.lower().startswith("m") else 1.0)
 
 
+def quantities_named(words: str) -> set[str]:
+    """The quantities of motions in a text, by their names in `MOTIONS`."""
+    return {quantity for quantity, pattern in QUANTITY.items() if pattern.search(words)}
+
+
 def quantity_named(words: str) -> str | None:
     """The quantity of a motion in a text, by its name in `MOTIONS`; None for other texts, and for several."""
-    found = {quantity for quantity, pattern in QUANTITY.items() if pattern.search(words)}
+    found = quantities_named(words)
     return found.pop() if len(found) == 1 else None
 
 

@@ -58,8 +58,14 @@ class Head:
 
     @property
     def is_known(self) -> bool:
-        """Whether it names times, a component or a quantity, or has a unit."""
-        return bool(self.unit or self.is_time or COMPONENT.fullmatch(self.name) or quantity_named(self.name))
+        """Whether it names times, a component or a quantity, or has a unit of them."""
+        return self.is_time or self.is_motion or COMPONENT.fullmatch(self.name) is not None
+
+    @property
+    def is_motion(self) -> bool:
+        """Whether it names a quantity of motions, has the unit of one, or names a component without any unit."""
+        is_component = not self.unit and COMPONENT.fullmatch(self.name) is not None
+        return is_component or quantity_of(self.unit) in MOTIONS or quantity_named(self.name) is not None
 
 
 @dataclass(frozen=True)
@@ -98,8 +104,11 @@ def read_table(source: Source) -> Table:
     Flaw for a text without numbers at its end, for other text between them, and for lines of the header that may be
     numbers of the series.
     """
-    numbered = enumerate(source.lines[source.given.skip :], start=source.given.skip + 1)
-    lines = [(number, text.translate(SIGNS).strip(" \r\f\v")) for number, text in numbered if not END.match(text)]
+    lines = [
+        (number, text.translate(SIGNS).strip(" \r\f\v"))
+        for number, text in enumerate(source.lines[source.given.skip :], start=source.given.skip + 1)
+        if text.strip("\t ;,") and not END.match(text)
+    ]
     separator = _separator([text for _, text in lines])
     found = [(number, text, _numbers(text, separator)) for number, text in lines if text]
     first = len(found)
@@ -113,8 +122,9 @@ def read_table(source: Source) -> Table:
     rows = [numbers for _, _, numbers in found[first:]]
     above = [len(numbers) for _, _, numbers in found[:first] if numbers]
     if above.count(len(rows[0])) >= (BROKEN_OFF if len(rows[0]) == 1 else 1):
-        number = found[first - 1][0]
-        raise Flaw(f"line {number} is no line of numbers like those around it; --skip {number} leaves out all above")
+        number, text, _ = found[first - 1]
+        advice = f"; --skip {number} leaves out all above" if len(above) < len(rows) / LOWEST else f': "{text[:30]}"'
+        raise Flaw(f"line {number} is no line of numbers like those around it{advice}")
     if separator == "," and all(value.is_integer() for row in rows for value in row) and len(rows[0]) > 1:
         raise Flaw("has whole numbers between commas; if numbers have decimal commas, separate columns by semicolons")
     if not source.given.series:
@@ -216,6 +226,9 @@ def head_of(text: str) -> Head:
         return known  # before "NS g" is taken as a unit
     if quantity_of(whole := text.strip("[]()")) in (*MOTIONS, "times"):
         return Head("", whole)
+    bracketed = UNIT_IN_NAME.match(text)
+    if not parts and bracketed and bracketed[1] and not COMPONENT.fullmatch(bracketed[2].strip()):
+        return Head(bracketed[1].strip(), bracketed[2].strip())  # a unit that is not known
     return parts[0] if parts else Head(text)
 
 
@@ -223,6 +236,7 @@ def _partitions(text: str) -> Iterator[tuple[str, str]]:
     """A text in two parts that may be a name and a unit."""
     if bracketed := UNIT_IN_NAME.match(text):
         yield bracketed[1], bracketed[2]
+        return
     name, slash, unit = text.partition("/")
     if slash:
         yield name, unit

@@ -8,6 +8,7 @@ those of the file.
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from dembound.records.formats.source import (
     SECONDS,
     Flaw,
     Source,
+    quantities_named,
     require_increasing,
     seconds_of,
 )  # fmt: skip
@@ -33,7 +35,7 @@ NUMBER = r"([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[Ee][+-]?\d+)?)"
 STEP = re.compile(
     r"(?:\bdt\b|Δt|\bdelta ?t|\btime ?step|\bstep(?=\s*[=:])|\b(?:sampl\w*|time|digiti\w*) ?(?:interval|period|step)"
     rf"|\bintervals? of|\bspac(?:ing|ed)(?: of| at)?)\s*[\[(]?(?:{SECONDS}\b)?[\])]?\s*[=:,]?\s*{NUMBER}"
-    rf"\s*[\[(]?(?:{SECONDS}\b)?",
+    rf"(?![\d\s]*/)\s*[\[(]?(?:{SECONDS}\b)?",
     re.IGNORECASE,
 )
 """The time step in a header, its unit before or behind it."""
@@ -54,11 +56,17 @@ SAMPLES = re.compile(
 """The number of samples in a header."""
 
 PEAK = re.compile(
-    r"\b(?:pga|(?:peak|max(?:imum|\.)?) (?:ground )?acc\w*)\s*(?:[\[(]([^\])]*)[\])])?\s*[=:]?\s*"
-    rf"{NUMBER}\s*([^\s,;]*)",
+    r"\b(?:pg[avd]|(?:peak|max(?:imum|\.)?)(?: ground)?(?: (?:acc|vel|disp)\w*\.?)?)\s*(?:[\[(]([^\])]*)[\])])?"
+    rf"\s*[=:]?\s*{NUMBER}\s*([^\s,;]*)",
     re.IGNORECASE,
 )
-"""The peak acceleration in a header, its unit before or behind it."""
+"""A peak in a header, its unit before or behind it."""
+
+DURATION = re.compile(rf"(?:^|[,;])\s*(?:duration|(?:record )?length)\s*[=:]\s*{NUMBER}\s*s(?:ec\w*)?\b", re.IGNORECASE)
+"""The length of the record in a header, s."""
+
+MISSING = frozenset(("999", "9999", "99999", "999999"))
+"""Sizes of numbers that stand for missing samples, where they are far from all others."""
 
 UNIT = re.compile(
     r"(?:\bunits?\b(?:\s*(?:are|is|of|:|=))*|(?:"
@@ -71,6 +79,9 @@ UNIT = re.compile(
 
 LONG = 5
 """Numbers in a line from which on lines without heads of columns are one series."""
+
+FAR = 2.0
+"""Ratio of a number to all others from which on it may stand for a missing sample."""
 
 SMOOTHER = 0.7
 """Ratio of mean differences between neighbours at which numbers contradict the order in which they are read."""
@@ -89,7 +100,7 @@ class TextColumns(Format):
         """The channels of a file; raises Flaw for one that may be read in two ways."""
         if source.given.series and source.given.columns:
             raise Flaw("--series: is not allowed together with --columns")
-        table = read_table(source)
+        table = _without_counter(source, read_table(source))
         heads = [head_of(name) for name in source.given.columns] or table.heads
         if source.given.columns and (len(heads) != table.width or table.ragged < len(table.rows)):
             at = table.numbers[min(table.ragged, len(table.rows) - 1)]
@@ -158,7 +169,8 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     channels = []
     for at in chosen:
         name = heads[at].name or (f"column {at + 1}" if len(chosen) > 1 else "")
-        if OTHER.search(name) or _increases(values[at]):
+        is_other = len(chosen) > 1 and any(head.is_motion for head in table.heads) and not heads[at].is_motion
+        if OTHER.search(name) or _increases(values[at]) or (is_other and not source.given.columns):
             raise Flaw(f'column {at + 1}, "{name}", is no motion; name the columns by --columns, this one -')
         if timed:
             even, numbers = source.evenly(time, values[at])
@@ -167,7 +179,7 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
             begin = float(even[0])
         elif step is not None:
             between, numbers, begin = step[0], values[at], 0.0
-        unit = heads[at].unit if len(chosen) > 1 or heads[at].unit else _unit_of_title(table)
+        unit = heads[at].unit if len(chosen) > 1 or heads[at].unit else _unit_of_title(source, table)
         channels.append(_channel(source, table, Head(name, unit), numbers, between, begin, alone=len(chosen) == 1))
     if not channels:
         raise Flaw("has no column of values; name the columns by --columns")
@@ -178,7 +190,8 @@ def _single(source: Source, table: Table, numbers: np.ndarray, step: Stated) -> 
     """The channel of a series."""
     if step is None:
         raise Flaw('has one column and states no time step; give --dt, or a line "dt = 0.01 s" or "sampling: 100 Hz"')
-    unit = next((head.unit for head in table.heads if table.width == 1 and head.unit), "") or _unit_of_title(table)
+    beside = next((head.unit for head in table.heads if table.width == 1 and head.unit), "")
+    unit = beside or _unit_of_title(source, table)
     return _channel(source, table, Head("", unit), numbers, step[0], 0.0, alone=True)
 
 
@@ -187,24 +200,53 @@ def _channel(
 ) -> Channel:
     """A channel; the peak that the header states is that of one which is alone."""
     unit = source.measured(head.unit, head.name)
-    stated = ""
-    for _, text in table.header if alone and unit.quantity == "accelerations" else ():
-        if found := PEAK.search(text):
+    stated = length = ""
+    for _, text in table.header:
+        if found := DURATION.search(text):
+            length = found[1].replace(",", ".")
+        for found in PEAK.finditer(text) if alone else ():
             named = unit_named(found[1] or found[3] or "")
             if named is not None and named.quantity == unit.quantity:
                 stated = f"{float(found[2].replace(',', '.')) * named.size / unit.size:.4g}"
-    return source.channel(head.name, unit, numbers, step, begin, stated)
+    sizes = np.abs(numbers)
+    if f"{sizes.max():g}" in MISSING and sizes.max() > FAR * sizes[sizes < sizes.max()].max(initial=0.0):
+        raise Flaw(f"{head.name or 'a channel'} has {sizes.max():g}, far from all others: a sample is missing?")
+    return source.channel(head.name, unit, numbers, step, begin, stated, length=length)
 
 
-def _unit_of_title(table: Table) -> str:
-    """The unit of the only channel in the header, as it is spelled; empty without one, and for several."""
+def _without_counter(source: Source, table: Table) -> Table:
+    """A table without heads whose lines begin or end with their own number, as in decks of SHAKE, without it."""
+    for at, which in ((0, "first"), (-1, "last")):
+        counted = np.array([row[at] for row in table.rows])
+        if (
+            min(map(len, table.rows)) > 1
+            and table.width > 2
+            and not (any(table.heads) or source.given.columns)
+            and counted[0] in (0.0, 1.0)
+            and (np.diff(counted) == 1.0).all()
+        ):
+            source.chosen.append(f"the {which} number of each line is that of the line, left out")
+            return replace(table, rows=[row[1:] if at == 0 else row[:-1] for row in table.rows])
+    return table
+
+
+def _unit_of_title(source: Source, table: Table) -> str:
+    """The unit of the only channel in the header, as it is spelled; empty without one, and for several.
+
+    Raises Flaw where words beside it, or of all the header, name another quantity, unless the unit is given.
+    """
     found = {}
-    for _, text in table.header:
+    everywhere = quantities_named("\n".join(text for _, text in table.header))
+    for number, text in table.header:
         for match in UNIT.finditer(text):
             spelled = match[match.lastindex or 0].strip(" .")
             is_peak = re.search(r"\b(peak|max(imum|\.)?) *$", text[: match.start()], re.IGNORECASE)
-            if quantity_of(spelled) in MOTIONS and not is_peak:
-                found[unit_named(spelled)] = spelled
+            if quantity_of(spelled) not in MOTIONS or is_peak:
+                continue
+            named = quantities_named(text) or (everywhere if len(everywhere) == 1 else set())
+            if named - {quantity_of(spelled)} and source.given.unit is None:
+                raise Flaw(f"line {number} has {' and '.join(sorted(named))} in {spelled}; give the unit by --unit")
+            found[unit_named(spelled)] = spelled
     sizes = {unit[1:] for unit in found if unit is not None}
     return next(iter(found.values())) if len(sizes) == 1 else ""
 

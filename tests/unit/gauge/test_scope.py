@@ -160,6 +160,10 @@ def test_times_that_are_rounded_or_uneven_become_even(tmp_path):
     assert "rounded by up to 0.5 steps" in signal.notes[1]
     # the last time is rounded, too, by up to half a step of a thousand
     np.testing.assert_allclose(signal.time, exact, atol=0.75e-6)
+    lost = np.delete(exact, 500)  # within half a step of even times as well
+    np.savetxt(path, np.column_stack([lost, np.sin(lost)]), fmt="%.7f")
+    with pytest.raises(CaseError, match="most steps are 1e-06 s; is a line missing, or there twice"):
+        read_signal(path)
     uneven = exact + 0.4e-6 * np.sin(np.arange(1000.0) * 0.02) * 10.0
     np.savetxt(path, np.column_stack([uneven, 3.0 * uneven]))
     signal = read_signal(path)

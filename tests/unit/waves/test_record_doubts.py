@@ -60,7 +60,7 @@ SPELLED = [
     *((VELOCITY, unit, size) for unit, size in (("nm/s", 1e-9), ("centimetres per second", 0.01), ("CM/SEC", 0.01))),
     *((VELOCITY, unit, 0.0254) for unit in ("ips", "in/s", "inch/sec")),
     *((VELOCITY, unit, 0.3048) for unit in ("fps", "ft/s")),
-    *((VELOCITY, unit, 0.01) for unit in ("kine", "cms", "m/s/100")),
+    *((VELOCITY, unit, 0.01) for unit in ("kine", "cms")),
     *((VELOCITY, unit, 0.514444) for unit in ("kn", "knots", "kt")),
     *((VELOCITY, unit, 1.0 / 3.6) for unit in ("km/h", "km/hr", "kph", "km h^-1")),
     *((VELOCITY, unit, 0.44704) for unit in ("mph",)),

@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 from disk_systems import DENSE
 from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
+from small_cases import SURROUNDED, small
 
+from dembound.boundaries.sides import SIDES
 from dembound.disks.rest.loading import LOOK
-from dembound.disks.rest.stage import settle
+from dembound.disks.rest.stage import require_stages, settle
 from dembound.disks.rest.static_scene import StaticScene
-from dembound.disks.scene import DiskScene, column_alone
+from dembound.disks.scene import DiskScene, build, column_alone
+from dembound.errors import CaseError
 from dembound.kernels.contacts import TENSION
 
 K = 2500.0 * 1000.0**2
@@ -151,6 +154,37 @@ def test_beside_a_free_field_the_column_settles_first_and_alone(bar) -> None:
     assert np.array_equal(own, damping(ground, beside))
     assert not given.any()
     assert settled.steps > settle(free).steps
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (
+            {
+                "ground": {"size": [12.0, 20.0]},
+                "packing.size": [12.0, 8.0],
+                "boundary": {side: {"type": "periodic" if side in ("left", "right") else "outside"} for side in SIDES},
+                "load": [{"name": "house", "force": [0.0, -1e3], "region": [2.0, 18.0, 9.0, 20.0]}],
+                "static": {"boundary": {"bottom": {"type": "fixed"}}},
+                "monitor": [],
+            },
+            "load.house: acts on the surface of the continuum, which the static stage is without",
+        ),
+        (
+            {
+                "boundary": {},
+                "hole": [{"name": "s", "type": "circle", "centre": [6.0, 3.0], "radius": 2.0, "keep": "inside"}],
+                "static": {"stress": [-1e5, -1e5, 0.0]},
+            },
+            "static.stress: acts on no disk at left and right and bottom and top",
+        ),
+    ],
+    ids=["a load on a continuum that is left out", "a sample within its box"],
+)
+def test_what_a_static_stage_cannot_have_is_refused_before_any_step(changes, said) -> None:
+    tables = {key: table for key, table in SURROUNDED.items() if key != "outside" or "ground" in changes}
+    with pytest.raises(CaseError, match=said):
+        require_stages(build(small(tables, changes=changes)))
 
 
 def test_with_an_excavation_the_column_is_that_of_before(bar) -> None:

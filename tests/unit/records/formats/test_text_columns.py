@@ -1,5 +1,6 @@
 """Texts of numbers with home-made headers: read as they state, or refused with the option that helps."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,8 @@ def read(folder: Path, text: str, given: Reading = Reading()) -> Record:  # noqa
         f"# Somewhere, dt = 0.01 s\n# acceleration [g]\n{in_lines(5)}",
         f"1994\nSomewhere\n{SERIES}\n{in_lines(1)}",
         f"{SERIES}\n{in_lines(8)}",  # the last line is shorter
+        f"{SERIES}\n" + "\n".join(f"{line} {n}" for n, line in enumerate(in_lines(8).splitlines(), start=1)),
+        timed("Time (s);a (g)", separator=";") + ";;\nEND\n",
         f"dt = 0,01 s; acceleration (g)\n{in_lines(1)}",
         f"dt = 0,01 s; acceleration (g)\n{in_lines(1).replace('.', ',')}",
         "dt = 10 ms; acceleration in g\n" + in_lines(1, shape="{:.6E}").replace("E", "D"),
@@ -74,7 +77,7 @@ def test_what_states_all_is_read(tmp_path, text):
         (timed("# Vs30 [m/s]: 450\n# time s, acceleration"), "no unit of the values; give it by --unit", Reading("g")),
         (timed("time (s),velocity (g)"), "has velocities in g, which measures accelerations", Reading("g")),
         (timed("Time [s],Arias intensity [m/s]"), "is no motion; name the columns by --columns", None),
-        (timed("freq (Hz),a (g)"), 'has a column "freq (Hz)", must have times', None),
+        (timed("freq (Hz),a (g)"), 'has a column "freq", must have times', None),
         (f"{SERIES}\n{in_lines(3)}", "--columns NAME,NAME,… for columns or --series", Reading(series=True)),
         (f"{SERIES}\n{timed('', 3).strip()}", "states no unit", None),
         (in_lines(1), "states no time step", Reading("g", STEP)),
@@ -94,6 +97,14 @@ def test_what_states_all_is_read(tmp_path, text):
         (timed("time (s),a (g)", step=-0.01), "times that increase: -0.07 s is behind -0.06 s in line 9; if", None),
         (f"{SERIES}\n" + in_lines(1).replace(".", ",") + "0,1,2\n", "whole numbers between commas", None),
         (in_lines(2, separator=",") + "words\n", "there must be none behind them", None),
+        (timed("time (s),a (m/s^2/10)"), 'states "m/s^2/10" as unit of the values, which is not known', Reading("g")),
+        (timed("time (s),a (g),T (°C)", 2), "column 3, \"T\", is no motion", Reading(columns=("time", "a (g)", "-"))),
+        (f"velocity from {SERIES}\n{in_lines(1)}", "line 1 has accelerations and velocities in g;", Reading("g")),
+        (f"units: m/s; Acceleration, dt = 0.01 s\n{in_lines(1)}", "line 1 has accelerations in m/s;", Reading("g")),
+        (f"{SERIES}, max. = 0.5 g\n{in_lines(1)}", "a peak of 4.903 m/s², the samples have", Reading("g")),
+        (f"{SERIES}, duration: 5 s\n{in_lines(1)}", "a length of 5 s, 60 samples, one every", Reading(time_step=STEP)),
+        (re.sub("\n0.30,.*", "", timed("time (s),a (g)")), "0.31 s is behind 0.29 s, most steps are 0.01 s", None),
+        (re.sub("\n0.30,.*", "\n0.30,-999", timed("time (s),a (g)")), "a has 999, far from all others", None),
     ],
 )  # fmt: skip
 def test_what_may_be_read_in_two_ways_is_refused_with_what_helps(tmp_path, text, said, given):
