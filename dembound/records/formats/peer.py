@@ -44,6 +44,7 @@ class Peer(Format):
         stated = next((line for line in reversed(above) if UNITS.search(line)), "")
         title = next((line for line in [*above[1:2], *above[:1]] if line != stated), "")
         spelled = match[1] if (match := UNITS.search(stated)) else ""
+        source.require_no_factor(enumerate(source.lines[:at], start=1))
         named = source.measured(spelled, stated if quantity_named(stated) else " ".join(above))
         component = title.rpartition(",")[2].strip() if "," in title else ""
         values = source.free(at + 1, int(count))

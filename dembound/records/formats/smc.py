@@ -50,6 +50,8 @@ class Smc(Format):
         if 0.0 < rate < reals[UNKNOWN]:
             step: float | None = 1.0 / float(rate)
         elif source.given.time_step is not None:
+            if (numbers[2::2] > numbers[:-2:2]).all():
+                raise Flaw("has pairs of time and value; leave --dt out")
             step = None
         else:
             points = numbers[: len(numbers) // 2 * 2].reshape(-1, 2)

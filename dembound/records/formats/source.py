@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -46,6 +46,12 @@ DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
 SECONDS = r"((?:milli)?seconds?|m?s(?:ec(?:onds?|s)?)?)"
 BARE = 0.1
 """The unit of a time step, and the longest one that is taken in seconds without a unit, s."""
+
+FACTOR = re.compile(
+    r"scal(?:e|ing) factor|\bmultipl(?:y|ied|ier)\b|factor de escala|(?:\bg|gal|s2|s²|s\^2|s/s)\)? *\(?[x*×] *[\d.]+",
+    re.IGNORECASE,
+)
+"""A factor in a header: whether the numbers have it is not said."""
 
 LONGEST = 10
 """Times the number of digitised points that even ones may have."""
@@ -109,6 +115,13 @@ class Source:
         if index >= len(self.lines):
             raise Flaw(f"ends within the header, at line {len(self.lines)}")
         return self.lines[index]
+
+    def require_no_factor(self, header: Iterable[tuple[int, str]]) -> None:
+        """Raise Flaw for a factor of the numbers in lines of a header, with their numbers, unless the unit is given."""
+        for number, text in header if self.given.unit is None else ():
+            if factor := FACTOR.search(text):
+                said = f'line {number} has a factor, "{factor[0].strip()}", which the numbers may have or not'
+                raise Flaw(f"{said}; give --unit for the numbers as they are")
 
     def found(self, pattern: str, begin: int, end: int, what: str) -> re.Match[str]:
         """The first match in these lines, whatever the case of letters; raises Flaw, with `what`, without one."""
@@ -178,6 +191,8 @@ class Source:
         named : words that name the quantity of the values. Raises Flaw if there is no unit, if it is none of a motion,
         and if these words name another quantity than a unit of the header.
         """
+        if re.search("spectr", named, re.IGNORECASE):
+            raise Flaw("holds a spectrum, must be a time series")
         stated = unit_named(text)
         self.quantities.update(filter(None, [stated.quantity if stated else quantity_named(named)]))
         if stated is not None and stated.quantity in ("counts", "voltages"):

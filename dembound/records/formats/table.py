@@ -30,15 +30,15 @@ LOWEST = 4
 
 TIME = re.compile(r"(?i:time|zeit|tiempo|temps|tempo|zaman|secs?|seconds?|时间)(?![A-Za-z])|t(?![A-Za-z0-9])")
 COMPONENT = re.compile(
-    r"ns|ew|ud|n-s|e-w|u-d|[xyzhvlrtneu]\d?|[hb][hnl][nez123]|(north|east|up|down|vert|long|trans|rad|comp|chan?)\w*"
+    r"ns|ew|ud|n-s|e-w|u-d|[xyzhvlrtneu]\d?|[hb][hnl][nez123]|(north|east|up|down|vert|long|trans|rad|comp|ch(?=an|\d))\w*"
     r"|[ns]?\d{1,3}[ew°]?",
     re.IGNORECASE,
 )
 """Names of columns of times, and of components."""
 
 OTHER = re.compile(
-    r"\b(arias|husid|intensity|cav|energy|power|fourier|spectr\w*|p?s[av]|sd|vs\d*|depth|response|phase|freq\w*|period)"
-    r"(?![a-z])",
+    r"\b(arias|husid|intensity|cav|energy|power|fourier|spectr\w*|p?s[ave]|sd|vs\d*|depth|response|phase|freq\w*|period"
+    r"|wind|shear wave|distance|trig\w*)(?![a-z])|谱",
     re.IGNORECASE,
 )
 """Names of columns that are no motion, whatever their unit."""

@@ -34,14 +34,15 @@ from dembound.waves.unit_names import unit_named
 NUMBER = r"([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[Ee][+-]?\d+)?)"
 STEP = re.compile(
     r"(?:\bdt\b|Δt|\bdelta ?t|\btime ?step|\bstep(?=\s*[=:])|\b(?:sampl\w*|time|digiti\w*) ?(?:interval|period|step)"
+    r"|\b(?:interpolated|resampled) (?:at|to|every)(?= *[\d.,]+ *m?s)"
     rf"|\bintervals? of|\bspac(?:ing|ed)(?: of| at)?)\s*[\[(]?(?:{SECONDS}\b)?[\])]?\s*[=:,]?\s*{NUMBER}"
-    rf"(?![\d\s]*/)\s*[\[(]?(?:{SECONDS}\b)?",
+    rf"(?![.\d\s]*(?:/|min))\s*[\[(]?(?:{SECONDS}\b)?",
     re.IGNORECASE,
 )
 """The time step in a header, its unit before or behind it."""
 
 RATE = re.compile(
-    r"\b(?:sampl(?:ing|es?)? ?(?:rate|freq\w*)?|fs|rate)\s*"
+    r"\b(?:sampl(?:ing|es?)? ?(?:rate|freq\w*)?|(?:interpolated|resampled) (?:at|to)|fs|rate)\s*"
     rf"(?:[\[(](?:hz|sps)[\])]\s*[=:,]?\s*{NUMBER}|[=:,]?\s*{NUMBER}\s*(?:hz|sps)\b)"
     rf"|{NUMBER}\s*(?:samples\s*(?:/|per)\s*s(?:ec(?:ond)?)?\b|sps\b)",
     re.IGNORECASE,
@@ -105,6 +106,13 @@ class TextColumns(Format):
         if source.given.columns and (len(heads) != table.width or table.ragged < len(table.rows)):
             at = table.numbers[min(table.ragged, len(table.rows) - 1)]
             raise Flaw(f"--columns: names {len(heads)} columns, line {at} has {len(table.rows[-1])} numbers or another")
+        source.require_no_factor(table.header)
+        for number, text in table.header:
+            if (
+                quantity_of(spelled := next((unit[unit.lastindex or 0] for unit in UNIT.finditer(text)), ""))
+                == "counts"
+            ):
+                raise Flaw(f"line {number} has {spelled}, which must be converted to {' or '.join(MOTIONS)} before")
         step, count = _step(source, table), _stated_count(table)
         if _is_series(source, table, heads, step, count):
             numbers = np.array([value for row in table.rows for value in row])
@@ -126,6 +134,8 @@ Stated = tuple[float, int] | None
 def _is_series(source: Source, table: Table, heads: Sequence[Head], step: Stated, count: Stated) -> bool:
     """Whether the numbers are one series and no columns; raises Flaw where both are possible."""
     width, lines = table.width, len(table.rows)
+    if source.given.series and width % 2 == 0 and _increases(np.concatenate(table.rows)[::2]):
+        raise Flaw("has pairs of time and value, which are no series; write one pair to a line")
     if source.given.series or source.given.columns:
         return source.given.series
     are_columns = any(heads) or _increases(np.array([row[0] for row in table.rows]))
@@ -150,7 +160,7 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     """The channels of columns."""
     values, heads = np.array(table.rows).T, heads or [Head()] * table.width
     timed = [at for at, head in enumerate(heads) if head.is_time]
-    may_be_time = not (heads[0].is_known or source.given.columns)
+    may_be_time = not (heads[0].is_known or OTHER.search(heads[0].name) or source.given.columns)
     if not timed and may_be_time and (step is None or not heads[0].name) and _increases(values[0]):
         timed = [0]
     if any((values[at] != values[timed[0]]).any() for at in timed[1:]):
@@ -167,11 +177,12 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
         if not source.given.columns:
             _require_order(table, series=False)
     channels = []
-    for at in chosen:
-        name = heads[at].name or (f"column {at + 1}" if len(chosen) > 1 else "")
+    names = {at: heads[at].name or (f"column {at + 1}" if len(chosen) > 1 else "") for at in chosen}
+    for at, name in names.items():
         is_other = len(chosen) > 1 and any(head.is_motion for head in table.heads) and not heads[at].is_motion
         if OTHER.search(name) or _increases(values[at]) or (is_other and not source.given.columns):
             raise Flaw(f'column {at + 1}, "{name}", is no motion; name the columns by --columns, this one -')
+    for at, name in names.items():
         if timed:
             even, numbers = source.evenly(time, values[at])
             between = float(f"{(even[-1] - even[0]) / (len(even) - 1):.12g}")
@@ -304,6 +315,8 @@ def _times(source: Source, table: Table, head: Head, at: int) -> np.ndarray:
         line = f" in line {table.numbers[int(np.argmin(steps)) + 1]}" if (steps < 0.0).any() else ""
         raise Flaw(f"{flaw}{line}; {otherwise}") from None
     step = (values[-1] - values[0]) / (len(values) - 1)
+    if unit is None and head.unit:
+        raise Flaw(f'has times in "{head.unit}", which is not known; {otherwise}')
     if unit is None and step > BARE:
         raise Flaw(f"has times {step:.4g} apart without a unit: write it in their head, as time (ms); {otherwise}")
     if unit is None and head.unit == "" and not head.name:

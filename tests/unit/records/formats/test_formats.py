@@ -204,6 +204,13 @@ def test_a_given_unit_replaces_one_of_the_same_quantity(tmp_path):
     assert refusal(without, Reading("kPa")) == "--unit: is kPa, must be one of g, gal, cm/s², m/s², cm/s, m/s, cm or m"
 
 
+@pytest.mark.parametrize("line", ["ACCELERATION RESPONSE SPECTRUM IN UNITS OF G", "VELOCITY SPECTRUM, UNITS: CM/S"])
+def test_a_spectrum_in_the_layout_of_a_record_is_refused(tmp_path, line):
+    path = tmp_path / "spectrum.AT2"
+    path.write_text(f"PEER\nPlace\n{line}\nNPTS= 4, DT= .01 SEC\n 1. 2. 3. 1.\n")
+    assert refusal(path).endswith("holds a spectrum, must be a time series")
+
+
 @pytest.mark.parametrize("name", ["sample.v2", "sample.s0a", "sample.V2A"])
 def test_one_unit_is_not_given_to_several_quantities(tmp_path, name):
     """Velocities and displacements would become accelerations."""

@@ -102,6 +102,14 @@ def test_what_states_all_is_read(tmp_path, text):
         (f"velocity from {SERIES}\n{in_lines(1)}", "line 1 has accelerations and velocities in g;", Reading("g")),
         (f"units: m/s; Acceleration, dt = 0.01 s\n{in_lines(1)}", "line 1 has accelerations in m/s;", Reading("g")),
         (f"{SERIES}, max. = 0.5 g\n{in_lines(1)}", "a peak of 4.903 m/s², the samples have", Reading("g")),
+        (f"{SERIES}\nscale factor 2.5\n{in_lines(1)}", 'line 2 has a factor, "scale factor"', Reading("g")),
+        (f"dt = 0.01 s\nunits: g x 10\n{in_lines(1)}", 'line 2 has a factor, "g x 10"', Reading("g")),
+        (f"{SERIES}, resampled to 200 Hz\n{in_lines(1)}", "line 1 states 0.01 s, line 1 states 0.005 s", None),
+        (timed("time (x10 ms),a (g)"), 'has times in "x10 ms", which is not known', None),
+        (timed("Units: counts\nTime CH1 CH2", 2, " "), "line 1 has counts, which must be converted", None),
+        (timed("distance,a (g)"), "has no column called time and states no time step", None),
+        (timed("Time CH1 Trig", 2, " "), 'column 3, "Trig", is no motion', None),
+        (timed("T [s];Se [g]", separator=";"), 'column 2, "Se", is no motion', None),
         (f"{SERIES}, duration: 5 s\n{in_lines(1)}", "a length of 5 s, 60 samples, one every", Reading(time_step=STEP)),
         (re.sub("\n0.30,.*", "", timed("time (s),a (g)")), "0.31 s is behind 0.29 s, most steps are 0.01 s", None),
         (re.sub("\n0.30,.*", "\n0.30,-999", timed("time (s),a (g)")), "a has 999, far from all others", None),
@@ -115,6 +123,13 @@ def test_what_may_be_read_in_two_ways_is_refused_with_what_helps(tmp_path, text,
     if given is not None and given.skip == 0:
         (channel,) = read(tmp_path, text, given).channels
         np.testing.assert_allclose(channel.values, G * VALUES, atol=1e-5)
+
+
+def test_pairs_of_time_and_value_are_no_series(tmp_path):
+    pairs = timed("").split()
+    text = "\n".join(",".join(pairs[at : at + 4]) for at in range(0, len(pairs), 4))
+    with pytest.raises(CaseError, match="has pairs of time and value, which are no series"):
+        read(tmp_path, text, Reading("g", STEP, series=True))
 
 
 def test_columns_are_named_left_out_and_counted(tmp_path):
