@@ -14,7 +14,7 @@ from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import Absorber, DampedGrid, Grid
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.blocks import ElementBlocks, absorber_of, elements_of
-from dembound.outside.layer import USUAL, Absorption, Profile
+from dembound.outside.layer import USUAL, Absorption, Profile, along_in
 from dembound.outside.medium import Ground, Layered, Medium, layered
 from dembound.outside.mesh import WHOLE, Mesh
 
@@ -100,7 +100,7 @@ class GridBody:
     def profile(self, side: str) -> Profile | None:
         """The absorbing layer at a side, None without; its speed is that of the fastest P waves in it.
 
-        It is the same at all heights of layered ground, see layer.py.
+        It is the same at all heights of layered ground, and stretches both axes where one grows, see layer.py.
         """
         axis, end = divmod(SIDES.index(side), 2)
         if (cells := self.mesh.layer.along(axis)[end]) == 0:
@@ -109,7 +109,8 @@ class GridBody:
         there = np.unique(self.layer[place >= self.mesh.cells[axis] - cells if end else place < cells])
         speed = max(self.ground.media[number].normal_speed(axis) for number in there)
         thickness, guides = self.mesh.axes[axis].thickness[end], axis == 0 and len(there) > 1
-        return Profile(thickness, speed, self.mesh.inner, self.absorption, guides)
+        guided = max(self.absorption.guided * guides, *(along_in(self.ground.media[number]) for number in there), 0.0)
+        return Profile(thickness, speed, self.mesh.inner, self.absorption, guided)
 
     def bundle(self, absorber: Absorber) -> Grid:
         """The arrays of its law."""

@@ -18,11 +18,23 @@ Layers across layered ground need this, too: a slow layer guides waves some of w
 grow in a layer that stretches one axis only (Skelton, Adams & Craster 2007, Wave Motion 44, 573–592). A part of σ that
 begins as q² returns less of the guided waves than a constant part. Both axes are stretched alike at all heights, so
 that joints return nothing.
+
+So do layers in strongly anisotropic ground. With σ across and pσ along a layer, motion e^(λt) of wave numbers k_x, k_y
+obeys det(Γ(k_x/(λ + σ), k_y/(λ + pσ)) + ρ) = 0. If it is short, λ is small beside ck, and the ratio t of both arguments
+that of static fields, det Γ(1, t) = 0 (Stroh 1958, Phil. Mag. 3, 625–646): with w = (λ + pσ)/(λ + σ) = k_y/(k_x t),
+λ = σ(w − p)/(1 − w). The length of w is free, its argument that of ±t: φ from the real axis. So none grows if
+cos φ ≤ 2√p/(1 + p), or p ≥ tan²(45° − φ/2). Computed λ of all wave numbers grow with 0.9 of it and decay with 1.1 of
+it, also where group velocities run against slownesses, which needs less (Bécache, Fauqueux & Joly 2003, J. Comput.
+Phys. 188, 399–433). It is the same for layers across x and across y. Isotropic media have t = ±i and p = 0; the square
+lattice, c11 = c22 and c12 = 0, has cos²φ = ½ − c11/(4 c66) where that is positive, and p < 0.1716.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from dembound.outside.medium import Medium
+from dembound.outside.plane_waves import vertical_slownesses
 
 
 @dataclass(frozen=True)
@@ -54,6 +66,25 @@ later.
 """
 
 
+QUIET, MORE = 0.05, 1.3
+"""p (`along_needed`) of media up to which elements need not be stretched along layers, and the part over q² of σ along
+layers in others, over p.
+"""
+
+
+def along_needed(medium: Medium) -> float:
+    """The part p of σ along layers with which nothing grows in a medium whose σ across them is uniform, 0 … 1."""
+    root = vertical_slownesses(medium, 1.0, inertia=0.0)
+    angle = np.arccos(min(float((np.abs(root.real) / np.abs(root)).max()), 1.0))
+    return float(np.tan(0.25 * np.pi - 0.5 * angle) ** 2)
+
+
+def along_in(medium: Medium) -> float:
+    """The part over q² of σ along layers in a medium; 0 where it needs none."""
+    needed = along_needed(medium)
+    return MORE * needed if needed > QUIET else 0.0
+
+
 @dataclass(frozen=True)
 class Profile:
     """The layer at one side.
@@ -61,14 +92,15 @@ class Profile:
     Attributes
     ----------
     thickness : L, m. speed : c_p along its normal, m/s. inner : L_inner, m, the larger side of what lies within all
-    layers. settings : of the layer. guides : whether the ground across which it lies is layered.
+    layers. settings : of the layer. guided : part of σ, over q², for derivatives along it, in layered or strongly
+        anisotropic ground; 0 in other ground.
     """
 
     thickness: float
     speed: float
     inner: float
     settings: Absorption = USUAL
-    guides: bool = False
+    guided: float = 0.0
 
     @property
     def strongest(self) -> float:

@@ -88,11 +88,14 @@ def incident_wave(medium: Medium, kind: WaveKind, angle: float) -> ElasticPlaneW
     return ElasticPlaneWave(_pair(np.array([x, y]) / speeds[number]), _pair(motion))
 
 
-def vertical_slownesses(medium: Medium, sx: float) -> np.ndarray:
-    """The four s_y (4,) of waves with a horizontal slowness, s/m; complex where they are evanescent."""
+def vertical_slownesses(medium: Medium, sx: float, inertia: float = 1.0) -> np.ndarray:
+    """The four s_y (4,) of waves with a horizontal slowness, s/m; complex where they are evanescent.
+
+    inertia : part of the density that acts; with 0 they are those of static fields, over s_x the roots of Stroh.
+    """
     across, up = strain_of(1.0, 0.0), strain_of(0.0, 1.0)
     c = medium.matrix
-    constant = sx**2 * across.T @ c @ across - medium.density * np.eye(2)
+    constant = sx**2 * across.T @ c @ across - inertia * medium.density * np.eye(2)
     linear, square = sx * (across.T @ c @ up + up.T @ c @ across), up.T @ c @ up
     scale = np.sqrt(medium.density / medium.c66)  # roots of order one
     entries = np.stack([square * scale**2, linear * scale, constant], axis=-1) / medium.density
