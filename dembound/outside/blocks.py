@@ -206,8 +206,8 @@ def absorber_of(blocks: ElementBlocks, profiles: Profiles, settings: Absorption,
                 q = np.clip(side * depth, 0.0, 1.0)
                 values = profile.decay(q, step), profile.gain(q, step), profile.delay(q, step)
                 columns[:, :, axis] = np.where(side * depth > 0.0, values, columns[:, :, axis])
-                if mesh.periodic[1 - axis] or profile.guided:
-                    part = profile.guided * q**2 if profile.guided else settings.along
+                if mesh.periodic[1 - axis] or profile.is_stretched_along:
+                    part = profile.part_along(q) if profile.is_stretched_along else settings.along
                     along = [of(q, step, part) for of in (profile.decay, profile.gain)]
                     there = (side * depth > 0.0) & ~absorbs[:, None, None, 1 - axis]
                     columns[:2, :, 1 - axis] = np.where(there, along, columns[:2, :, 1 - axis])
@@ -215,6 +215,6 @@ def absorber_of(blocks: ElementBlocks, profiles: Profiles, settings: Absorption,
     decay, gain, delay = (column.ravel() for column in columns)
     axes = blocks.kinds[len(blocks.kinds) - blocks.layers :].astype(np.int64)
     for axis in (0, 1):
-        if mesh.periodic[axis] or any(profile and profile.guided for profile in profiles[1 - axis]):
+        if mesh.periodic[axis] or any(profile and profile.is_stretched_along for profile in profiles[1 - axis]):
             axes[~absorbs[:, axis]] |= (1 | ALONG) << axis
     return Absorber(axes, decay, gain, delay, aligned_zeros(size), aligned_zeros(size))

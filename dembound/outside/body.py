@@ -109,8 +109,13 @@ class GridBody:
         there = np.unique(self.layer[place >= self.mesh.cells[axis] - cells if end else place < cells])
         speed = max(self.ground.media[number].normal_speed(axis) for number in there)
         thickness, guides = self.mesh.axes[axis].thickness[end], axis == 0 and len(there) > 1
-        guided = max(self.absorption.guided * guides, *(along_in(self.ground.media[number]) for number in there), 0.0)
-        return Profile(thickness, speed, self.mesh.inner, self.absorption, guided)
+        along = max(along_in(self.ground.media[number]) for number in there)
+        return Profile(thickness, speed, self.mesh.inner, self.absorption, guides, along)
+
+    @property
+    def is_stretched_along(self) -> bool:
+        """Whether its layers stretch both axes because a medium is strongly anisotropic, and so return more."""
+        return any(profile and profile.along > 0.0 for profile in map(self.profile, SIDES))
 
     def bundle(self, absorber: Absorber) -> Grid:
         """The arrays of its law."""

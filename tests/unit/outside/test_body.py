@@ -60,7 +60,7 @@ def test_the_absorbing_layer_has_the_fastest_speed_in_it(grid) -> None:
     left, bottom = body.profile("left"), body.profile("bottom")
     assert left is not None
     assert left.speed == ROCK.normal_speed(0)
-    assert left.guided == Absorption.guided
+    assert left.guides
     assert bottom == uniform.profile("bottom")
     assert body.profile("top") is None
 
