@@ -123,6 +123,11 @@ class BarBody(Scene):
         return {side: np.sort(layer.inner) for side, layer in self.layers.items()}
 
     @property
+    def against_growth(self) -> str:
+        """A smaller step."""
+        return "a smaller run.safety, run.courant or run.time_step"
+
+    @property
     def damp(self) -> float:
         """Local damping coefficient: 0."""
         return 0.0

@@ -180,6 +180,14 @@ class DiskBody(Scene):
         return np.concatenate([self.seam.twin, np.arange(self.disk_count, self.count)])
 
     @property
+    def against_growth(self) -> str:
+        """Other sides than a continuum, whose layers may amplify motion; a smaller step without one, or of bonds."""
+        if not self.continua:
+            return super().against_growth
+        sides = 'sides of another type than "outside", whose layers may amplify motion, or fewer outside.layers'
+        return f"{sides}, or {super().against_growth}" if self.has_history else sides
+
+    @property
     def damp(self) -> float:
         """Local damping coefficient."""
         return self.case.material.damp

@@ -211,7 +211,7 @@ class Ledger(Tracker):
         if gained > GAIN * came + ROUNDING * (stored + last.kinetic - last.stepping + abs(last.outside)):
             raise RunError(
                 f"the run has gained {gained:.3g} {self._unit} without input until t = {last.time:g} s, when loads and "
-                f"boundaries had supplied {came:.3g} {self._unit} at most; take a smaller run.safety or run.time_step"
+                f"boundaries had supplied {came:.3g} {self._unit} at most; take {run.scene.against_growth}"
             )
 
     @property

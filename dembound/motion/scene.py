@@ -261,6 +261,11 @@ class Scene(ABC):
         return peaks[first : first + len(self.edges[side].nodes)]
 
     @property
+    def against_growth(self) -> str:
+        """What helps against motion that grows, or gains energy, from nothing, in words."""
+        return "a smaller run.safety or run.time_step"
+
+    @property
     def fastest(self) -> float:
         """Speed (m/s) that no node can reach; if loads or other forces act too, the limit of the number range."""
         waves = sum(wave.peak() for wave in self.case.wave.values())

@@ -112,7 +112,7 @@ class Watch(Every):
             place = run.scene.positions[where]
             raise RunError(
                 f"the motion grew without bound: at t = {run.time:g} s near ({place[0]:g}, {place[1]:g}) m; "
-                "take a smaller run.time_step, run.safety or, of a bar, run.courant, or smaller waves and loads"
+                f"take {run.scene.against_growth}, or smaller waves and loads"
             )
 
 

@@ -110,7 +110,11 @@ class Formulas:
         if self.scene.outside is None:
             return
         if (sizes := expected_errors(self.scene, places)) is None:
-            reason = "its elements are judged by the highest frequency of waves, and a wave that jumps has none"
+            reason = (
+                "its layers stretch both axes, as its ground is strongly anisotropic, and return a part of motion"
+                if self.scene.outside.body.is_stretched_along
+                else "its elements are judged by the highest frequency of waves, and a wave that jumps has none"
+            )
             yield Cause.unknown(CONTINUUM, reason)
             return
         parts = {name: dict(zip(MOTIONS, each, strict=True)) for name, each in sizes.items()}

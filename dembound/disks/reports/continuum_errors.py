@@ -78,11 +78,12 @@ up to a hundred times."""
 def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[str, tuple[float, float]] | None:
     """Errors of velocities and of displacements by a continuum, RMS over RMS, at places (2,) m by name.
 
-    None without a continuum, and for waves that jump. Displacements have longer waves than velocities, of which
-    elements and ties return less; waves longer than the run count as one length.
+    None without a continuum, for waves that jump, and for layers stretched along, which return an unknown part.
+    Displacements have longer waves than velocities, of which elements and ties return less; waves longer than the run
+    count as one length.
     """
     outside, signals = scene.outside, signals_of(scene.case)
-    if outside is None or not signals or any(sizing.jumps(signal) for signal in signals):
+    if outside is None or not signals or any(map(sizing.jumps, signals)) or outside.body.is_stretched_along:
         return None
     lowests = (math.inf, 1.0 / scene.case.run.duration)
     parts = [_parts(scene, outside, signals, lowest) for lowest in lowests]

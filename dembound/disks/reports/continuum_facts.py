@@ -25,6 +25,7 @@ from dembound.disks.packing_errors import packing_facts
 from dembound.disks.reports.continuum_errors import coarsest, elements_by_layer, largest_element, near_error
 from dembound.disks.scene import DiskScene
 from dembound.outside import sizing
+from dembound.outside.layer import RETURNED
 from dembound.outside.sizing import Signal
 from dembound.words import Entries, percent
 
@@ -45,6 +46,9 @@ LOW = (0.0, 2.0, 3.0, 4.0), (0.0, 0.82, 0.97, 1.0)
 """Heights of rows of elements in the fastest layer, in diameters, and time steps with these over those without.
 
 Measured with a layer of 2 to 10 D between slower ones and between equal ones, disks of pattern A; 3 D in B: 0.95."""
+
+STRETCHED = f"up to about {percent(RETURNED)}"
+"""What layers stretched along return, in words."""
 
 ANGLES = (0.0, 45.0, 60.0)
 """Angles of incidence (degrees) for which reflections are printed."""
@@ -148,10 +152,15 @@ def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
     angles = ", ".join(f"{angle:g}" for angle in ANGLES)
     p, s = (", ".join(f"{100.0 * each:.2g}" for each in returned) for returned in _reflections(outside, signals))
     floor = sizing.layer_error(settings.order, settings.layers)
+    if outside.body.is_stretched_along:
+        returned = (
+            f"they stretch both axes, as the ground is strongly anisotropic, and return {STRETCHED} of the motion"
+        )
+    else:
+        returned = f"at {angles}° they return at most {p} % of P and {s} % of S waves"
     return (
         f"begin {begin} m beyond the sides and are {depth} m deep, {count}, R0 = "
-        f"{settings.absorption.reflection:.3g}; at {angles}° they return at most {p} % of P and {s} % of S waves, "
-        f"the elements themselves about {percent(floor)}"
+        f"{settings.absorption.reflection:.3g}; {returned}, the elements themselves about {percent(floor)}"
     )
 
 
@@ -197,6 +206,11 @@ def continuum_warnings(scene: DiskScene, steps: float) -> Iterator[str]:
         yield (
             f"outside.reflection: is {settings.absorption.reflection:g}, above {asked}; give at most "
             f"{sizing.reflection(keys.accuracy):g}"
+        )
+    if outside.body.is_stretched_along and keys.accuracy < RETURNED:
+        yield (
+            f"outside: in such anisotropic ground waves grow in usual layers; those it needs return {STRETCHED} of "
+            f"the motion, more than {asked}; with kratio and pb_kratio of 0.5 or more, or pattern B, usual ones do"
         )
     yield from _lasting(scene, outside, keys, asked)
     yield from _from_the_surface(scene, outside, keys, asked)
