@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from dembound.motion.simulation import Simulation
+from dembound.outside import layer
 from dembound.outside.body import GridBody
 from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.layer import Absorption
@@ -31,9 +32,13 @@ def unequal(layers: int) -> Mesh:
 
 
 def growth(share: float, delay: float, ratio: float, mesh: Mesh) -> float:
-    """Kinetic energy at the end over that of the noise at the start, at a share of the limit; infinite beyond 1e20."""
+    """Growth of noise in an isotropic medium of a Poisson's ratio."""
     slower = np.sqrt((1.0 - 2.0 * ratio) / (2.0 - 2.0 * ratio))
-    medium = Medium.isotropic(2500.0, 1000.0, 1000.0 * slower)
+    return growth_in(Medium.isotropic(2500.0, 1000.0, 1000.0 * slower), share, delay, mesh)
+
+
+def growth_in(medium: Medium, share: float, delay: float, mesh: Mesh) -> float:
+    """Kinetic energy at the end over that of the noise at the start, at a share of the limit; infinite beyond 1e20."""
     body = GridBody(mesh=mesh, medium=medium, absorption=Absorption(delay=delay))
     simulation = Simulation(GridScene(body), share * step_limit(body))
     noise = np.random.default_rng(0).standard_normal((3, body.count)) * ~mesh.held
@@ -57,3 +62,12 @@ def test_no_layers() -> None:
     """As kinetic energy is at most E/(1 − r²) at a share r of the limit."""
     assert growth(0.998, 0.1, 0.25, unequal(0)) < 1.0 / (1.0 - 0.999**2)
     assert growth(1.002, 0.1, 0.25, unequal(0)) == np.inf
+
+
+def test_anisotropic(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lattice whose shear springs are stiffer: noise grows in layers that stretch one axis only, without end."""
+    medium = Medium(2000.0, 1e8, 0.8e8, 0.0, 7e8)
+    mesh = Mesh.uniform(order=4, element=(10.0, 10.0), cells=(14, 9), layer=Around(4, 4, 4, 0))
+    assert growth_in(medium, 0.8, 0.1, mesh) < 0.1
+    monkeypatch.setattr(layer, "QUIET", 1.0)
+    assert growth_in(medium, 0.8, 0.1, mesh) > 1e3

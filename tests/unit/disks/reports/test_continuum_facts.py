@@ -9,6 +9,7 @@ from disk_systems import LAMB
 from dembound.disks.beyond.settings import signals_of
 from dembound.disks.material.bragg import sent_back
 from dembound.disks.packing_errors import lattice_errors
+from dembound.disks.reports.continuum_errors import expected_errors
 from dembound.disks.reports.continuum_facts import ANGLES, continuum_facts, continuum_warnings
 from dembound.disks.scene import build
 from dembound.kinds import with_changes
@@ -159,3 +160,33 @@ def test_elements_too_large_beside_a_load(case) -> None:
     assert line.startswith(
         "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
     )
+
+
+def test_layers_of_strongly_anisotropic_ground(case) -> None:
+    """They return more, which is said, and no formula says how much; one lattice below others is enough."""
+    shear = {"material.kratio": 0.1, "material.pb_kratio": 0.1}
+    assert ", 3 elements, R0 = 0.0001; they stretch both axes, " in facts_of(case, **shear)["absorbing layers"]
+    (line,) = warnings_of(case, **shear)
+    assert "those it needs return up to about 3 % of the motion, more than outside.accuracy = 0.1 %" in line
+    assert warnings_of(case, **shear, **{"outside.accuracy": 0.04}) == []
+    assert expected_errors(build(with_changes(case, shear)), {"here": np.array([20.0, 10.0])}) is None
+
+    mild = {"material.kratio": 0.5, "material.pb_kratio": 0.5}
+    assert "they return at most" in facts_of(case, **mild)["absorbing layers"]
+    below = {"layer": [{"thickness": 6.0}, shear_of_layer(0.1)]}
+    assert "they stretch both axes" in facts_of(case, **below)["absorbing layers"]
+
+
+def shear_of_layer(ratio: float) -> dict[str, float]:
+    """A layer with this ratio of stiffness."""
+    return {"kratio": ratio, "pb_kratio": ratio}
+
+
+def test_against_growth_is_what_helps(case) -> None:
+    """Elastic ground is stepped below its limit, so that no smaller step helps; bonds that break may need one."""
+    scene = build(case)
+    assert "smaller run.safety" not in scene.against_growth
+    assert 'another type than "outside"' in scene.against_growth
+    breaks = build(with_changes(case, {"material.law": "linearpbond"}))
+    assert breaks.against_growth == f"{scene.against_growth}, or a smaller run.safety or run.time_step"
+    assert build(with_changes(case, {"boundary": {}})).against_growth == "a smaller run.safety or run.time_step"
