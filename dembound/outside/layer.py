@@ -76,7 +76,7 @@ with 8 up to 0.107; it grows with 16 at 0.107, with 8 at 0.127, and with 4 at 0.
 """
 
 RETURNED = 0.03
-"""Motion that layers stretched along return: 1.1 to 3.4 % of all motion after a blow in pieces of the square lattice with
+"""Motion that layers stretched along return: 1.1 to 3.4 % of all motion after a blow in pieces of square lattices with
 p = 0.11 to 0.16, 80 m × 60 m with three to eight elements of 10 m; usual layers 0.1 to 0.5 %.
 """
 

@@ -19,7 +19,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reflection.bricks import LAST, BrickInRow, LastBrick, is_outwards
 from dembound.disks.reflection.condensed import Oscillation
 from dembound.disks.reflection.elements import Elements, Layer
-from dembound.outside.layer import Profile
+from dembound.outside.layer import Profile, along_in
 from dembound.outside.mesh import Around, Mesh
 from dembound.packings.brick import Brick
 from dembound.packings.cut import cut_contacts
@@ -220,5 +220,6 @@ def _layer(outside: Surroundings, side: str) -> Layer:
     """The layer of a continuum beyond a side."""
     axis, body = normal_axis(side), outside.body
     thickness = body.mesh.axes[axis].thickness[1 if is_outwards(side) > 0 else 0]
-    profile = Profile(thickness, body.ground.only.normal_speed(axis), body.mesh.inner, body.absorption)
+    medium = body.ground.only
+    profile = Profile(thickness, medium.normal_speed(axis), body.mesh.inner, body.absorption, along=along_in(medium))
     return Layer(axis, profile, body.absorption.along if body.mesh.periodic[1 - axis] else 0.0)

@@ -100,7 +100,8 @@ class Elements:
         if not mesh.absorbs[element, axis]:
             return stretch, np.ones(self.nodes.shape[1])
         q, step = mesh.depth[self.nodes[element], axis], oscillation.time_step
-        for direction, part in ((axis, 1.0), (1 - axis, along)):
+        beside = profile.part_along(q) if profile.is_stretched_along else along
+        for direction, part in ((axis, 1.0), (1 - axis, beside)):
             memory = profile.gain(q, step, part) / (1.0 - profile.decay(q, step, part) * oscillation.back)
             stretch[direction] += memory
         return stretch, 1.0 + profile.delay(q, step) * oscillation.lagging
