@@ -209,8 +209,9 @@ def continuum_warnings(scene: DiskScene, steps: float) -> Iterator[str]:
         )
     if outside.body.is_stretched_along and keys.accuracy < RETURNED:
         yield (
-            f"outside: in such anisotropic ground waves grow in usual layers; those it needs return {STRETCHED} of "
-            f"the motion, more than {asked}; with kratio and pb_kratio of 0.5 or more, or pattern B, usual ones do"
+            f"outside: in such anisotropic ground waves grow in usual layers; those it needs return {STRETCHED} of the "
+            f"motion, more than {asked}, and less with more outside.layers; with kratio and pb_kratio of 0.5 or "
+            "more, or pattern B, usual ones do"
         )
     yield from _lasting(scene, outside, keys, asked)
     yield from _from_the_surface(scene, outside, keys, asked)

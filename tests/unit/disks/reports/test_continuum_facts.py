@@ -167,7 +167,7 @@ def test_layers_of_strongly_anisotropic_ground(case) -> None:
     shear = {"material.kratio": 0.1, "material.pb_kratio": 0.1}
     assert ", 3 elements, R0 = 0.0001; they stretch both axes, " in facts_of(case, **shear)["absorbing layers"]
     (line,) = warnings_of(case, **shear)
-    assert "those it needs return up to about 3 % of the motion, more than outside.accuracy = 0.1 %" in line
+    assert "those it needs return up to about 3 % of the motion, more than outside.accuracy = 0.1 %, and" in line
     assert warnings_of(case, **shear, **{"outside.accuracy": 0.04}) == []
     assert expected_errors(build(with_changes(case, shear)), {"here": np.array([20.0, 10.0])}) is None
 
