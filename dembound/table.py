@@ -182,11 +182,6 @@ EVERYWHERE: Box = (-math.inf, -math.inf, math.inf, math.inf)
 """The rectangle that contains all places."""
 
 
-def is_within(box: Box, x: Any, y: Any) -> Any:
-    """Whether places x, y (m), numbers or arrays, are in a rectangle or on its edge."""
-    return (box[0] <= x) & (x <= box[2]) & (box[1] <= y) & (y <= box[3])
-
-
 def shifted_place(place: tuple[float, float], by: tuple[float, float]) -> tuple[float, float]:
     """A place (x, y) shifted by (x, y), m."""
     return place[0] + by[0], place[1] + by[1]

@@ -9,6 +9,7 @@ from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import Edge
 from dembound.boundaries.intact import Keeping
 from dembound.boundaries.sides import axis_of_motion, normal_axis
+from dembound.edges import is_in_range
 from dembound.table import Box, quantity
 
 
@@ -20,7 +21,7 @@ class Holding(Keeping):
         unit="m",
         means="place",
         help="range [x0, x1] of a bottom or top side, [y0, y1] of a left or right one; the side's particles centred "
-        "there are held, others are free; absent: all are held",
+        "there or at its ends are held, others are free; absent: all are held",
     )
 
     @field_validator("within")
@@ -45,7 +46,7 @@ class Holding(Keeping):
             return edge
         along = edge.positions[:, 1 - edge.axis]
         low, high = self.within
-        return edge.only((low <= along) & (along <= high), high - low)
+        return edge.only(is_in_range((low, high), along, edge.length), high - low)
 
 
 def beside_disks(place: str, side: str, table: Boundary | None, tables: Mapping[str, Any]) -> Iterator[str]:

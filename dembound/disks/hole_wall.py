@@ -45,7 +45,7 @@ def pressure_on(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
     hole = scene.case.hole_of(load)
     first = 0 if scene.seam is None else scene.seam.count
     body = scene.assembly.part(slice(first, scene.disk_count))
-    if hole.contains(body.positions).any():
+    if hole.takes(body.positions, float(body.size.max())).any():
         return np.zeros(0, dtype=np.int64), np.zeros((0, 3))
     cut = contacts_into(scene.ground.brick, body, hole)
     if _is_beside_its_image(scene, body, hole):

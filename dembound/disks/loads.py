@@ -10,8 +10,9 @@ from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.body import DiskBody
 from dembound.disks.hole_wall import pressure_on
 from dembound.disks.membrane import forces_on_sides
+from dembound.edges import is_within
 from dembound.errors import CaseError
-from dembound.nearest import EQUAL, nearest
+from dembound.nearest import nearest
 from dembound.outside.traction import Traction, traction_in
 from dembound.packings.tiling import Assembly
 from dembound.table import EVERYWHERE
@@ -62,9 +63,7 @@ def _particles(load: Load, assembly: Assembly) -> np.ndarray:
         return nearest(positions, np.array([load.position]))
     if load.region is None:
         return np.arange(len(positions))
-    near = EQUAL * float(assembly.radii.min())  # rounding must not decide which disks on the rim have the load
-    low, high = np.array(load.region[:2]) - near, np.array(load.region[2:]) + near
-    return np.flatnonzero(((positions >= low) & (positions <= high)).all(axis=1))
+    return np.flatnonzero(is_within(load.region, positions, float(assembly.size.max())))
 
 
 def _traction(load: Load, outside: Surroundings) -> Traction | None:

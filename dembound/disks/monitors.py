@@ -17,12 +17,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.ground import is_in, reach
+from dembound.casefile.disks.ground import reach
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.beyond.layered_waves import Undisturbed
 from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.wave_front import INDEX
+from dembound.edges import is_within
 from dembound.errors import CaseError
 from dembound.motion.between import Between
 from dembound.nearest import nearest
@@ -162,9 +163,9 @@ class _Around:
         begin = of.positions[self.first] - brick.positions[of.brick_particle[self.first]]
         begin = begin - of.tile[self.first] * brick.size
         places = disks_around(brick, begin, position)[1].reshape(-1, 2)
-        in_ground = is_in(case.box, position)
-        left, bottom, right, top = case.box if in_ground else reach(case.ground, case.packing, case.boundary)
-        refused = (places < (left, bottom)).any(axis=1) | (places > (right, top)).any(axis=1)
+        in_ground = is_within(case.box, position, case.packing.span)
+        limits = case.box if in_ground else reach(case.ground, case.packing, case.boundary)
+        refused = ~is_within(limits, places, case.packing.span)
         refused |= ~self.outside.is_beyond(places) | (self._allowed(places) != places).any(axis=1)
         there = np.flatnonzero(~refused)
         best = int(nearest(np.vstack([own, places[there]]), np.array([position]))[0])

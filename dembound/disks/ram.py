@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.ground import is_in
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
 from dembound.disks.beyond.settings import expected_tops, mesh_of, settings_of, signals_of
@@ -20,6 +19,7 @@ from dembound.disks.contacts.forces import PIECE
 from dembound.disks.contacts.layout import LEAST_FILL
 from dembound.disks.contacts.row_plan import columns_of
 from dembound.disks.material.packed_material import nominal_moduli
+from dembound.edges import is_within
 from dembound.kernels.lanes import LANES
 from dembound.motion.ram import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
 from dembound.outside.medium import Medium
@@ -117,7 +117,8 @@ def _expected_probes(case: DiskCase) -> int:
     """Number of recorded nodes: the disk at each monitor, or the element's nodes and a column disk, with twins."""
     twin = int(bool(case.column_sides))
     of_element = (case.outside.order + 1) ** 2 + twin
-    each = [1 if is_in(case.packing.box, monitor.position) else of_element for monitor in case.monitor]
+    of_body = [is_within(case.packing.box, monitor.position, case.packing.span) for monitor in case.monitor]
+    each = [1 if is_inside else of_element for is_inside in of_body]
     return sum(each) + twin * len(each)
 
 

@@ -157,7 +157,7 @@ def build(case: DiskCase) -> DiskScene:
     body = tile(ground.brick, case.packing.copies, case.periodic, case.packing.origin)
     shapes = [hole for hole in case.hole if hole.is_shape]
     for shape in shapes:
-        body, _ = body.without(shape.takes(body.positions))
+        body, _ = body.without(shape.takes(body.positions, case.packing.span))
     edges = find_edges(body, case.periodic, () if shapes else case.packing.regular_sides)
     holes = [hole for hole in case.hole if not hole.is_shape]
     first, later = (tuple(hole for hole in holes if hole.stage == stage) for stage in ("before", "after"))

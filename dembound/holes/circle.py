@@ -16,9 +16,9 @@ class Circle(Hole):
     centre: tuple[float, float] = quantity(..., unit="m", means="place", help="centre [x, y]")
     radius: float = quantity(..., unit="m", means="length", help="radius", gt=0.0)
 
-    def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Mask (k,) of positions (k, 2) m that lie in the circle; its rim does not count."""
-        return np.hypot(*(positions - self.centre).T) < self.radius
+    def depth(self, positions: np.ndarray) -> np.ndarray:
+        """Distances (k,) m of positions (k, 2) m from the circle, negative outside."""
+        return self.radius - np.hypot(*(positions - self.centre).T)
 
     def shifted(self, by: tuple[float, float]) -> Self:
         """The hole shifted by (x, y) m."""

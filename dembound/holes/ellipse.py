@@ -29,11 +29,15 @@ class Ellipse(Hole):
         """Cosine and sine of the angle."""
         return float(np.cos(np.radians(self.angle))), float(np.sin(np.radians(self.angle)))
 
-    def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Mask (k,) of positions (k, 2) m that lie in the ellipse; its rim does not count."""
-        c, s = self._direction
-        along_axes = (positions - self.centre) @ np.array([[c, -s], [s, c]])
-        return np.hypot(*(along_axes / self.semi_axes).T) < 1.0
+    def depth(self, positions: np.ndarray) -> np.ndarray:
+        """Distances (k,) m of positions (k, 2) m from the ellipse, negative outside, to first order.
+
+        f = 1 − (x/a)² − (y/b)² over the size of its gradient, (2x/a², 2y/b²).
+        """
+        (c, s), axes = self._direction, np.array(self.semi_axes)
+        scaled = (positions - self.centre) @ np.array([[c, -s], [s, c]]) / axes
+        steepness = np.hypot(*(2.0 * scaled / axes).T)
+        return (1.0 - (scaled**2).sum(axis=1)) / np.maximum(steepness, 1.0 / axes.max())
 
     def shifted(self, by: tuple[float, float]) -> Self:
         """The hole shifted by (x, y) m."""

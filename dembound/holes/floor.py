@@ -26,8 +26,8 @@ class Floor(NamedTuple):
 def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) -> Floor | None:
     """The floor beside the left or right side of a box (left, bottom, right, top; m); None if no hole lowers it there.
 
-    diameter : mean diameter of the disks, m. Holes that leave less than half a diameter of ground at the top or at the
-    side count as reaching it.
+    diameter : mean diameter of the disks, m. The height is that of the outline itself. Holes that leave less than half
+    a diameter of ground at the top or at the side count as reaching it.
     """
     if not holes:
         return None
@@ -36,7 +36,7 @@ def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) ->
 
     def is_open(x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
         places = np.stack(np.broadcast_arrays(np.atleast_1d(x), np.atleast_1d(y)), axis=1)
-        return np.any([hole.takes(places) for hole in holes], axis=0)
+        return np.any([hole.takes(places, span=0.0) for hole in holes], axis=0)
 
     beside = edge + 0.5 * inwards * diameter
     down = np.arange(top - 0.5 * diameter, bottom, -diameter / FINE)

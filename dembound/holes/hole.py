@@ -6,6 +6,7 @@ from typing import Literal, Self
 
 import numpy as np
 
+from dembound.edges import includes
 from dembound.holes.outline import Outline
 from dembound.table import Box, FileName, Table, quantity
 
@@ -22,8 +23,8 @@ WALL = 0.4
 class Hole(Table, ABC):
     """An area without particles: particles centred in it, and those it separates from the body, are removed.
 
-    A hole that keeps what is "inside" is the shape of a sample: the particles outside are removed, and the sides of the
-    scene are those of the sample.
+    A particle centred on its outline remains. A hole that keeps what is "inside" is the shape of a sample: the particles
+    outside are removed, and the sides of the scene are those of the sample.
     """
 
     type: str
@@ -43,13 +44,18 @@ class Hole(Table, ABC):
         """Whether it is the shape of a sample."""
         return self.keep == "inside"
 
-    def takes(self, positions: np.ndarray) -> np.ndarray:
-        """Mask (k,) of positions (k, 2) m where particles are removed."""
-        return self.contains(positions) != self.is_shape
+    def takes(self, positions: np.ndarray, span: float) -> np.ndarray:
+        """Mask (k,) of positions (k, 2) m where particles are removed, none of them on the outline.
+
+        span : size of the scene, m, see `edges.includes`.
+        """
+        depth = self.depth(positions)
+        taken: np.ndarray = ~includes(depth if self.is_shape else -depth, span)
+        return taken
 
     @abstractmethod
-    def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Mask (k,) of positions (k, 2) m that lie within its outline."""
+    def depth(self, positions: np.ndarray) -> np.ndarray:
+        """Distances (k,) m of positions (k, 2) m from the outline, negative outside; beside it to first order."""
 
     @abstractmethod
     def shifted(self, by: tuple[float, float]) -> Self:

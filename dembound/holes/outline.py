@@ -157,16 +157,21 @@ class PolygonOutline(Outline):
         return np.stack([np.interp(along, self._starts, closed[:, axis]) for axis in (0, 1)], axis=-1)
 
     def nearest(self, places: np.ndarray) -> np.ndarray:
-        """Lengths (k,) m of the points nearest to places (k, 2) m; of equally near ones the first."""
-        found, least = np.zeros(len(places)), np.full(len(places), np.inf)
-        for corner, edge, length, start in zip(
-            self.corners, self._edges, self._lengths, self._starts[:-1], strict=True
-        ):
-            part = np.clip((places - corner) @ edge / length**2, 0.0, 1.0)
-            distance = np.hypot(*(places - corner - part[:, None] * edge).T)
-            nearer = distance < least
-            found[nearer], least[nearer] = (start + part * length)[nearer], distance[nearer]
-        return found % self.period
+        """Lengths (k,) m of the points nearest to places (k, 2) m.
+
+        Between equally near points of two edges that meet, their corner or what is in the middle; else the first.
+        """
+        edges, lengths, disks = self._edges[:, None], self._lengths[:, None], np.arange(len(places))
+        from_corners = places - self.corners[:, None]
+        parts = np.clip((from_corners * edges).sum(axis=2) / lengths**2, 0.0, 1.0)
+        distance = np.hypot(*np.moveaxis(from_corners - parts[:, :, None] * edges, 2, 0))
+        equal = distance <= distance.min(axis=0) + ROUNDING * self.period
+        first, last = np.argmax(equal, axis=0), len(edges) - 1 - np.argmax(equal[::-1], axis=0)
+        is_round = last - first == len(edges) - 1  # the last edge and the first one
+        last = np.where(is_round | (last == first + 1), last, first)
+        along = self._starts[:-1, None] + parts * lengths
+        middle: np.ndarray = 0.5 * (along[first, disks] + along[last, disks] + is_round * self.period)
+        return middle % self.period
 
     def crossings(self, axis: int, level: float) -> np.ndarray:
         """Lengths (k,) m of points whose coordinate along an axis is `level` (m); both ends of edges on this line."""

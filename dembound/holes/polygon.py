@@ -27,14 +27,22 @@ class Polygon(Hole):
             raise ValueError(f"has {len(points)}, must have at least three")
         return points
 
-    def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Mask (k,) of positions (k, 2) m in the polygon: a ray from there along +x meets an odd number of edges."""
+    def depth(self, positions: np.ndarray) -> np.ndarray:
+        """Distances (k,) m of positions (k, 2) m from the polygon, negative outside.
+
+        Inside is where a ray along +x meets an odd number of edges.
+        """
         x, y = positions.T
-        inside = np.zeros(len(positions), dtype=bool)
+        inside, away = np.zeros(len(positions), dtype=bool), np.full(len(positions), np.inf)
         for (x0, y0), (x1, y1) in zip(self.points, self.points[1:] + self.points[:1], strict=True):
-            if y0 != y1:
-                inside ^= ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) / (y1 - y0) * (x1 - x0))
-        return inside
+            along, up = x1 - x0, y1 - y0
+            if along == up == 0.0:
+                continue
+            part = np.clip(((x - x0) * along + (y - y0) * up) / (along * along + up * up), 0.0, 1.0)
+            away = np.minimum(away, np.hypot(x - x0 - part * along, y - y0 - part * up))
+            if up != 0.0:
+                inside ^= ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) / up * along)
+        return np.where(inside, away, -away)
 
     def shifted(self, by: tuple[float, float]) -> Self:
         """The hole shifted by (x, y) m."""

@@ -30,10 +30,9 @@ class Rectangle(Hole):
             raise ValueError("must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1")
         return corners
 
-    def contains(self, positions: np.ndarray) -> np.ndarray:
-        """Mask (k,) of positions (k, 2) m that lie in the rectangle; its rim does not count."""
-        (x, y), (x0, y0, x1, y1) = positions.T, self.corners
-        return (x0 < x) & (x < x1) & (y0 < y) & (y < y1)
+    def depth(self, positions: np.ndarray) -> np.ndarray:
+        """Distances (k,) m of positions (k, 2) m from the nearest of the edges' lines, negative outside."""
+        return np.minimum(positions - self.corners[:2], self.corners[2:] - positions).min(axis=1)
 
     def shifted(self, by: tuple[float, float]) -> Self:
         """The hole shifted by (x, y) m."""

@@ -113,6 +113,11 @@ class Packing(Table, ABC):
         return across * width, up * height
 
     @property
+    def span(self) -> float:
+        """The larger of width and height of the scene in metres, see `edges.includes`."""
+        return max(self.extent)
+
+    @property
     def box(self) -> Box:
         """Left, bottom, right and top of the disks' box in metres."""
         (left, bottom), (width, height) = self.origin, self.extent

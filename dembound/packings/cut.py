@@ -19,9 +19,9 @@ NO_TOPS: Mapping[str, float] = MappingProxyType({})
 
 
 class Hole(Protocol):
-    """A removed region: a test of positions (k, 2) m, and the rectangle around it, m."""
+    """A removed region: a test of positions (k, 2) m in a scene of a size, m, and the rectangle around it, m."""
 
-    def contains(self, positions: np.ndarray) -> np.ndarray:
+    def takes(self, positions: np.ndarray, span: float) -> np.ndarray:
         """Mask (k,) of positions (k, 2) m that lie in the hole."""
 
     @property
@@ -93,7 +93,7 @@ def contacts_into(brick: Brick, body: Assembly, hole: Hole) -> CutContacts:
     reach = np.abs(brick.vectors).max(axis=0)
     near = ((body.positions >= np.array([x0, y0]) - reach) & (body.positions <= np.array([x1, y1]) + reach)).all(axis=1)
     found = _ends_at(brick, body, np.flatnonzero(near))
-    found = found.only(hole.contains(body.positions[found.node] + found.vectors(brick)))
+    found = found.only(hole.takes(body.positions[found.node] + found.vectors(brick), float(body.size.max())))
     never_there = _beyond(found.tile, brick.edge_rows[found.other], body.copies).any(axis=1)
     return found.only(_is_absent(found, brick, body, near) & ~never_there)
 

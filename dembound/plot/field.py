@@ -137,6 +137,7 @@ def read_disks(file: h5py.File) -> Disks:
         if name.endswith(FREE_FIELD) and not np.array_equal(place, places[name.removesuffix(FREE_FIELD)])
     ]
     positions = file["particles/position"][:]
+    span = float(np.ptp(positions, axis=0).max())
     return Disks(
         positions=positions,
         radii=file["particles/radius"][:],
@@ -146,7 +147,7 @@ def read_disks(file: h5py.File) -> Disks:
         laws=laws_in_words(laws) if len(laws) > 1 else "",
         column=int(file.attrs.get("column", 0)),
         continuum=read_continuum(file),
-        holes=tuple(hole for hole in read_holes(file) if not hole.takes(positions).any()),
+        holes=tuple(hole for hole in read_holes(file) if not hole.takes(positions, span).any()),
         layers=tuple(map(text_of, file.attrs.get("layer_names", ()))),
         joints=tuple(map(float, file.attrs.get("joints", ()))),
     )

@@ -155,8 +155,8 @@ def _hollow(case: DiskCase) -> float:
             continue
         along = (np.arange(SAMPLES) + 0.5) / SAMPLES
         grid = np.stack(np.meshgrid(*(start[:, None] + np.outer(end - start, along))), axis=-1).reshape(-1, 2)
-        inside = hole.takes(grid)
+        inside = hole.takes(grid, case.packing.span)
         for other in case.hole[:number]:
-            inside &= ~other.takes(grid)
+            inside &= ~other.takes(grid, case.packing.span)
         area += float(np.prod(end - start)) * float(inside.mean())
     return area

@@ -107,7 +107,7 @@ def _at_own_disk(table: T, scene: DiskScene, larger: Packing) -> T:
     own = scene.positions[forces_of(table, scene)[0]][0] if isinstance(table, Load) else scene.monitored[table.name]
     tiles, places = disks_around(brick, low, table.position)
     places = places[((tiles >= 0) & (tiles < larger.copies)).all(axis=1)].reshape(-1, 2)
-    gone = [hole.takes(places) for hole in scene.case.hole]
+    gone = [hole.takes(places, larger.span) for hole in scene.case.hole]
     there = np.vstack([own, places[~np.any(gone, axis=0)] if gone else places])
     taken = there[nearest(there, np.array([table.position]))[0]]
     if np.abs(taken - own).max() < EQUAL * brick.mean_diameter:

@@ -20,6 +20,7 @@ from dembound.accuracy.delays import error_of_delay, error_of_steps, part_above
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.formulas import Formulas, Way
 from dembound.casefile.disks import DiskCase
+from dembound.edges import spans_all
 from dembound.table import Box
 
 SLOW = math.sqrt(3.0) / 2.0
@@ -130,6 +131,4 @@ def _waves(case: DiskCase, way: Way) -> set[tuple[str, float]]:
 
 def _is_plane(case: DiskCase, region: Box | None) -> bool:
     """Whether a load acts on the whole width or height of a scene, so that its waves are plane."""
-    return region is not None and any(
-        region[axis] <= case.box[axis] and region[axis + 2] >= case.box[axis + 2] for axis in (0, 1)
-    )
+    return region is not None and any(spans_all(region, case.box, axis) for axis in (0, 1))

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
-from dembound.holes import Hole
 from dembound.nearest import nearest
 
 NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
@@ -34,7 +33,7 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     """
     first, cell = 0 if scene.seam is None else scene.seam.count, scene.ground.brick.mean_diameter
     disks = scene.positions[first : scene.disk_count]
-    disks = disks[~_on_rims(scene.case.hole, disks, ROUNDED * cell)]
+    disks = disks[~_on_rims(scene.case, disks, ROUNDED * cell)]
     own = disks[nearest(disks, place[None])[0]]
     cells = np.rint((disks - own) / cell).astype(int)
     near = np.flatnonzero((np.abs(cells) <= 2).all(axis=1))
@@ -47,12 +46,12 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     return np.asarray(disks[[disk_of[tuple(each)] for each in (middle + patch).tolist()]])
 
 
-def _on_rims(holes: Sequence[Hole], disks: np.ndarray, within: float) -> np.ndarray:
+def _on_rims(case: DiskCase, disks: np.ndarray, within: float) -> np.ndarray:
     """Mask (k,) of disks at (k, 2) m that are at most a distance (m) from a hole."""
     beside = (disks[:, None] + within * NINE).reshape(-1, 2)
     found = np.zeros(len(disks), dtype=bool)
-    for hole in holes:
-        found |= hole.takes(beside).reshape(-1, len(NINE)).any(axis=1)
+    for hole in case.hole:
+        found |= hole.takes(beside, case.packing.span).reshape(-1, len(NINE)).any(axis=1)
     return found
 
 

@@ -1,6 +1,5 @@
 """The ``[ground]`` table, where in the ground monitors and loads may be, and mistakes of a box of disks in it."""
 
-import math
 from collections.abc import Iterator, Mapping
 
 from dembound.boundaries.boundary import Boundary
@@ -9,9 +8,6 @@ from dembound.casefile.messages import corners
 from dembound.packings import Packing
 from dembound.packings.base import TYPED, Extent
 from dembound.table import Box, Table, quantity
-
-ROUNDING = 1e-12
-"""Part of coordinates by which a place on a rim may be beyond it because of rounding."""
 
 
 class Ground(Table):
@@ -75,10 +71,3 @@ def reach(ground: Ground, packing: Packing, boundary: Mapping[str, Boundary | No
         if side in boundary and (table is None or table.is_outside) and not (side == "top" and below_surface):
             ends[side] = float("inf") if is_far(side) else float("-inf")
     return ends["left"], ends["bottom"], ends["right"], ends["top"]
-
-
-def is_in(box: Box, place: tuple[float, float]) -> bool:
-    """Whether a place (m) is in a box or on its rim, to rounding."""
-    near = ROUNDING * max((abs(each) for each in box if math.isfinite(each)), default=0.0)
-    left, bottom, right, top = box
-    return left - near <= place[0] <= right + near and bottom - near <= place[1] <= top + near

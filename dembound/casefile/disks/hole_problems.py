@@ -24,7 +24,7 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
         if hole.stage == "after" and not has_static:
             yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
         for key in ("load", "monitor"):
-            yield from _places_in_it(place, hole, key, tables[key])
+            yield from _places_in_it(place, hole, key, tables)
     for place, load in numbered("load", tables["load"]):
         if load.hole is not None:
             yield from _no_wall(place, load, tables)
@@ -48,10 +48,11 @@ def _outside(place: str, hole: Hole, box: Box) -> Iterator[str]:
         yield f"{place}: lies outside the scene, {corners(*box)}"
 
 
-def _places_in_it(place: str, hole: Hole, key: str, tables: Any) -> Iterator[str]:
+def _places_in_it(place: str, hole: Hole, key: str, tables: Mapping[str, Any]) -> Iterator[str]:
     """Loads or monitors in the hole, where there are no particles."""
-    for where, table in numbered(key, tables):
-        if table.position is not None and hole.takes(np.array([table.position]))[0]:
+    span = tables["packing"].span if tables["packing"] else 0.0
+    for where, table in numbered(key, tables[key]):
+        if table.position is not None and hole.takes(np.array([table.position]), span)[0]:
             yield f"{where}.position: lies in {place}; must be where particles remain"
 
 

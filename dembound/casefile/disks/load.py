@@ -38,7 +38,8 @@ class Load(Table):
         None,
         unit="m",
         means="place",
-        help="rectangle [x0, y0, x1, y1]; particles centred in it are loaded, or the continuum's surface in it",
+        help="rectangle [x0, y0, x1, y1]; particles centred in it or on its edge are loaded, or the "
+        "continuum's surface in it",
     )
     pressure: float | None = quantity(
         None,

@@ -17,7 +17,7 @@ from dembound.casefile.cross_checks import (
 )
 from dembound.casefile.disks.damping import damping_problems, is_damped
 from dembound.casefile.disks.floors import lowered_in, lowered_problems
-from dembound.casefile.disks.ground import Box, Ground, ground_problems, is_in, reach
+from dembound.casefile.disks.ground import Box, Ground, ground_problems, reach
 from dembound.casefile.disks.hole_problems import hole_problems
 from dembound.casefile.disks.incident import incident_problems
 from dembound.casefile.disks.layer import Layer, layer_problems
@@ -30,6 +30,7 @@ from dembound.casefile.disks.static_problems import static_problems
 from dembound.casefile.messages import corners, numbered, show
 from dembound.casefile.output import Output
 from dembound.casefile.types import LAWS
+from dembound.edges import is_within
 from dembound.packings import Packing
 
 
@@ -149,7 +150,8 @@ def _places_outside(
     for place, table in numbered(key, tables):
         for where in ("position", "region"):
             values = getattr(table, where, None) or ()
-            if not all(is_in(allowed, place) for place in zip(values[::2], values[1::2], strict=True)):
+            corners = zip(values[::2], values[1::2], strict=True)
+            if not all(is_within(allowed, corner, packing.span) for corner in corners):
                 yield f"{place}.{where}: is {show(values)}, must be {_within(allowed)}"
 
 

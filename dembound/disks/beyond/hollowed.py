@@ -41,7 +41,7 @@ def hollowed(
 
     Raises CaseError for holes that reach a side beyond which the ground goes on, except for floors beside a continuum.
     """
-    removed = np.logical_or.reduce([hole.takes(body.positions) for hole in holes])
+    removed = np.logical_or.reduce([hole.takes(body.positions, case.packing.span) for hole in holes])
     left, kept = body.without(removed)
     beyond = {"free field": case.free_field_sides, "continuum": case.outside_sides}
     below = {"free field": {}, "continuum": floors}
@@ -87,7 +87,7 @@ def _at_sides(
     problems, inside = [], np.zeros(len(lost.node), dtype=np.bool_)
     for place, hole in numbered("hole", case.hole):
         if hole in holes:
-            taken = hole.takes(body.positions[lost.node])
+            taken = hole.takes(body.positions[lost.node], case.packing.span)
             problems += _mistakes(f"{place}: reaches", lost.side[taken], beyond, uneven, diameter)
             inside |= taken
     return problems or _mistakes("hole: cuts off disks at", lost.side[~inside], beyond, {}, diameter)

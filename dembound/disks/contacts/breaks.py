@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from dembound.edges import is_within
 from dembound.motion.kind import Finding
 from dembound.motion.trackers import Run
-from dembound.table import EVERYWHERE, Box, is_within
+from dembound.table import EVERYWHERE, Box
 
 BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
 """Names of the findings about the first broken bonds."""
@@ -19,7 +20,7 @@ def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:
     cracks = run.system.take_cracks(run.state.step)
     settled = 0.5 * run.state.datum[:2, cracks.pair].sum(axis=2).T
     places = cracks.position - settled
-    counted = is_within(inside or EVERYWHERE, *places.T)
+    counted = is_within(inside or EVERYWHERE, places, float(run.scene.size.max()))
     if not counted.any():
         return {}
     step = int(cracks.step[counted].min())

@@ -96,7 +96,7 @@ def _of_each_layer(scene: DiskScene, warn: Callable[[DiskScene, Own], Iterator[s
 def _empty_holes(scene: DiskScene) -> Iterator[str]:
     """Holes that remove no disk, as none of the packing is centred in them, or others have removed all of them."""
     brick, (left, bottom, right, top) = scene.ground.brick, scene.case.packing.box
-    origin = np.array([left, bottom])
+    origin, span = np.array([left, bottom]), scene.case.packing.span
     for number, (place, hole) in enumerate(numbered("hole", scene.case.hole)):
         if hole.is_shape:
             continue
@@ -107,11 +107,11 @@ def _empty_holes(scene: DiskScene) -> Iterator[str]:
         across, up = (np.arange(begin, end + 1.0) for begin, end in zip(first, last, strict=True))
         tiles = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 1, 2)
         places = (origin + tiles * brick.size + brick.positions).reshape(-1, 2)
-        inside = places[hole.contains(places)]
+        inside = places[hole.takes(places, span)]
         if len(inside) == 0:
             yield f"{place}: no particle is centred in it, so it removes none"
         for other in scene.case.hole[:number]:
-            if len(inside) and other.takes(inside).all() and (other.stage == "before" or hole.stage == "after"):
+            if len(inside) and other.takes(inside, span).all() and (other.stage == "before" or hole.stage == "after"):
                 yield f"{place}: lies within hole.{other.name}, so it removes no more particles"
 
 

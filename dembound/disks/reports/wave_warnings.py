@@ -24,6 +24,7 @@ from dembound.disks.reports.incident_facts import arrival
 from dembound.disks.reports.materials import materials_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.side_media import boundary_medium, medium_of_side
+from dembound.edges import spans_all
 from dembound.errors import CaseError
 from dembound.waves.constant import Constant
 from dembound.waves.spectrum import HANN_FADE
@@ -287,5 +288,4 @@ def _spans(scene: DiskScene, load: Load, axis: int) -> bool:
     """Whether a load acts on all disks along an axis alike."""
     if load.is_everywhere:
         return True
-    low, high = scene.case.packing.box[axis], scene.case.packing.box[axis + 2]
-    return load.region is not None and load.region[axis] <= low and load.region[axis + 2] >= high
+    return load.region is not None and spans_all(load.region, scene.case.packing.box, axis)

@@ -16,6 +16,7 @@ from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import brick_constants, ground_limits, strength_of
 from dembound.disks.material.scatter import bond_factors
 from dembound.disks.stepping.system import DiskSystem
+from dembound.edges import is_within
 from dembound.kernels.began import began_of
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.limits import in_columns
@@ -24,7 +25,7 @@ from dembound.kernels.tables import Limits
 from dembound.motion.kind import Finding
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
-from dembound.table import EVERYWHERE, Box, is_within
+from dembound.table import EVERYWHERE, Box
 
 LIMITS = ("opens", "slides", "slides", "breaks in tension", "breaks in tension", "breaks in shear", "breaks in shear")
 """Description of each limit of `limit_lines`."""
@@ -157,7 +158,7 @@ def least_load_factor(run: Run, inside: Box | None = None) -> dict[str, Finding]
     """The load factor as a finding to compare between runs; empty without one, or if it is not reached inside."""
     tracker = load_factor_of(run)
     found = None if tracker is None else tracker.describe(run)
-    if found is None or not is_within(inside or EVERYWHERE, *found["position"]):
+    if found is None or not is_within(inside or EVERYWHERE, found["position"], float(run.scene.size.max())):
         return {}
     return {LOAD_FACTOR: Finding(found["factor"], "1")}
 

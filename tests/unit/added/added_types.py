@@ -293,9 +293,9 @@ class Diamond(Hole):
     centre: tuple[float, float] = quantity(..., unit="m", help="its middle")
     half: float = quantity(..., unit="m", help="half its diagonal", gt=0.0)
 
-    def contains(self, positions):
-        """Mask of positions that lie in the diamond."""
-        return np.abs(positions - self.centre).sum(axis=1) < self.half
+    def depth(self, positions):
+        """Distances of positions from the lines of its edges, negative outside."""
+        return (self.half - np.abs(positions - self.centre).sum(axis=1)) / np.sqrt(2.0)
 
     def shifted(self, by):
         """The diamond with its middle somewhere else."""

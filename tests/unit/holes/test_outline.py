@@ -30,8 +30,8 @@ def test_an_outline_runs_counter_clockwise_between_inside_and_outside(hole) -> N
     right = np.stack([(ahead - points)[:, 1], (points - ahead)[:, 0]], axis=1)
     right *= 1e-4 / np.hypot(*right.T)[:, None]
 
-    assert hole.contains(points - right).all()
-    assert not hole.contains(points + right).any()
+    assert hole.takes(points - right, 1.0).all()
+    assert not hole.takes(points + right, 1.0).any()
     np.testing.assert_allclose(
         outline.at(np.array([0.3 * outline.period])), outline.at(np.array([-0.7, 1.3]) * outline.period)[:1], atol=1e-12
     )

@@ -1,0 +1,190 @@
+"""What lies on an edge is decided as by whole numbers, whatever the shape, the mirror, the place and the radius."""
+
+import numpy as np
+import pytest
+
+from dembound.boundaries import Fixed
+from dembound.boundaries.support import Edge
+from dembound.disks.loads import forces_of
+from dembound.disks.scene import build
+from dembound.edges import is_within, spans_all
+from dembound.holes import Circle, Ellipse, Hole, Polygon, Rectangle
+from dembound.kinds import loads
+
+COUNT = 14
+CENTRES = np.stack(np.meshgrid(*2 * [np.arange(1, 2 * COUNT, 2)]), axis=-1).reshape(-1, 2)
+"""Centres of a lattice's disks, in radii."""
+
+BOX = (5, 7, 19, 21)
+SQUARE = ((5, 7), (19, 7), (19, 21), (5, 21))
+POLYGONS = {
+    "square": SQUARE,
+    "square from another corner, the other way": SQUARE[2::-1] + SQUARE[:2:-1],
+    "diamond": ((13, 3), (23, 13), (13, 23), (3, 13)),
+    "triangle": ((3, 5), (25, 9), (11, 25)),
+    "notched": ((5, 5), (21, 5), (21, 11), (13, 11), (13, 19), (5, 19)),
+    "horseshoe": ((3, 3), (21, 3), (21, 23), (17, 23), (17, 9), (9, 9), (9, 23), (3, 23)),
+    "notched between disks": ((6, 6), (22, 6), (22, 12), (14, 12), (14, 20), (6, 20)),
+    "between disks": ((6, 6), (20, 6), (20, 14), (6, 14)),
+}
+ROUND = {  # centre, semi-axes; with 3, 4, 5 and 5, 12, 13 times two radii there are disks on the rim
+    "circle at a disk": ((13, 13), (10, 10)),
+    "circle between disks": ((14, 14), (10, 10)),
+    "small circle": ((13, 13), (2, 2)),
+    "ellipse": ((13, 15), (10, 6)),
+    "upright ellipse": ((13, 15), (5, 10)),
+}
+MIRRORS = [np.array(m) for m in ([[1, 0], [0, 1]], [[-1, 0], [0, 1]], [[1, 0], [0, -1]], [[0, 1], [1, 0]])]
+RADII = [0.2, 0.25, 0.3, 1.0 / 3.0]
+SHIFTS = [(0.0, 0.0), (-0.9, 0.1), (1234.56, -7e3 / 3.0)]
+
+
+def of_polygon(points, places: np.ndarray) -> np.ndarray:
+    """1 inside a polygon, 0 on its edge, −1 outside, by winding numbers of whole numbers."""
+    found = []
+    for x, y in places.tolist():
+        on, winding = False, 0
+        for (x0, y0), (x1, y1) in zip(points, points[1:] + points[:1], strict=True):
+            side = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
+            on |= side == 0 and (x - x0) * (x - x1) <= 0 and (y - y0) * (y - y1) <= 0
+            winding += (y0 <= y < y1 and side > 0) - (y1 <= y < y0 and side < 0)
+        found.append(0 if on else (1 if winding else -1))
+    return np.array(found)
+
+
+def of_ellipse(centre, axes, places: np.ndarray) -> np.ndarray:
+    """1 inside an ellipse, 0 on it, −1 outside, by whole numbers."""
+    (x, y), (a, b) = (places - centre).T, axes
+    return np.sign((a * b) ** 2 - (b * x) ** 2 - (a * y) ** 2)
+
+
+def placed(numbers, radius: float, shift) -> np.ndarray:
+    """Places (k, 2) m, computed as those of a tiled lattice are: whole numbers of radii, then the shift."""
+    numbers = np.asarray(numbers)
+    return radius * (numbers % 2) + (numbers // 2) * (2.0 * radius) + shift
+
+
+def typed(numbers, radius: float, shift) -> list[list[float]]:
+    """Places (k, 2) m, as somebody types them who computed them otherwise, with twelve digits."""
+    each = np.asarray(numbers) * radius + shift
+    return [[float(f"{value:.12g}") for value in place] for place in each.tolist()]
+
+
+def hole(kind: type[Hole], keep: str, **keys) -> Hole:
+    """A hole, or a sample."""
+    return kind(name="h", type=kind.__name__.lower(), keep=keep, **keys)
+
+
+@pytest.mark.parametrize("shift", SHIFTS)
+@pytest.mark.parametrize("radius", RADII)
+@pytest.mark.parametrize("mirror", MIRRORS)
+def test_what_lies_on_an_edge_remains(mirror, radius: float, shift) -> None:
+    lattice, span, on = placed(CENTRES @ mirror, radius, shift), 2.0 * COUNT * radius, {}
+
+    def require(name: str, expected: np.ndarray, kind: type[Hole], **keys) -> None:
+        np.testing.assert_array_equal(hole(kind, "outside", **keys).takes(lattice, span), expected > 0, name)
+        np.testing.assert_array_equal(hole(kind, "inside", **keys).takes(lattice, span), expected < 0, name)
+        on[name] = int(np.count_nonzero(expected == 0))
+
+    for name, points in POLYGONS.items():
+        corners = typed(np.array(points) @ mirror, radius, shift)
+        require(name, of_polygon(points, CENTRES), Polygon, points=corners)
+    low, high = (each(np.reshape(BOX, (2, 2)) @ mirror, axis=0) for each in (np.min, np.max))
+    corners = np.ravel(typed([low, high], radius, shift)).tolist()
+    expected = of_polygon(SQUARE, CENTRES)
+    require("rectangle", expected, Rectangle, corners=corners)
+    np.testing.assert_array_equal(is_within(tuple(corners), lattice, span), expected >= 0)
+    for name, (centre, axes) in ROUND.items():
+        expected = of_ellipse(centre, axes, CENTRES)
+        (middle,) = typed([np.array(centre) @ mirror], radius, shift)
+        along = [float(f"{each * radius:.12g}") for each in np.abs(axes @ mirror)]
+        require(name, expected, Ellipse, centre=middle, semi_axes=along)
+        require(name, expected, Ellipse, centre=middle, semi_axes=along[::-1], angle=90.0)
+        if axes[0] == axes[1]:
+            require(name, expected, Circle, centre=middle, radius=along[0])
+    without = ["notched between disks", "between disks", "circle between disks"]
+    assert [name for name in on if on[name] == 0] == without
+    assert on["circle at a disk"] == 12
+
+
+@pytest.mark.parametrize("about", [0.0, 0.7, 1.0 / 3.0])
+def test_mirrored_holes_through_disks_of_random_packings_take_mirrored_disks(about: float) -> None:
+    rng, mirror = np.random.default_rng(3), np.array([-1.0, 1.0])
+    for _ in range(20):
+        places = rng.uniform(-3.0, 9.0, (60, 2))
+        corners, image = places[:5], mirror * places + [2.0 * about, 0.0]
+        one, other = (
+            hole(Polygon, "outside", points=each.tolist()) for each in (corners, mirror * corners + [2.0 * about, 0.0])
+        )
+        np.testing.assert_array_equal(one.takes(places, 12.0), other.takes(image, 12.0))
+        assert not one.takes(places, 12.0)[:5].any()  # its corners
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_ranges_and_regions_of_the_same_ends_have_the_same_disks(radius: float) -> None:
+    along = placed(np.stack([np.arange(1, 61, 2), np.full(30, 29)], axis=1), radius, 0.0)
+    top, numbers = Edge("top", np.arange(30), along, np.full(30, 2.0 * radius), 60.0 * radius), np.arange(1, 61, 2)
+    for low, high in ((25, 35), (24, 36), (1, 59), (13, 14), (7, 53)):
+        ends = float(f"{low * radius:.12g}"), float(f"{high * radius:.12g}")
+        held = Fixed(type="fixed", within=ends).part_of(top).nodes
+        np.testing.assert_array_equal(held, np.flatnonzero((numbers >= low) & (numbers <= high)))
+        np.testing.assert_array_equal(
+            held, np.flatnonzero(is_within((ends[0], 0.0, ends[1], 100.0), along, 60.0 * radius))
+        )
+
+
+def test_places_on_the_edge_of_a_box_are_within() -> None:
+    places = np.array([(0.3, 1.0), (0.31, 1.0), (0.3, -0.1), (-0.9, 2.0)])
+    box = (-0.9, 0.0, -0.9 + 1.2, 2.0)  # the sum is 0.29999999999999993
+    assert is_within(box, places, 2.0).tolist() == [True, False, False, True]
+
+
+def test_a_region_spans_a_scene_also_where_its_end_is_rounded() -> None:
+    whole = (0.1, 0.0, 0.1 + 0.2, 1.0)
+    assert spans_all((0.1, 0.2, 0.3, 0.4), whole, 0)
+    assert not spans_all((0.1, 0.2, 0.3, 0.4), whole, 1)
+    assert not spans_all((0.1, 0.2, 0.299, 0.4), whole, 0)
+
+
+CASE = """
+[packing]
+pattern = "A"
+size = [8.0, 8.0]
+radius = 0.2
+[material]
+density = 2000.0
+p_wave_speed = 300.0
+fric = 0.5
+[[hole]]
+name = "h"
+type = "polygon"
+points = {points}
+[[load]]
+name = "p"
+hole = "h"
+pressure = 1e5
+wave = "w"
+[wave.w]
+type = "cosine"
+amplitude = 1.0
+period = 0.1
+[run]
+duration = 0.1
+"""
+
+
+@pytest.mark.parametrize(
+    "points", [POLYGONS[name] for name in ("square", "notched between disks", "diamond", "horseshoe")]
+)
+def test_the_pressure_in_a_mirrored_hole_is_mirrored(points) -> None:
+    def forces(numbers) -> dict[tuple[int, int], np.ndarray]:
+        case = loads(CASE.format(points=typed(numbers, 0.2, (0.0, 0.0))))
+        scene = build(case)
+        nodes, found = forces_of(case.load[0], scene)
+        places = np.rint(scene.positions[nodes] / 0.2).astype(int).tolist()
+        return dict(zip(map(tuple, places), found, strict=True))
+
+    own, image = forces(np.array(points)), forces([(40 - x, y) for x, y in points])
+    assert {(40 - x, y) for x, y in own} == image.keys()
+    for (x, y), (fx, fy, moment) in own.items():
+        np.testing.assert_allclose(image[40 - x, y], [-fx, fy, -moment], atol=1e-6)
