@@ -13,6 +13,7 @@ from dembound.disks.entry import all_late_by
 from dembound.disks.far import FarDisks
 from dembound.disks.following import Membranes
 from dembound.disks.intact import require_room
+from dembound.disks.material.constants import limits_of
 from dembound.disks.material.wave_front import front_of
 from dembound.disks.membrane import follows, in_run
 from dembound.disks.ram import expected_bytes
@@ -33,7 +34,9 @@ from dembound.disks.stability import choose_step
 from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.trials import trials_of_disks
+from dembound.disks.turns import Turns
 from dembound.disks.within import with_incident_waves
+from dembound.kernels.contacts import UPDATED
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
 from dembound.motion.moving_picture import MovingPicture
 from dembound.motion.paths import Front, Source
@@ -99,7 +102,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         )
 
     def trackers(self, run: Run) -> list[Tracker]:
-        """Membranes of pressures on sides, far disks of laws with a history, and a load factor, if there are any."""
+        """What a case needs: membranes of pressures on sides, far disks, turns of bonds, a load factor."""
         scene, case, system = run.scene, run.scene.case, run.system
         assert isinstance(case, DiskCase)
         assert isinstance(system, DiskSystem)
@@ -107,6 +110,8 @@ class Disks(Kind[DiskCase, DiskScene]):
         found: list[Tracker] = [Membranes(scene)] if follows(scene) else []
         if scene.has_history:
             found.append(FarDisks(scene, retires=case.run.far == "retire"))
+        if limits_of(case.material).geometry != UPDATED:
+            found.append(Turns())
         return [*found, LoadFactor(case, system)] if case.output.load_factor else found
 
     def trials(self, case: DiskCase, *, full: bool = False) -> tuple[list[Trial], list[str]]:

@@ -23,7 +23,7 @@ WALL = 0.4
 class Hole(Table, ABC):
     """An area without particles: particles centred in it, and those it separates from the body, are removed.
 
-    A particle centred on its outline remains. A hole that keeps what is "inside" is the shape of a sample: the particles
+    A particle on its outline remains. A hole that keeps what is "inside" is the shape of a sample: the particles
     outside are removed, and the sides of the scene are those of the sample.
     """
 

@@ -13,6 +13,7 @@ from dembound.disks.side_media import layers_beside, media_of
 from dembound.disks.stepping.load_factor import load_factor_of
 from dembound.disks.stepping.near_ties import OPENED
 from dembound.disks.stepping.system import DiskSystem
+from dembound.disks.turns import Turns
 from dembound.motion.trackers import Run
 
 
@@ -28,6 +29,7 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
         "load_factor": _describe_load_factor(run),
         "forces_at_rest": _describe_forces_at_rest(run),
         "far": _describe_far(run),
+        "turns": _describe_turns(run),
         "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
     }
 
@@ -50,6 +52,12 @@ def _describe_far(run: Run) -> dict[str, Any] | None:
     """Disks that have fallen far below the scene, see `FarDisks.describe`; None if there are none."""
     found = run.state.owners.get(FarDisks.name)
     return found.describe(run.time_step) if isinstance(found, FarDisks) else None
+
+
+def _describe_turns(run: Run) -> dict[str, Any] | None:
+    """The largest turn of a bond, see `Turns.describe`; None where bonds follow the motion."""
+    found = run.state.owners.get(Turns.name)
+    return found.describe(run) if isinstance(found, Turns) else None
 
 
 def asked_stress(scene: DiskScene) -> list[float] | None:

@@ -27,6 +27,7 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.disks.stepping.near_ties import near_tie_warnings
 from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
+from dembound.disks.turns import turn_warnings
 from dembound.meanings import MEANINGS
 from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import energy_warnings, still_moving
@@ -300,6 +301,7 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
             *lasting_force_warnings(summary.get("forces_at_rest")),
             *reach_warnings(summary.get("forces_at_rest")),
             *far_warnings(summary.get("far")),
+            *turn_warnings(summary.get("turns"), scene.case.material.law, has_history=scene.has_history),
             *energy_warnings(scene, summary["energy"]),
         ]
 
