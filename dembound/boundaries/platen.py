@@ -1,7 +1,7 @@
 """Sides that hold their particles, all of them or those within a range: walls, grips, platens and jaws of tests."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 from pydantic import field_validator
 
@@ -24,6 +24,13 @@ class Holding(Keeping):
         "there or at its ends are held, others are free; absent: all are held",
     )
 
+    reactions: Literal["kept", "none"] = quantity(
+        "kept",
+        unit="1",
+        help='of a static side: "kept": its reactions act on as constant forces; "none": they end when the run begins, '
+        "so that the support is taken away",
+    )
+
     @field_validator("within")
     @classmethod
     def _ascends(cls, within: tuple[float, float] | None) -> tuple[float, float] | None:
@@ -32,8 +39,10 @@ class Holding(Keeping):
         return within
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """A range of an end of a bar, or one beside the disks."""
+        """A range of an end of a bar, or one beside the disks, and reactions, which are of the static stage."""
         yield from super().problems(side, tables)
+        if "reactions" in self.model_fields_set:
+            yield f"boundary.{side}.reactions: is of the static stage; give it to static.boundary.{side}"
         yield from beside_disks(f"boundary.{side}", side, self, tables)
 
     def on_whole_side(self) -> Self:

@@ -77,6 +77,11 @@ class Load(Table):
             return (0, 1)
         return tuple(axis for axis, value in enumerate(self.vector) if value != 0.0)
 
+    def moves_along(self, axis: int) -> bool:
+        """Whether it moves a body as a whole along an axis; pressures in holes and on opposite sides are in balance."""
+        along = [side for side in self.sides or () if normal_axis(side) == axis]
+        return self.hole is None and axis in self.axes and len(along) != 2
+
     @property
     def is_everywhere(self) -> bool:
         """Whether the load acts on all particles."""

@@ -74,15 +74,12 @@ def _unheld_loads(
     """Steady loads against which the body, or the free-field column, is not held."""
     beside = any(table.needs_column or (table.is_outside and has_column) for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
-        if load.wave is not None or load.hole is not None:  # a pressure in a hole is in balance
+        if load.wave is not None:
             continue
         on_column = beside and load.is_everywhere
         what, where = ("free-field column", "bottom or top") if on_column else ("body", "a side")
         for axis in load.axes:
-            along = [side for side in load.sides or () if normal_axis(side) == axis]
-            if len(along) == 2:
-                continue  # so are pressures on opposite sides
-            if not _holds(static, ("bottom", "top") if on_column else SIDES, motion, axis):
+            if load.moves_along(axis) and not _holds(static, ("bottom", "top") if on_column else SIDES, motion, axis):
                 yield (
                     f"static.boundary: nothing holds the {what} along {'xy'[axis]} against {place}; "
                     f'give {where} "fixed" or "roller"'

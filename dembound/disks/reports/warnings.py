@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries import SIDES
+from dembound.boundaries import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import MODULI_KEYS, with_history
@@ -74,6 +74,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_excavated_stiffly(scene),
         *_of_each_layer(scene, _unlike_strengths),
         *_steady_without_static(scene),
+        *_hangs(scene),
         *_of_each_layer(scene, _locked_in),
         *_of_each_layer(scene, _settles_in_tension),
         *wave_warnings(scene, time_step),
@@ -177,6 +178,25 @@ def _steady_without_static(scene: DiskScene) -> Iterator[str]:
     for load in scene.case.load:
         if load.wave is None:
             yield f"load.{load.name}: is steady, and without [static] acts suddenly at t = 0{_gives_way(scene, load)}"
+
+
+def _hangs(scene: DiskScene) -> Iterator[str]:
+    """Supports of the static stage that are not there in the run, where reactions alone bear the steady loads."""
+    case, static = scene.case, scene.case.static
+    if static is None or scene.seam is not None or scene.outside is not None:
+        return
+    rows = scene.supports
+    borne = set(rows.component[rows.prescribed | (rows.stiffness > 0.0) | (rows.damping > 0.0)].tolist())
+    for axis in sorted({0, 1} - borne - {*scene.ground.held}):
+        loads = [load.name for load in case.load if load.wave is None and load.moves_along(axis)]
+        sides = [side for side, table in static.boundary.items() if axis in table.prescribed(normal_axis(side))]
+        kept = [side for side in sides if getattr(static.boundary[side], "reactions", "") == "kept"]
+        if loads and kept:
+            yield (
+                f"static.boundary.{kept[0]}: bears load.{loads[0]} along {'xy'[axis]}, as no side does in the run; its "
+                "reactions stay as constant forces, on which the body goes on resting: hold a side, or take the "
+                'support away with reactions = "none"'
+            )
 
 
 def _gives_way(scene: DiskScene, load: Load) -> str:

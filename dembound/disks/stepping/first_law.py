@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dembound.boundaries.platen import Holding
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.elastic_again import elastic_again, never_elastic_again, settled_refused
 from dembound.disks.stepping.balance import Balance
@@ -63,8 +64,20 @@ def balanced(
     """
     shift = forces.shift(datum)
     inner = forces.with_history(datum, fresh=not law.goes_on) if scene.has_history else forces.elastic(datum)
-    balance = Balance(scene, shift - inner - load, load, datum, forces.across(disks.contacts))
-    return balance, shift - forces.elastic(datum)
+    force = shift - inner - load
+    ended = np.where(_let_go(scene), force, 0.0)
+    balance = Balance(scene, force - ended, load, datum, forces.across(disks.contacts))
+    return balance, shift - forces.elastic(datum) - ended
+
+
+def _let_go(scene: DiskBody) -> np.ndarray:
+    """Mask (3, n) of what static sides held whose reactions end when the run begins."""
+    found, static = np.zeros((3, scene.count), dtype=np.bool_), scene.case.static
+    for side, table in {}.items() if static is None else static.boundary.items():
+        if side in scene.edges and isinstance(table, Holding) and table.reactions == "none":
+            edge = scene.edges[side]
+            found[np.array(table.prescribed(edge.axis))[:, None], table.part_of(edge).nodes] = True
+    return found
 
 
 def not_balanced(law: FirstLaw, scene: DiskBody, forces: RestForces, load: np.ndarray) -> np.ndarray:

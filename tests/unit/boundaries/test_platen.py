@@ -12,6 +12,7 @@ from dembound.boundaries.support import Edge, SupportBuilder
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.disks.reflection.bricks import end_scene
+from dembound.errors import CaseError
 from dembound.kinds import loads
 
 ALONG = np.array([0.0, 1.0, 2.0, 3.0])
@@ -81,3 +82,9 @@ rise = 0.01
 """
     case = as_kind(loads(BODY + jaw), DiskCase, "is of disks")
     assert len(end_scene(case, "top").supports.node) > 0
+
+
+def test_reactions_are_of_the_static_stage() -> None:
+    side = '[boundary.left]\ntype = "fixed"\nreactions = "none"\n'
+    with pytest.raises(CaseError, match=r"boundary\.left\.reactions: is of the static stage; give it to static"):
+        loads(BODY + side)

@@ -16,8 +16,13 @@ from disk_systems import (
     settled,
     shaken,
 )
+from small_cases import small
 
+from dembound.disks.kind import Disks
+from dembound.disks.reports.warnings import disk_warnings
+from dembound.disks.scene import build
 from dembound.disks.stepping.system import DiskSystem
+from dembound.motion.simulation import Simulation
 
 
 @pytest.mark.parametrize("at_once", [False, True])
@@ -82,3 +87,35 @@ def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(loose,
     assert np.abs(found).max() > 1e6 * 20.0 * EPS * scale
     assert [part.name for part in system.parts] == (["column", "body"] if boundary else ["body"])
     assert len(system.ties) == bool(boundary)
+
+
+@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
+@pytest.mark.parametrize("side", ["fixed", "roller"])
+def test_a_body_whose_support_is_taken_away_falls_freely(law: str, side: str) -> None:
+    """Its centre falls by ½gt² while waves run in it; with its reactions it hangs where it was."""
+    kept, fallen = (
+        small(
+            {
+                "packing": {"pattern": "A", "size": [1.5, 1.5], "radius": 0.25},
+                "material": {"law": law, "density": 2000.0, "p_wave_speed": 300.0, "fric": 0.5},
+                "load": [{"name": "gravity", "acceleration": [0.0, -9.81]}],
+                "static": {"boundary": {"bottom": {"type": side, "reactions": reactions}}},
+                "run": {"duration": 0.1},
+                "output": {"pictures": False},
+            }
+        )
+        for reactions in ("kept", "none")
+    )
+    moved = []
+    for case in (kept, fallen):
+        scene, steps, step = build(case), 50, 1e-4
+        begun = Disks().begin(scene, step, lambda *_: None)
+        run = Simulation(scene, step, system=begun.system, datum=begun.datum)
+        run.advance(steps)
+        moved.append(np.average((run.state.displacement - run.state.datum)[:2], axis=1, weights=scene.mass))
+    np.testing.assert_allclose(moved[0], 0.0, atol=1e-15)
+    time = steps * step  # leapfrog from rest: g Δt² (1 + 2 + … + n)
+    np.testing.assert_allclose(moved[1], [0.0, -0.5 * 9.81 * time * (time + step)], atol=1e-4 * 9.81 * time**2)
+    hangs = [[line for line in disk_warnings(build(case), step) if "hold a side" in line] for case in (kept, fallen)]
+    assert [len(lines) for lines in hangs] == [1, 0]
+    assert hangs[0][0].startswith("static.boundary.bottom: bears load.gravity along y, as no side does in the run")
