@@ -5,6 +5,7 @@ from pathlib import Path
 
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
+from dembound.errors import RunError
 from dembound.machine import memory_here
 from dembound.motion.echoes import echoes
 from dembound.motion.kind import Plan
@@ -44,7 +45,11 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
     yield "memory", f"about {in_words(scene.largest_memory)} at its peak{_here()}"
     yield "disk", space_in_words(planned, results)
     left_out = ", ".join(["building", *planned.kind.not_estimated(scene.case), "pictures"])
-    seconds = _estimate(planned)
+    try:
+        seconds = _estimate(planned)
+    except RunError as error:
+        yield "estimated time", f"unknown, as in the first steps {error}"
+        return
     static = ""
     if planned.kind.settles(scene.case):  # 3,300 to 14,300 steps in the shipped cases, 0.1 to 40 crossings of S waves
         many = with_unit(1000.0 * seconds / planned.steps, "s", 2)

@@ -177,7 +177,8 @@ def compare_histories(
 
     End and reference are the values of the component in both at the end.
 
-    All twins in a free-field column have one line, for the twin with the largest RMS.
+    All twins in a free-field column have one line, for the twin with the largest RMS. Monitors at which the reference
+    does not move are left out.
 
     If waves enter a run later or earlier than the reference because of other disks or sides, the shift is subtracted.
     """
@@ -186,8 +187,9 @@ def compare_histories(
     from dembound.results.reader import understood
 
     files = [results_file(path) for path in (reference, *results)]
+    still: list[str] = []
     with understood(*files):
-        found = compare(files[0], files[1:], quantity.value, as_recorded)
+        found = compare(files[0], files[1:], quantity.value, as_recorded, still.append)
     at_ends = [value * SCALES[quantity.value] for line in found for value in (line.last, line.reference_last)]
     ends, unit = in_one_unit(at_ends, found[0].unit.removeprefix("M"))
     has_across = any(line.across is not None for line in found)
@@ -200,6 +202,8 @@ def compare_histories(
     for run, shift in {line.run: line.shift for line in found if line.shift}.items():
         how = "later" if shift > 0.0 else "earlier"
         out.print(f"{run}: waves enter {abs(shift):.2g} s {how} than in the reference; this shift is subtracted")
+    if still:
+        out.print(f"left out, as the reference has no {quantity.value} there: {', '.join(dict.fromkeys(still))}")
     for line in found:
         if line.apart > 0.0:
             places = f"{line.place} in {line.run}, {line.reference_place} in the reference"

@@ -5,6 +5,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from dembound.errors import RunError
 from dembound.interrupts import Stopped, look, put_off
 from dembound.kernels import loop, tables
 from dembound.kernels.calls import Kept
@@ -182,7 +183,10 @@ class Simulation:
             measured = tables.NO_SIDES
             if self.sides is not None:
                 measured = self.sides.table(signals[done:], self.system, self.side_samples, self.state.side_work)
-            done += self._advance_under_one_law(record[done:], remaining, measured)
+            advanced = self._advance_under_one_law(record[done:], remaining, measured)
+            if advanced == 0 and not np.isfinite(self.state.u).all():  # pairs cannot be listed, so no step follows
+                raise RunError(f"the motion grew without bound by t = {self.state.step * self.time_step:g} s")
+            done += advanced
 
     def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports, sides: tables.Sides) -> int:
         """Do as many of these steps as the laws in use, with their pairs or bonds, are valid; returns their number."""

@@ -1,6 +1,6 @@
 """Differences between histories of runs and those of a reference run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,6 +14,9 @@ from dembound.results.resample import at_times
 
 SAME_PLACE = 1e-9
 """Distance of two places over their distance from the origin up to which they are equal but for rounding."""
+
+STILL = 1e-9
+"""Motion over the largest at any monitor of the reference up to which a monitor is still, but for rounding."""
 
 SMALL = 0.01
 """Share of the motion in the reference below which a component, as a small residual, has no own error."""
@@ -49,24 +52,42 @@ class Difference:
     reference_place: str
 
 
-def compare(reference: Path, runs: list[Path], quantity: Quantity, as_recorded: bool = False) -> list[Difference]:
+def compare(
+    reference: Path,
+    runs: list[Path],
+    quantity: Quantity,
+    as_recorded: bool = False,
+    leave_out: Callable[[str], None] = lambda monitor: None,
+) -> list[Difference]:
     """Differences of runs from a reference run at the monitors they share, over the time they share.
 
     Waves enter disks a little later or earlier than through the plane of a side, depending on disks and side. If both
     records have this delay, the difference of the delays is subtracted, unless they are compared as_recorded. The runs'
     histories are interpolated at the reference's times. All twins in a free-field column have one line for each run,
-    with the largest error. Raises CaseError when nothing can be compared.
+    with the largest error. Monitors at which the reference is still are left out, by name. Raises CaseError when
+    nothing can be compared.
     """
     names = record_names([reference, *runs])[1:]
     expected, late = read_histories(reference, quantity), delay_of(reference)
-    found = []
+    least = STILL * max((float(np.abs(each.values[:, :2]).max(initial=0.0)) for each in expected.values()), default=0.0)
+    found, is_shared = [], False
     for name, path in zip(names, runs, strict=True):
         own = read_histories(path, quantity).items()
         delays = () if as_recorded else (delay_of(path), late)
         shift = _shift(*delays, reference=expected)
         shared = [(key, history) for key, history in own if key in expected]
-        lines = [_difference(name, key, history, expected[key], quantity, shift) for key, history in shared]
+        is_shared |= bool(shared)
+        lines = []
+        for key, history in shared:
+            if (line := _difference(name, key, history, expected[key], quantity, shift, least)) is None:
+                leave_out(key)
+            else:
+                lines.append(line)
         found += _with_one_twin(lines)
+    if not found and is_shared:
+        raise CaseError(
+            [f"{reference}: its {quantity} is zero at the monitors, and over the time, that the runs share"]
+        )
     if not found:
         raise CaseError([f"{reference}: has no monitor in common with the runs to compare"])
     return found
@@ -91,16 +112,22 @@ def _with_one_twin(lines: list[Difference]) -> list[Difference]:
 
 
 def _difference(
-    run: str, monitor: str, history: MonitorRecord, reference: MonitorRecord, quantity: Quantity, shift: float
-) -> Difference:
-    """One monitor's difference, the history made earlier by a shift, s."""
+    run: str,
+    monitor: str,
+    history: MonitorRecord,
+    reference: MonitorRecord,
+    quantity: Quantity,
+    shift: float,
+    least: float,
+) -> Difference | None:
+    """A monitor's difference, the history made earlier by a shift, s; None if the reference moves by at most least."""
     if len(history.time) == 0 or len(reference.time) == 0:
         raise CaseError([f"monitor {monitor}: has no samples, as a run was stopped at its start"])
     values, expected = on_common_clock(
         history.time - shift, history.values[:, :2], reference.time, reference.values[:, :2]
     )
-    if not expected.any():
-        raise CaseError([f"monitor {monitor}: its {quantity} is zero in the reference"])
+    if np.abs(expected).max(initial=0.0) <= least:
+        return None
     errors, sizes, column = values - expected, np.linalg.norm(expected, axis=0), largest_component(expected)
     across = [k for k, size in enumerate(sizes) if k != column and size >= SMALL * np.hypot.reduce(sizes)]
     of_twin = monitor.endswith(FREE_FIELD)  # columns beside different boxes begin elsewhere, only heights count

@@ -239,6 +239,10 @@ def _large_strains(scene: DiskScene) -> Iterator[str]:
     for load in () if compared else scene.case.load:
         what, stress = _load_stress(scene, load)
         yield from large_stress(f"load.{load.name}: {what}", stress, min(moduli), reason)
+    if (static := scene.case.static) is not None and static.stress is not None:
+        xx, yy, xy = static.stress
+        largest = abs(0.5 * (xx + yy)) + float(np.hypot(0.5 * (xx - yy), xy))
+        yield from large_stress("static.stress: its largest principal stress", largest, min(moduli), reason)
     strengths = {
         own.key(key): (strength, modulus)
         for modulus, own in sorted(zip(moduli, owns, strict=True), key=lambda each: -each[0])  # the softest layer last

@@ -73,8 +73,19 @@ def test_runs_that_cannot_be_compared_are_refused(tmp_path):
     with pytest.raises(CaseError, match="has no monitor in common"):
         compare(paths[0], paths[1:], "velocity")
     still = record(tmp_path / "still.h5", "still", {"a": (TIME, 0.0 * TIME, 0.0 * TIME)})
-    with pytest.raises(CaseError, match="monitor a: its velocity is zero"):
+    with pytest.raises(CaseError, match=r"still\.h5: its velocity is zero at the monitors, and over the time"):
         compare(still, paths[:1], "velocity")
+
+
+def test_what_is_still_in_the_reference_is_left_out_and_the_others_are_compared(tmp_path):
+    moves, noise, late = np.sin(TIME), 1e-12 * np.sin(50.0 * TIME), 1.0 * (TIME > 0.6)
+    columns = {"P": moves, "P.free_field": noise, "Q": 0.0 * TIME, "late": late}
+    reference = record(tmp_path / "a.h5", "a", {name: (TIME, x, noise) for name, x in columns.items()})
+    time, left_out = 0.5 * TIME, []
+    run = record(tmp_path / "b.h5", "b", {name: (time, 1.1 * np.sin(time), 0.0 * time) for name in columns})
+    found = compare(reference, [run], "velocity", leave_out=left_out.append)
+    assert [(line.monitor, round(line.rms, 4)) for line in found] == [("P", 0.1)]
+    assert left_out == ["P.free_field", "Q", "late"]
 
 
 def test_stresses_are_compared_in_megapascals(spalled_run, tmp_path):

@@ -66,6 +66,16 @@ def test_a_hole_between_sides_that_give_way_is_warned_of(bar, changes: dict, too
     assert [too_far in line for line in found] == [True] * (too_far is not None)
 
 
+@pytest.mark.parametrize(("share", "said"), [(0.02, False), (0.04, True)])
+def test_a_stress_at_rest_that_strains_beyond_solids_is_warned_of(bar, share: float, said: bool) -> None:
+    body = {**SLOW, "motion.held": []}
+    stiffness = float(np.diag(build(bar(body)).ground.material_tensor)[:2].min())
+    for stress in ([-1.0, -0.5, 0.0], [0.0, 0.0, 1.0], [-0.5, -0.5, 0.5]):  # of each the largest principal one is 1
+        static = {"stress": [share * stiffness * each for each in stress]}
+        found = [line for line in warned(bar({**body, "static": static})) if "static.stress: its largest" in line]
+        assert [f"{100.0 * share:.2g} % of the stiffness" in line for line in found] == [True] * said
+
+
 @pytest.mark.parametrize("settles", [False, True])
 def test_a_steady_load_without_a_static_stage_is_warned_of(bar, settles: bool) -> None:
     weight = {"name": "weight", "acceleration": [10.0, 0.0]}
