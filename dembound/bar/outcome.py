@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from dembound.results.warnings import of_supplied
 from dembound.words import percent, with_unit
 
 GAINED = 1e-3
@@ -28,11 +29,11 @@ def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
         facts.append(summary["spalls_note"])
     if not summary["spalls"] and not summary["breaks_at_ends"] and summary["bar"]["strength"] is not None:
         facts.append("no spall")
-    gained = -summary["energy"]["crack"]
-    if gained > GAINED * abs(summary["energy"]["outside"]):
+    gained, supplied = -summary["energy"]["crack"], summary["energy"]["supplied"]
+    if gained > GAINED * supplied:
         facts.append(
-            f"bonds broke within single steps, adding {gained / abs(summary['energy']['outside']):.1%} of the energy, "
-            "take a smaller bar.spacing or run.courant"
+            f"bonds broke within single steps, adding {of_supplied(gained, supplied)}, take a smaller bar.spacing or "
+            "run.courant"
         )
     if error := summary["energy"]["relative_error"]:
         facts.append(f"largest error of the energy balance: {percent(error)}")

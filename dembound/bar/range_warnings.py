@@ -10,6 +10,7 @@ import numpy as np
 
 from dembound.bar.banded import ROUNDING
 from dembound.bar.scene import BarScene
+from dembound.bar.stability import BELOW
 from dembound.casefile.bar import BarCase
 
 ALIKE = 1e-3
@@ -100,22 +101,22 @@ def _held_in_flight(case: BarCase) -> bool:
 
 
 def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
-    """Impacts: velocities behind their fronts oscillate unless the time step is the Δx/c of all ranges."""
+    """Impacts: velocities behind their fronts oscillate, least at a time step just below the Δx/c of all ranges."""
     if not any(each.velocity for each in case.bar.range):
         return
     steps = np.array([part.length / part.cells / part.speed for part in case.bar.parts])
     if np.ptp(steps) < ALIKE * steps.max():
-        if time_step < (1.0 - ALIKE) * steps.max():
+        if time_step < (BELOW - ALIKE) * steps.max():
             yield (
                 f"run.courant: is {time_step / steps.max():.3g}, so fronts of impacts overshoot by some 20 % of the "
-                "stress; as Δx/c is alike in all ranges, courant = 1.0 has none of it"
+                f"stress and ring; as Δx/c is alike in all ranges, courant = {BELOW:g} makes it shortest"
             )
         return
     listed = ", ".join(f"{1e6 * step:.3g}" for step in steps)
     yield (
         f"bar.range: Δx/c differs, {listed} µs, so fronts of impacts oscillate from step to step, by some 20 % of the "
         "stress, which can break bonds though the stress at nodes does not show it; choose spacings with one Δx/c, and "
-        "run.courant = 1.0"
+        f"run.courant = {BELOW:g}"
     )
 
 

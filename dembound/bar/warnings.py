@@ -11,6 +11,7 @@ from dembound.bar.facts import PERCENT, cells_of_waves
 from dembound.bar.lattice import carrying_lattices
 from dembound.bar.range_warnings import monitors_between_sections, monitors_in_gaps, range_warnings
 from dembound.bar.scene import BarScene, bar_medium, end_supports
+from dembound.bar.stability import shortened_in_words
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
 from dembound.casefile.bar import BarCase
@@ -51,6 +52,7 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
     case = scene.case
     times = list(time_warnings(case, time_step, case.bar.travel_time))
     return [
+        *filter(None, [shortened_in_words(scene, time_step)]),
         *_too_few_cells(scene, time_step),
         *(times or ends_too_soon(case)),  # with doubtful times of waves the second check means nothing
         *_dashpots_at_soft_ends(case),

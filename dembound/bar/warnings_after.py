@@ -25,9 +25,6 @@ if TYPE_CHECKING:
 NOTHING = 0.05
 """Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
 
-SWINGING = 0.3
-"""Energy of changes within steps over the largest kinetic energy, above which a warning is given; fronts have 0.01."""
-
 
 def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
     """Warnings from the summary and record of a run of a bar, one line each."""
@@ -41,30 +38,8 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
             *_torn_by_the_load(scene.case, summary),
             *_outside_the_rates(scene.case, summary),
             *_no_tension(scene.case, file),
-            *_swings(scene.case, file),
-            *energy_warnings(scene, summary["energy"]),
+            *energy_warnings(scene, summary["energy"], file),
         ]
-
-
-def _swings(case: BarCase, file: h5py.File) -> Iterator[str]:
-    """A warning about velocities in snapshots that oscillate from step to step, as after impacts at the step limit.
-
-    Snapshots have velocities of half steps. Monitors have the mean of two half steps, and the stress of a node is the
-    mean over both its springs; in these means the oscillation cancels.
-    """
-    if "energy" not in file or not any(each.interface == "contact" for each in case.bar.range):
-        return
-    kinetic, within = (file[f"energy/{name}"][:] for name in ("kinetic", "stepping"))
-    if not len(kinetic) or -float(within.min()) <= SWINGING * float(kinetic.max()):
-        return
-    snapshots = [group["velocity"][:, 0] for group in snapshots_of(file)]
-    swing = max((0.5 * float(np.abs(np.diff(each)).max()) for each in snapshots if len(each) > 1), default=0.0)
-    if swing > 0.0:
-        breaks = "" if np.isinf(case.bar.least_strength) else "; it loads springs, too, and may cause late breaks"
-        yield (
-            f"output.snapshots: their velocities oscillate from step to step, by up to {swing:.2g} m/s, which impacts "
-            f"leave at the limit of the time step; stresses and monitors are free of it{breaks}"
-        )
 
 
 def _open_contacts(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:

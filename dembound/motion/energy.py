@@ -8,8 +8,9 @@ contacts take or give as they open or close within a step has its own column. Th
 normals and from rounding.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,9 @@ GAIN = 0.5
 
 ROUNDING = 1e-9
 """Share of the largest energy below which energies count as zero: rounding errors of sums over contacts are smaller."""
+
+OPPOSED = 50.0
+"""Share as of `Opposed` at which a run stops: 1/(1 − r²), which no step of up to r = 0.99 of the limit can exceed."""
 
 AT_REST = 1e-13
 """Share of the energy stored at the start below which supplied energy is rounding, as for a body at rest."""
@@ -73,6 +77,36 @@ class SideEntry(NamedTuple):
     came_in: float
     absorbed: float
     stored: float
+
+
+class Opposed(NamedTuple):
+    """The two terms of the ledger that cancel most, by name, and the size of the smaller one over all energy there was.
+
+    At a share r of the step's limit the highest mode has the energy E = strain (1 − r²) + kinetic energy of whole
+    steps, so that the strain energy may be E/(1 − r²) and `stepping` −r² of it: near r = 1 both are swings from step to
+    step. Above a share of 1 they, or other terms, cannot be energies of waves.
+    """
+
+    high: str
+    low: str
+    share: float
+
+
+def opposed(energy: Mapping[str, Any]) -> Opposed:
+    """The terms that cancel most at any entry; energy : values (k,), or one, by the names of `Entry`.
+
+    All energy there was is the largest supplied, and what is less stored than at the start.
+    """
+    stored = np.atleast_1d(energy["contact"] + energy["bond"])
+    names = ("kinetic", "damping", "friction", "crack", "closing", "stepping")
+    terms = {"contact and bond": stored} | {name: np.atleast_1d(energy[name]) for name in names}
+    values = np.array(list(terms.values()))
+    there = np.max(energy["supplied"]) + np.maximum(0.0, -stored)
+    smaller = np.minimum(values.max(axis=0), -values.min(axis=0))
+    shares = np.divide(smaller, there, out=np.zeros_like(there), where=there > 0.0)
+    worst = int(shares.argmax())
+    high, low = (list(terms)[index(values[:, worst])] for index in (np.argmax, np.argmin))
+    return Opposed(high, low, float(shares[worst]))
 
 
 class _Begun(NamedTuple):
@@ -197,7 +231,7 @@ class Ledger(Tracker):
         return np.zeros(0) if run.sides is None else run.sides.stored(u, run.state.datum)
 
     def _watch(self, run: Run, u: np.ndarray) -> None:
-        """Raise RunError if the run has gained energy without supply, as with too large a step for its law.
+        """Raise RunError if the run has gained energy without supply, or if two terms are large and opposite.
 
         Damping may give back what it has taken and, as strain energy is that of unrelaxed moduli, at most as much as is
         stored at displacements u (3, slots), which are then measured from the start.
@@ -212,6 +246,13 @@ class Ledger(Tracker):
             raise RunError(
                 f"the run has gained {gained:.3g} {self._unit} without input until t = {last.time:g} s, when loads and "
                 f"boundaries had supplied {came:.3g} {self._unit} at most; take {run.scene.against_growth}"
+            )
+        high, low, share = opposed(vars(last))
+        if share > OPPOSED:
+            raise RunError(
+                f"the velocities swing from step to step without bound: at t = {last.time:g} s {low} and {high} of the "
+                f"energy ledger are {share:.3g} times all the energy there was, and opposite; take a step of "
+                f"{np.sqrt(1.0 - 1.0 / OPPOSED):.2g} of the stability limit at most, and waves that rise over several"
             )
 
     @property

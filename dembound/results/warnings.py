@@ -10,7 +10,9 @@ import numpy as np
 
 from dembound.boundaries import driven_components
 from dembound.casefile.magnitudes import waves_used
+from dembound.motion.energy import opposed
 from dembound.motion.scene import Scene
+from dembound.results.reader import energy_of
 from dembound.words import percent
 
 if TYPE_CHECKING:
@@ -100,18 +102,28 @@ def _why_moving(scene: Scene) -> str:
     )
 
 
-def energy_warnings(scene: Scene, energy: Mapping[str, float]) -> Iterator[str]:
-    """Warnings about energy lost or gained by the length of the step, and about unaccounted energy.
+def of_supplied(energy: float, supplied: float) -> str:
+    """An energy in words, as a share of the supplied energy, which may be 0; both in one unit."""
+    return f"{percent(energy / supplied)} of the supplied energy" if supplied > 0.0 else "energy though none came in"
 
-    energy : the entry of the summary.
+
+def energy_warnings(scene: Scene, energy: Mapping[str, float], file: h5py.File) -> Iterator[str]:
+    """Warnings about energy lost or gained by the length of the step, about unaccounted energy, and terms that cancel.
+
+    energy : the entry of the summary. file : the open record.
     """
     supplied, closing = energy["supplied"], energy["closing"]
+    high, low, share = opposed(energy_of(file))
+    if share > 1.0:
+        yield (
+            f"energy.{low}: is opposite to {high}, both up to {share:.3g} times all the energy there was: velocities "
+            "and forces swing from step to step by more than waves do; take shorter steps, or waves that rise slower"
+        )
     if abs(closing) > UNEXPLAINED * supplied:
         key = "safety" if scene.case.run.time_step == "auto" else "time_step"
         yield (
             f"run.{key}: contacts that open and close within a step have {'taken' if closing > 0.0 else 'added'} "
-            f"{percent(abs(closing) / supplied if supplied > 0.0 else math.inf)} of the supplied energy; "
-            "shorter steps change it less"
+            f"{of_supplied(abs(closing), supplied)}; shorter steps change it less"
         )
     if (error := energy["relative_error"]) > UNEXPLAINED:
         yield f"energy.error: {percent(error)} of the supplied energy is unaccounted for; take shorter steps"

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.bar.scene import build_bar
-from dembound.bar.stability import choose_step
+from dembound.bar.stability import unit_step
 from dembound.casefile.bar import BarCase
 from dembound.kinds import load, with_changes
 from dembound.motion.energy import Ledger
@@ -34,7 +34,7 @@ def test_gauges_see_the_steps_of_a_specimen() -> None:
     case = unshaped()
     striker, incident, specimen, _ = case.bar.parts
     scene = build_bar(case)
-    step = choose_step(scene)[0]
+    step = unit_step(scene)  # at the limit, where bodies may drift once a contact has opened, fronts are exact
     simulation = Simulation(scene, step, scene.probes)
     ledger = Ledger(simulation, 50)
     simulation.track(ledger)

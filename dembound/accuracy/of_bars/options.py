@@ -13,7 +13,7 @@ from dembound.accuracy.differences import keeps
 from dembound.bar import step_cost
 from dembound.bar.banded import ROUNDING
 from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.stability import own_step, unit_step
+from dembound.bar.stability import is_bounded_at_limit, own_step, unit_step
 from dembound.casefile.bar import BarCase
 from dembound.errors import DemboundError
 from dembound.methods import FiniteDifference
@@ -219,8 +219,8 @@ def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequ
     limit = scene.step_limit()
     steps: dict[float, Changes] = {own_step(scene, limit): {}}
     others = {key: value for key, value in case.run.given().items() if key not in STEP_KEYS}
-    unit = unit_step(scene)
-    for step, key, value in [(unit, "courant", 1.0), *((share * limit, "safety", share) for share in SHARES)]:
+    at_one = [(unit_step(scene), "courant", 1.0)] * is_bounded_at_limit(scene)
+    for step, key, value in [*at_one, *((share * limit, "safety", share) for share in SHARES)]:
         steps.setdefault(step, {"run": others | {key: value}})
     for step, of_step in steps.items():
         choice = changes | of_step

@@ -322,7 +322,7 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
             *reach_warnings(summary.get("forces_at_rest")),
             *far_warnings(summary.get("far")),
             *turn_warnings(summary.get("turns"), scene.case.material.law, has_history=scene.has_history),
-            *energy_warnings(scene, summary["energy"]),
+            *energy_warnings(scene, summary["energy"], file),
         ]
 
 

@@ -12,7 +12,7 @@ def outcome(spalls: list[dict], note: str | None = None, **more) -> list[str]:
         "breaks_at_ends": {},
         "spalls_note": note,
         "bar": {"strength": 1e7},
-        "energy": {"crack": 0.0, "outside": 1.0, "relative_error": 0.0},
+        "energy": {"crack": 0.0, "supplied": 1.0, "relative_error": 0.0},
     }
     return bar_outcome(summary | more)
 
@@ -35,3 +35,11 @@ def test_a_bar_that_comes_off_an_end_that_holds_it_has_not_spalled() -> None:
     off = {"right": {"start": [1.99, 2.0], "end": [1.99, 2.0], "time": 7.41e-4}}
     ends = {"left": {"type": "free"}, "right": {"type": "fixed"}}
     assert outcome([], breaks_at_ends=off, boundaries=ends) == ["broke at the right end (fixed), 741 µs"]
+
+
+@pytest.mark.parametrize(
+    ("supplied", "said"), [(40.0, "5 % of the supplied energy"), (0.0, "energy though none came in")]
+)
+def test_energy_added_by_breaks_is_a_share_of_what_was_supplied_if_anything_was(supplied: float, said: str) -> None:
+    (_, line) = outcome([], energy={"crack": -2.0, "supplied": supplied, "relative_error": 0.0})
+    assert line == f"bonds broke within single steps, adding {said}, take a smaller bar.spacing or run.courant"

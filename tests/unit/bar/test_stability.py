@@ -3,7 +3,7 @@
 import pytest
 
 from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.stability import choose_step
+from dembound.bar.stability import choose_step, shortened_in_words
 from dembound.errors import CaseError
 
 CENTRAL = {"method": {"type": "finite_difference"}}
@@ -53,3 +53,37 @@ def test_a_step_is_that_of_its_courant_number_or_a_share_of_the_limit(spalling) 
     assert choose_step(build_bar(spalling({"run.courant": 1.9})))[0] == pytest.approx(1.9 * UNIT, rel=1e-15)
     step, limit = choose_step(build_bar(spalling({**CENTRAL, "run": {"duration": 1e-3, "safety": 0.75}})))
     assert step == 0.75 * limit
+
+
+ALIKE = [{"name": "a", "length": 0.5}, {"name": "b", "length": 0.5, "spacing": 0.0125, "wave_speed": 500.0}]
+TOUCHING = [ALIKE[0], ALIKE[1] | {"interface": "contact"}]
+UNLIKE = [ALIKE[0], ALIKE[1] | {"wave_speed": 500.1}]
+PERIDYNAMIC = {"method": {"type": "peridynamics", "horizon": 3}}
+
+
+@pytest.mark.parametrize(
+    ("changes", "run", "line"),
+    [
+        (CENTRAL, {"courant": 1.0}, ""),
+        (PATCH, {"safety": 1.0}, ""),
+        (CENTRAL | {"bar.range": ALIKE}, {"courant": 1.0}, ""),
+        (CENTRAL | {"bar.range": TOUCHING}, {"courant": 1.0}, "run.courant: is 1, shortened to 0.99, 0.99 of the stab"),
+        (PATCH | {"bar.range": TOUCHING}, {"safety": 0.999}, "run.safety: is 0.999, shortened to 0.99, 0.99 of the st"),
+        (
+            CENTRAL | {"bar.range": TOUCHING},
+            {"time_step": 0.991 * UNIT},
+            "run.time_step: is 2.4775e-05 s, shortened to",
+        ),
+        (CENTRAL | {"bar.range": TOUCHING}, {"courant": 0.99}, ""),
+        (CENTRAL | {"bar.range": UNLIKE}, {"courant": 1.0}, "run.courant: is 1, shortened to 0.990"),
+        (PERIDYNAMIC, {"safety": 1.0}, "run.safety: is 1, shortened to 0.99"),
+        ({"method": {"type": "switch", "horizon": 3, "before": "peridynamics"}}, {"safety": 1.0}, "run.safety: is 1, "),
+    ],
+)
+def test_only_waves_that_are_exact_may_have_a_step_at_the_limit(spalling, changes, run, line) -> None:
+    scene = build_bar(spalling({**changes, "run": {"duration": 1.5e-3, **run}}))
+    step, limit = choose_step(scene)
+    said = shortened_in_words(scene, step)
+    assert said.startswith(line)
+    assert bool(said) == bool(line)
+    assert (step == 0.99 * limit) == bool(line) or run == {"courant": 0.99}

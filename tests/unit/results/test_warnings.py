@@ -1,6 +1,7 @@
 """Warnings after a run, for any kind of body."""
 
 import shutil
+from dataclasses import fields
 from pathlib import Path
 
 import h5py
@@ -9,6 +10,7 @@ import pytest
 
 from dembound.disks.reports.warnings import warnings_after_disks
 from dembound.disks.scene import build
+from dembound.motion.energy import Entry
 
 TIME = np.linspace(0.0, 1.0, 1001)
 
@@ -24,6 +26,8 @@ def moved(small_run, tmp_path):
         path = Path(shutil.copy(small_run, tmp_path / "run.h5"))
         with h5py.File(path, "r+") as file:
             del file["histories"], file["cracks"]
+            for name in (each.name for each in fields(Entry)):
+                file[f"energy/{name}"] = np.resize((energy or KEPT).get(name, 0.0), 2)
             file["cracks/particles"] = np.array(broken, dtype=np.int64).reshape(-1, 2)
             file["cracks/time"] = np.zeros(len(broken))
             file.create_group("histories", track_order=True)
@@ -118,14 +122,21 @@ def test_monitors_in_a_continuum_come_to_rest(bar, moved) -> None:
 
 
 def test_energy_that_steps_take_or_that_is_missing_is_warned_of(bar, moved) -> None:
-    taken = (
-        "run.safety: contacts that open and close within a step have {} of the supplied energy; shorter steps change "
+    taken = "run.safety: contacts that open and close within a step have {}; shorter steps change it less"
+    swings = (
+        "energy.stepping: is opposite to contact and bond, both up to 2.9 times all the energy there was: velocities "
+        "and forces swing from step to step by more than waves do; take shorter steps, or waves that rise slower"
     )
     for energy, said in (
         ({"closing": 0.0099, "relative_error": 0.0099}, []),
-        ({"closing": 0.12}, [taken.format("taken 12 %") + "it less"]),
-        ({"closing": -0.02, "supplied": 0.5}, [taken.format("added 4 %") + "it less"]),
+        ({"closing": 0.12}, [taken.format("taken 12 % of the supplied energy")]),
+        ({"closing": -0.02, "supplied": 0.5}, [taken.format("added 4 % of the supplied energy")]),
         ({"relative_error": 0.03}, ["energy.error: 3 % of the supplied energy is unaccounted for; take shorter steps"]),
+        ({"closing": 1.0, "supplied": 0.0}, [taken.format("taken energy though none came in")]),
+        ({"stepping": -1.0, "contact": 3.0}, []),
+        ({"stepping": np.array([-2.9, 0.0]), "contact": np.array([2.0, 0.0]), "bond": np.array([1.0, 0.0])}, [swings]),
+        # what had been stored at the start is released
+        ({"contact": -3.0, "kinetic": 3.0}, []),
     ):
         assert moved(two(bar), energy=KEPT | energy, near=PULSE, far=0.5 * PULSE) == said
 
