@@ -10,7 +10,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.gauge.peaks import SMALLEST, Peaks, denoised, first_fall, positive_peaks
+from dembound.gauge.peaks import (
+    SMALLEST,
+    Peaks,
+    crest,
+    denoised,
+    first_fall,
+    positive_peaks,
+    width_of,
+)
 
 ONSET = 0.01
 """Share of its largest compression at which a pulse begins."""
@@ -146,16 +154,35 @@ def near_free_end(
 
 
 def nominal_strength(
-    time: np.ndarray, stress: np.ndarray, gauge: float, length: float, speed: float, position: float
-) -> tuple[float, float]:
-    """Largest tension at the spall (`position`, m) at any time, without attenuation; and its time in s.
+    time: np.ndarray,
+    stress: np.ndarray,
+    gauge: float,
+    length: float,
+    speed: float,
+    position: float,
+    noise: float = 0.0,
+) -> tuple[float, float, float]:
+    """Largest tension at the spall (`position`, m) at any time, without attenuation; its time in s; a standard error.
 
-    Exact for a pulse of straight lines between its samples: the largest sum occurs at one of them, or at one of the
-    image. See `near_free_end` for other arguments.
+    Without noise it is exact for a pulse of straight lines between its samples: the largest sum occurs at one of them,
+    or at one of the image, and the error is 0. With white noise of a standard deviation it is the `crest` of the sum,
+    in which the noise of the pulse and that of its image add where both are. See `near_free_end` for other arguments.
     """
-    moments = np.concatenate([time + delay for delay in _delays(gauge, length, speed, position)])
-    (there,) = near_free_end(time, stress, gauge, length, speed, np.array([position]), moments)
-    return float(there.max()), float(moments[there.argmax()])
+    bar, there = (gauge, length, speed), np.array([position])
+    direct, mirrored = _delays(*bar, position)
+    if noise == 0.0:
+        moments = np.concatenate([time + direct, time + mirrored])
+        (tension,) = near_free_end(time, stress, *bar, there, moments)
+        return float(tension.max()), float(moments[tension.argmax()]), 0.0
+    step, delay = float(time[1] - time[0]), mirrored - direct
+    moments = time[0] + direct + step * np.arange(len(time) + int(np.ceil(delay / step)))
+    (tension,) = near_free_end(time, stress, *bar, there, moments)
+    width = width_of(tension)
+    alone = crest(tension, noise, width)
+    begin, end = time[0] + mirrored, time[-1] + direct
+    when = float(moments[0] + step * alone.place)
+    height, error, place = crest(tension, np.sqrt(2.0) * noise, width) if begin < when < end else alone
+    return height, float(moments[0] + step * place), error
 
 
 def path_via_free_end(gauge: float, length: float, position: Any) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.estimates import (
+    LARGEST_OF_NOISE,
     Estimate,
     attenuated_strength,
     attenuation,
@@ -24,7 +25,7 @@ from dembound.gauge.gauge_io import FREE, Gauge, not_above_zero, not_on_bar
 from dembound.gauge.matching import matched
 from dembound.gauge.noise import Noise
 from dembound.gauge.passages import PartialFit, first_return, parts
-from dembound.gauge.peaks import Peaks, width_of
+from dembound.gauge.peaks import Peaks, noise_worth, width_of
 from dembound.gauge.plausibility import (
     FAR,
     FEW,
@@ -237,10 +238,12 @@ def _strength(gauge: Gauge, speed: float, decay: Estimate | None, position: floa
     """Strengths at a position, m."""
     bar = gauge.position, gauge.length, speed
     pulse = incident_pulse(gauge.time, gauge.stress, *bar, pulse_end)
-    nominal, time = nominal_strength(*pulse, *bar, position)
+    measured = gauge.stress[: len(pulse[0])]
+    noise = noise_worth(measured, LARGEST_OF_NOISE)
+    nominal, time, error = nominal_strength(pulse[0], measured, *bar, position, noise)
     way = path_via_free_end(gauge.position, gauge.length, position)
     attenuated = None if decay is None else attenuated_strength(nominal, decay.value, way)
-    return Strength(position, nominal, time, way, attenuated, pulse)
+    return Strength(position, nominal, time, way, attenuated, pulse, error)
 
 
 def _pull_back(gauge: Gauge, speed: float, free_end: tuple[np.ndarray, np.ndarray]) -> float:

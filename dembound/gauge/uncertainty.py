@@ -31,8 +31,8 @@ def with_errors(found: Findings, others: Sequence[Findings]) -> Findings:
     if strength is not None:
         spalls = [other.strength for other in others if other.strength is not None]
         attenuated = [each.attenuated for each in spalls if each.attenuated is not None]
-        nominal_error, attenuated_error = _scatter([each.nominal for each in spalls]), _scatter(attenuated)
-        strength = replace(strength, nominal_error=nominal_error, attenuated_error=attenuated_error)
+        nominal_error = float(np.fmax(_scatter([each.nominal for each in spalls]), strength.nominal_error))
+        strength = replace(strength, nominal_error=nominal_error, attenuated_error=_scatter(attenuated))
     misfits = tuple(each for each in (of_speed, of_decay) if each is not None)
     return replace(found, speed=speed, attenuation=decay, strength=strength, misfits=misfits)
 
