@@ -155,5 +155,7 @@ def test_bars_that_collide_at_the_longest_step_stay_within_what_waves_do(name: s
 
 def test_a_run_that_swings_from_step_to_step_stops() -> None:
     """At the limit the motion of both samples of a bar differs by 1/20 of a front more in every step."""
-    with pytest.raises(RunError, match=r"swing from step to step .* stepping and contact and bond of the energy ledger"):
+    with pytest.raises(
+        RunError, match=r"swing from step to step .* stepping and contact and bond of the energy ledger"
+    ):
         colliding("as long", CENTRAL, step=1e-6).advance(2000)
