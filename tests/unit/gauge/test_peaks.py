@@ -12,8 +12,8 @@ CRESTS, HEIGHTS, LENGTH = np.array([100.15, 231.8, 360.05]), np.array([2.0, 1.0,
 def bells(time):
     """Raised cosines 40 s long, 20 s at half their height, and troughs between them."""
     total = np.zeros_like(time)
-    for crest, height in zip(CRESTS, HEIGHTS, strict=True):
-        for sign, place in ((1.0, crest), (-1.0, crest + 55.0)):
+    for summit, height in zip(CRESTS, HEIGHTS, strict=True):
+        for sign, place in ((1.0, summit), (-1.0, summit + 55.0)):
             phase = np.clip((time - place) / LENGTH, -0.5, 0.5)
             total += sign * height * 0.5 * (1.0 + np.cos(2.0 * np.pi * phase))
     return total
