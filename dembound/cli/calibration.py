@@ -241,5 +241,5 @@ def _print_result(found: Calibration) -> None:
         out.print("from the brick's homogenised wave speed and the side's ΣD/H; no wave was run")
         return
     out.print(f"calibrated on {found.particles:,} particles, {found.steps:,} steps:")
-    for line in found.shortened:
+    for line in (*found.shortened, *([found.compared] if found.compared else [])):
         out.print(f"  {line}")

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from dembound.boundaries import OPPOSITE, Motion, Periodic, Velocity, normal_axis
+from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import linear_law
 from dembound.disks.material.layered import LayeredGround
@@ -99,7 +100,7 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
     return plain, [sentence for sentence, applies in left_out.items() if applies]
 
 
-def _driven(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> DiskCase:
+def driven(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> DiskCase:
     """The case with the pulse as its only wave: sent from the opposite side, or from an input side itself."""
     boundary = {name: table.at_rest() for name, table in case.boundary.items()}
     table = case.boundary[side]
@@ -123,28 +124,48 @@ def full_scene(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tupl
         raise CaseError(
             [f"--full: the scene is {length:g} m long, echoes need {least:.4g} m to come late enough; leave it out"]
         )
-    return _driven(case, side, motion, pulse), ["each pass ends once the peak has left the side"]
+    return driven(case, side, motion, pulse), ["each pass ends once the peak has left the side"]
 
 
 def short_strip(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
-    """The smallest scene that gives M_out, and sentences about its differences from the scene of the case."""
-    case = _driven(case, side, motion, pulse)
+    """The smallest scene that gives M_out, and sentences about its differences from the scene of the case.
+
+    Long sides that are free stay where P waves run, as a bar is softer than the ground and its side has other disks,
+    and where motion across is held. Between others plane waves are taken, periodic sideways; S waves bend a bar.
+    """
+    case = driven(case, side, motion, pulse)
     axis = normal_axis(side)
-    bricks, brick = list(case.packing.copies), case.packing.brick_size
-    bricks[axis] = max(1, int(np.ceil(_least_length(case, axis, motion, pulse) / brick[axis])))
+    plane = motion == "p" or "xy"[1 - axis] in case.motion.held
+    keeps = plane and all(table.is_free for table in _beside(case, axis))
+    strip = in_strip(case, axis, _least_length(case, axis, motion, pulse), keeps)
     shortened = [
-        f"a strip of {bricks[axis] * brick[axis]:g} m, the scene has {case.packing.extent[axis]:g} m",
+        f"a strip of {strip.packing.extent[axis]:g} m, the scene has {case.packing.extent[axis]:g} m",
         "each pass ends once the peak has left the side",
     ]
-    lateral = ("bottom", "top") if axis == 0 else ("left", "right")
-    tables = [case.side(name) for name in lateral]
-    plane = "xy"[1 - axis] in case.motion.held and all(table.is_free for table in tables)
-    if not plane:
+    periodic = all(table.is_periodic for table in _beside(case, axis))
+    if not keeps and not (periodic and case.packing.copies[1 - axis] == 1):
+        shortened.append("one brick wide and periodic sideways")
+    return strip, shortened
+
+
+def in_strip(case: DiskCase, axis: int, length: float, keeps: bool | None = None) -> DiskCase:
+    """The case with bricks of at least this length (m) along an axis.
+
+    keeps : whether it keeps its long sides and width, by default where neither of them absorbs; else it is one brick
+    wide and periodic sideways.
+    """
+    lateral, bricks = ("bottom", "top") if axis == 0 else ("left", "right"), list(case.packing.copies)
+    bricks[axis] = max(1, int(np.ceil(length / case.packing.brick_size[axis])))
+    keeps = not any(table.absorbs for table in _beside(case, axis)) if keeps is None else keeps
+    if not keeps or all(table.is_periodic for table in _beside(case, axis)):
         case = replace(case, boundary={**case.boundary, **{name: Periodic(type="periodic") for name in lateral}})
-        if bricks[1 - axis] > 1 or not all(table.is_periodic for table in tables):
-            shortened.append("one brick wide and periodic sideways")
         bricks[1 - axis] = 1
-    return replace(case, packing=case.packing.with_copies(bricks[0], bricks[1])), shortened
+    return replace(case, packing=case.packing.with_copies(bricks[0], bricks[1]))
+
+
+def _beside(case: DiskCase, axis: int) -> list[Boundary]:
+    """The tables of the sides along an axis."""
+    return [case.side(name) for name in (("bottom", "top") if axis == 0 else ("left", "right"))]
 
 
 def _speed_of(case: DiskCase, axis: int, motion: Motion) -> float:
