@@ -8,9 +8,10 @@ Only the part of the scene that affects M_out is modelled: a strip of the scene'
 reflection returns to the side before the peak has left it. Each pass ends at that time. The strip is a linear medium
 under one wave: no loads, no static stage, the elastic law.
 
-Where the strip is periodic sideways and the scene is not, other disks are seen from outside. Dashpots have the same
-impedance per length for the same βΣD/H, so β of the strip is β of the scene times the ratio of their matched factors,
-(H/ΣD of the strip)/(H/ΣD of the scene); all factors here are those of the scene.
+Where the strip is periodic sideways and a scene of one brick is not, other disks are seen from outside. Dashpots have
+the same impedance per length for the same βΣD/H, so β of the strip is β of the scene times the ratio of their matched
+factors, (H/ΣD of the strip)/(H/ΣD of the scene); all factors here are those of the scene. In wider scenes other disks
+at corners do not change the dashpots beside most of the wave.
 
 Peaks are not all that returns: of short pulses disks scatter some, and a free bar disperses. So what the side returns
 of the pulse with β0 is compared with what it returns with the matched factor, and the better one is the result.
@@ -191,7 +192,9 @@ def calibrate(
     require_dashpots_alone(scene, side)
     body = scene if full else build(in_strip(plain, normal_axis(side), SIDE * plain.packing.radius, keeps=True))
     matched = homogenised_beta(body, side, motion)
-    share = homogenised_beta(scene, side, motion) / matched
+    across = 1 - normal_axis(side)
+    is_narrow = strip.packing.copies[across] == plain.packing.copies[across]
+    share = homogenised_beta(scene, side, motion) / matched if is_narrow else 1.0
     found = Calibration(
         case=case,
         side=side,
@@ -203,7 +206,7 @@ def calibrate(
         particles=scene.count,
     )
     predicted = start is None and table.factors[motion] == "matched"
-    beta = factors_in(body, side)[motion] if start is None else start
+    beta = factors_in(body if is_narrow else scene, side)[motion] if start is None else start
     if not 0.0 < beta < np.inf:
         raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
     time_step, _ = choose_step(scene)  # it does not depend on β: centred dashpots do not reduce the stability limit
