@@ -10,12 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.runner import measure
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import Monitor
-from dembound.disks.scene import ground_of
-from dembound.running import Progress
+from dembound.disks.scene import build, ground_of
+from dembound.disks.stability import choose_step
+from dembound.motion.simulation import Simulation
 from dembound.studies.strip import driven, in_strip
 from dembound.waves import Cosine
 
@@ -32,7 +32,7 @@ PLACES = 16
 def returned(case: DiskCase, side: str, motion: Motion, pulse: Cosine, betas: Sequence[float]) -> list[float]:
     """Returned over incident velocity, RMS over RMS, for each factor of a side; case : from `linear_medium`.
 
-    Raises the errors of `runner.measure`.
+    Raises the errors of `build` and of runs.
     """
     axis = normal_axis(side)
     tables = {**case.boundary, side: case.side(side).at_rest()}
@@ -40,25 +40,32 @@ def returned(case: DiskCase, side: str, motion: Motion, pulse: Cosine, betas: Se
     length = ground_of(case).wave_speeds(axis)[0 if motion == "p" else 1] * pulse.period
     strip = in_strip(case, axis, LONG * length)
     duration = (strip.packing.extent[axis] / length + DEEP + WINDOW) * pulse.period
-    ends = replace(strip, run=strip.run.lasting(duration).model_copy(update={"until": "duration"}))
-    copies = list(ends.packing.copies)
+    copies = list(strip.packing.copies)
     copies[axis] *= 2
-    farther = replace(ends, packing=ends.packing.with_copies(copies[0], copies[1]))
-    within = ends.packing.extent[axis] - DEEP * length
-    time, incident = _at_section(farther, side, motion, within)
+    farther = replace(strip, packing=strip.packing.with_copies(copies[0], copies[1]))
+    within = strip.packing.extent[axis] - DEEP * length
+    time, incident = _at_section(farther, side, motion, within, duration)
     found = []
     for beta in betas:
-        table = ends.side(side).with_factors({motion: beta})
-        own, values = _at_section(replace(ends, boundary={**ends.boundary, side: table}), side, motion, within)
+        table = strip.side(side).with_factors({motion: beta})
+        trial = replace(strip, boundary={**strip.boundary, side: table})
+        own, values = _at_section(trial, side, motion, within, duration)
         found.append(float(np.linalg.norm(np.interp(time, own, values) - incident) / np.linalg.norm(incident)))
     return found
 
 
-def _at_section(case: DiskCase, side: str, motion: Motion, within: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (k,) s, and the mean velocity (k,) m/s over the section at a distance (m) from the driven end."""
-    case = replace(case, monitor=tuple(_section(case, side, within)))
-    own = list(measure(case, Progress(), watched=False, timed=False)[0].motions.values())
-    return own[0].time, np.mean([each.velocity[:, axis_of_motion(side, motion)] for each in own], axis=0)
+def _at_section(
+    case: DiskCase, side: str, motion: Motion, within: float, duration: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times (k,) s up to a duration (s), and the mean velocity (k,) m/s over the section.
+
+    within : its distance from the driven end, m.
+    """
+    scene = build(replace(case, monitor=tuple(_section(case, side, within))))
+    step, _ = choose_step(scene)
+    steps = int(np.ceil(duration / step))
+    record = Simulation(scene, step, np.array(list(scene.monitors.values()))).advance(steps)
+    return step * np.arange(len(record)), record[:, :, 3 + axis_of_motion(side, motion)].mean(axis=1)
 
 
 def _section(case: DiskCase, side: str, within: float) -> Iterator[Monitor]:

@@ -139,12 +139,12 @@ class Formulas:
 
     def _walls(self, names: Iterable[str]) -> Iterator[Cause]:
         """Errors by walls of holes, which are made of disks."""
-        case = self.scene.case
+        case, ground = self.scene.case, self.scene.ground
         if not case.hole:
             return
-        sizes = wall_errors(case, self.scene.ground, self.scene.ground.brick.mean_diameter)
-        parts = {name: dict(sizes) for name in names}
-        words = "by the disks along the radius of the smallest hole"
+        diameter, places = ground.brick.mean_diameter, self.scene.monitored
+        parts = {name: wall_errors(case, ground, diameter, places[name]) for name in names}
+        words = "by the disks along the radius, the way of the wave, and the place"
         yield Cause(WALLS, words, parts, of_disks=True, factor=WALL_FACTOR)
 
     def _near(self, motions: Motions) -> Iterator[Cause]:

@@ -15,6 +15,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
 
+import numpy as np
+
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import SIDES, STEP, Cause, Causes, Truth
 from dembound.accuracy.choice import Choice, digest
@@ -245,9 +247,10 @@ class Search:
         case = option.case
         walls = 0.0
         if self.of == "rock":
-            walls = WALL_FACTOR * max(
-                wall_errors(case, self.companions.scene.ground, 2.0 * case.packing.radius).values()
-            )
+            ground, diameter = self.companions.scene.ground, 2.0 * case.packing.radius
+            places = [np.array(monitor.position) for monitor in case.monitor]
+            errors = [wall_errors(case, ground, diameter, place) for place in places]
+            walls = WALL_FACTOR * max((size for each in errors for size in each.values()), default=0.0)
         return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(_disks(option), 0.0), walls)
 
     def _keeps(self, error: float) -> bool:

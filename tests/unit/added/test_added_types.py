@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dembound.accuracy.of_disks.near import BETWEEN, LONGEST, OF_WAVES
+from dembound.accuracy.of_disks.near import BETWEEN, CREEP, DARK, LIT, LONGEST, OF_WAVES, SHORT
 
 HERE = Path(__file__).parent
 REGISTERED = {
@@ -92,7 +92,7 @@ def test_a_driven_side_is_calibrated_and_quiet_while_others_are(found) -> None:
     kind, beta, ratio = found["calibrated"]
     assert kind == "absorbing"
     assert beta == pytest.approx(1.0, abs=0.02)  # equal disks side by side, but for the dispersion of the lattice
-    assert ratio == pytest.approx(1.0, abs=1e-3)
+    assert ratio == pytest.approx(1.0, abs=0.01)  # with the matched factor, as it returns less of this short pulse
     assert found["let in"] == "input"
     assert "OtherInput" in found["types"]
 
@@ -230,10 +230,10 @@ def test_a_lattice_only_stands_for_the_ground_and_other_packings_are_the_ground(
 def test_walls_in_a_lattice_without_planes_between_disks_are_half_a_disk_off(asked) -> None:
     """One disk along the smaller half of a rectangle: 0.2 by its corners, half of half a disk of one; random: 0.75.
 
-    A hole of another shape is as a round one, 0.4 of a disk in the half of its box, here of two. The waves are short.
+    A hole of another shape is as a round one of two disks, on the mean of all directions. The waves are short.
     """
     assert asked["walls"] == pytest.approx(
-        [BETWEEN * np.hypot(0.2, 0.25), OF_WAVES * LONGEST * 0.75, OF_WAVES * LONGEST * 0.4 / 2.0]
+        [BETWEEN * np.hypot(0.2, 0.25), OF_WAVES * LONGEST * 0.75, SHORT * (LIT + 0.5 * (DARK + CREEP * SHORT)) / 2.0]
     )
 
 

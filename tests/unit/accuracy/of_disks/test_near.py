@@ -2,17 +2,23 @@
 
 import numpy as np
 import pytest
+import tomli_w
+from scene_tables import ISOTROPIC, lattice, pulse
 from small_cases import GRAINS, PUSHED, small
 
 from dembound.accuracy.cause import MOTIONS
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.near import (
     BETWEEN,
+    CREEP,
     CURVED,
-    LONGEST,
+    DARK,
+    FALL,
+    LIT,
     NEAR,
     OF_WAVES,
     RANDOM,
+    SHORT,
     errors_near_loads,
     wall_errors,
 )
@@ -22,6 +28,7 @@ from dembound.disks.material.wave_front import slowest_speed
 from dembound.disks.scene import DiskScene, build
 from dembound.holes import Circle, Rectangle
 from dembound.holes.rectangle import STRAIGHT
+from dembound.kinds import loads
 from dembound.outside.sizing import mean_frequency
 from dembound.packings import Square
 
@@ -144,19 +151,51 @@ def test_waves_have_the_part_of_the_error_of_a_pressure_that_a_hole_scatters() -
 
     burst = {"name": "burst", "hole": "cave", "pressure": 1e5, "wave": "push"}
     bore = {"name": "cave", "type": "circle", "centre": [5.0, 1.5], "radius": 0.75}
-    for hole, pressed, part, most in (
-        (CAVE, np.hypot(STRAIGHT / 1.5, 0.05 / 0.75), BETWEEN, BETWEEN),
-        (bore, 0.4 / 1.5, 1.0, np.inf),
-    ):
-        case, slow = errors(hole, 0.1)
-        assert slow["velocity"] == pytest.approx(pressed * part * scattered(case))
-        of_displacement = scattered(case, 1.0 / case.run.duration)
-        assert slow["displacement"] == pytest.approx(pressed * part * of_displacement)
-        fast = errors(hole, 0.0001)[1]
-        assert fast["velocity"] == pytest.approx(pressed * min(OF_WAVES * LONGEST, most))
+    half, box, round_hole = 1.5, np.hypot(STRAIGHT / 1.5, 0.05 / 0.75), 0.4 / 1.5
+    case, slow = errors(CAVE, 0.1)
+    numbers = [scattered(case) / OF_WAVES, scattered(case, 1.0 / case.run.duration) / OF_WAVES]
+    assert list(slow.values()) == pytest.approx([box * BETWEEN * OF_WAVES * number for number in numbers])
+    assert errors(CAVE, 0.0001)[1]["velocity"] == pytest.approx(box * BETWEEN)
+    # on the mean of all directions, at the wall
+    expected = [number * (LIT + 0.5 * (DARK + CREEP * numbers[0])) / half for number in numbers]
+    assert list(errors(bore, 0.1)[1].values()) == pytest.approx(expected)
+    shortest = SHORT * (LIT + 0.5 * (DARK + CREEP * SHORT)) / half
+    assert errors(bore, 0.0001)[1]["velocity"] == pytest.approx(shortest)
+    for hole, pressed in ((CAVE, box), (bore, round_hole)):
         assert errors(hole, load=[burst])[1] == pytest.approx(dict.fromkeys(MOTIONS, pressed))
     without = small(PUSHED)
     assert wall_errors(without, build(without).ground, 0.5) == dict.fromkeys(MOTIONS, 0.0)  # type: ignore[arg-type]
+
+
+def test_short_waves_are_most_wrong_behind_a_hole_but_not_where_the_surface_cuts_it() -> None:
+    """An SV wave at 30° to the right of the vertical: the wall behind is up and to the right of the middle."""
+    bore = {"name": "bore", "type": "circle", "centre": [10.0, 10.0], "radius": 2.0}
+    way = np.array([np.sin(np.radians(30.0)), np.cos(np.radians(30.0))])
+
+    def errors(kind: str, height: float = 10.0, far: float = 2.0, period: float = 0.005) -> list[float]:
+        tables = {
+            "packing": lattice(20.0, 20.0, 0.5),
+            "material": ISOTROPIC,
+            "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+            "hole": [bore | {"centre": [10.0, height]}],
+            "incident": {"type": kind, "angle": 30.0, "wave": "pulse"},
+            "wave": pulse(period),
+            "run": {"duration": 0.1},
+        }
+        case = loads(tomli_w.dumps(tables), name="bore")
+        ground = build(case).ground
+        places = ([10.0, height] + far * sign * way for sign in (-1.0, 1.0))
+        return [wall_errors(case, ground, 0.5, place)["velocity"] for place in places]
+
+    # v ~ 1 − cos ωt has the RMS rate ω/√3 of its RMS value
+    number = 2.0 * np.pi / 0.005 / np.sqrt(3.0) * 2.0
+    for kind, speed in (("sv", 1000.0 / np.sqrt(2.0)), ("p", 1000.0)):
+        along = number / speed
+        behind = along * (LIT + DARK + CREEP * along) / 4.0
+        assert errors(kind) == pytest.approx([along * LIT / 4.0, behind], rel=1e-3)
+        assert errors(kind, far=4.0)[1] == pytest.approx(behind / 2.0**FALL, rel=1e-3)
+        mean = along * (LIT + 0.5 * (DARK + CREEP * along)) / 4.0
+        assert errors(kind, height=20.0) == pytest.approx([mean, mean], rel=1e-3)
 
 
 def test_no_wall_in_a_random_packing_is_between_disks() -> None:
