@@ -180,6 +180,10 @@ class Ledger(Tracker):
             u = state.u - run.time_step * state.v
             before = state.layout.spread(state.switch_velocity)
             balancing = system.balancing_work(u)
+        elif (
+            state.step == 1 and not before.any()
+        ):  # half a kick has moved it: as if it had come from there, and is at rest
+            before = state.layout.spread(np.where(run.scene.moves, -state.velocity, 0.0))
         kinetic, stepping = self._of_motion(before, state)
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0

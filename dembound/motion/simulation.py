@@ -1,7 +1,7 @@
 """The loop: advances a scene in time, up to the steps at which trackers are due."""
 
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 
 import numpy as np
 
@@ -30,6 +30,10 @@ LEAST_AT_ONCE = 128
 class Simulation:
     """The motion of a scene, from rest at time zero.
 
+    Velocities are those of half steps. The first one, Δt/2 after rest, follows from half a kick, v = a₀Δt/2: forces
+    that are there at once, as weight, then give v = a₀t and u = ½a₀t² at whole steps; with a whole kick, motion would
+    be half a step early. Where something moves at the start, the velocities given are those half a step before it.
+
     Parameters
     ----------
     scene : the scene to be moved.
@@ -37,7 +41,8 @@ class Simulation:
     probes : (p,) nodes whose motion `advance` returns at every step; by default none.
     system : its parts and ties; by default those of the scene as built, at rest.
     datum : (3, n) displacements at which they are at rest; by default zero.
-    damp : local damping coefficient; by default the scene's.
+    damp : local damping coefficient of a stage on the way to rest, whose first kick is a whole one as its time means
+    nothing; by default the scene's.
     clock : counts the seconds of stepping and of trackers, under "step" and "record".
     side_stride : steps between two samples of the sides' forces and displacements; 0: sides are not measured.
 
@@ -84,6 +89,7 @@ class Simulation:
         self._u_next = aligned_zeros(3, layout.count)
         self._entered: Kept = {}
         self._damp = scene.damp if damp is None else damp
+        self._takes_time = damp is None
         self._supports = NodeSupports(scene, self.system.ties, time_step, self.system.drag)
         self.sides = NodeSides(scene, self._supports) if side_stride > 0 else None
         self._side_stride = side_stride
@@ -139,6 +145,22 @@ class Simulation:
         empty = np.empty((0, len(self.probes), self.scene.record_width))
         return np.concatenate([empty, *kept.records])
 
+    @contextmanager
+    def a_step_ahead(self) -> Iterator[np.ndarray]:
+        """Inside, the run is a step ahead, which velocities of now need; gives the motion (p, 6) of the probes now.
+
+        For a bar, stress (Pa) is a seventh column. Trackers are not called; afterwards nothing has changed.
+        """
+        state, owners, samples = self.state, self.state.owners, self.side_samples
+        state.owners = {"system": self.system}
+        saved = state.arrays()
+        try:
+            with put_off():
+                yield self._advance_to(state.step + 1)[0]
+        finally:
+            state.take(saved)
+            state.owners, self.side_samples = owners, samples
+
     def edge_peaks(self, side: str) -> np.ndarray:
         """Smallest and largest velocity so far of the nodes of one side of the whole scene, (k, 3, 2)."""
         return self.scene.side_peaks(side, self.state.peaks)
@@ -162,7 +184,9 @@ class Simulation:
         most_driven = int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes))))
         at_once = max(1, min(most_driven, max(LEAST_AT_ONCE, AT_ONCE // self.scene.count)))
         with threads_for(self.scene.count), suppress(Stopped):  # also while kernels are compiled
-            for first in range(0, len(record), at_once):
+            if begun == 0 and self._takes_time and not self.state.v.any():
+                self._advance_from_rest(record[:1])
+            for first in range(self.state.step - begun, len(record), at_once):
                 look()
                 self._advance(record[first : first + at_once])
         record = record[: self.state.step - begun]
@@ -171,6 +195,32 @@ class Simulation:
             self.side_samples.record[..., :3] -= self.sides.origin(self.state.datum)
         record[..., :3] -= self.state.datum[:, self.probes].T
         return record
+
+    def _advance_from_rest(self, record: np.ndarray) -> None:
+        """Do the first step of a body at rest, with half a kick.
+
+        What is recorded for time zero is rest, but half the prescribed velocities. The work F·(v⁻ + v⁺)/2·Δt that leads
+        from one step to the next in the ledger (`energy`) has, from rest, only its later half, F·v⁺Δt/2 of half of v⁺.
+        """
+        state, before = self.state, self.state.u.copy()
+        self._advance(record)
+        if not state.v.any():
+            return
+        driven = np.zeros_like(state.v)
+        driven[:, self._supports.slots] = self._supports.driven(state.v)
+        half = 0.5 * state.v
+        half[:, self._supports.slots] = self._supports.after_half_a_kick(state.v)
+        if self.system.drag.size:
+            half *= state.layout.spread(1.0 + 0.5 * self.time_step * self.system.drag)
+        state.v[...] = half + driven
+        state.u[...] = before + self.time_step * state.v
+        record[0, :, 3:6] = 0.5 * driven[:, self._probe_slots].T
+        speed = state.v[:, self._tracked_slots].T
+        state.peaks[...] = np.stack([np.minimum(speed, 0.0), np.maximum(speed, 0.0)], axis=-1)
+        if state.top.size:
+            state.top[...] = np.hypot(*state.v[:2])
+        state.work[0] *= 0.5
+        state.side_work[0] *= 0.5
 
     def _advance(self, record: np.ndarray) -> None:
         """Do as many steps as the record (k, p, 6 or 7) has rows, with changes of law if necessary."""

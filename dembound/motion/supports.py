@@ -68,6 +68,20 @@ class NodeSupports:
             follow=self.follow,
         )
 
+    def driven(self, velocity: np.ndarray) -> np.ndarray:
+        """Prescribed velocities (3, k) among those of all slots (3, slots), 0 for other components."""
+        return np.where(self.prescribed.T > 0.0, velocity[:, self.slots], 0.0)
+
+    def after_half_a_kick(self, velocity: np.ndarray) -> np.ndarray:
+        """Velocities (3, k) of nodes after half a kick from rest, from those of all slots (3, slots) after a whole one.
+
+        With x = CΔt/2m a whole kick FΔt/m gives 1/(1 + x) of it, as dashpots C take the mean velocity, and half of it
+        is without them, as this is 0: the factor ½(1 + x) is 1/(1 + keep). The pull of moving twins is none, either.
+        """
+        pulled = np.where(self.twin < 0, 0.0, 0.5 * (self.mobility * self.follow).T * velocity[:, self.twin])
+        half = (velocity[:, self.slots] - pulled) / (1.0 + self.keep.T)
+        return np.where(self.prescribed.T > 0.0, 0.0, half)
+
     def _spread(self, column: np.ndarray) -> np.ndarray:
         """A column of the table as (k, 3), zero where it has no row."""
         spread = np.zeros((len(self.nodes), 3))

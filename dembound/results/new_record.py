@@ -22,12 +22,14 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             surface (s, 4), ends of the element sides at its free surface; tie (t, 2), where ties to
                             disks act; if the case asks for it peak_velocity (m,)
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle
-                            (−1 in a continuum), position, requested; on a bar density, section, youngs_modulus,
-                            wave_speed, attenuation there, and with ranges the name of its range
+                            (−1 in a continuum), position, requested; after a complete run end_time, end_displacement,
+                            end_velocity; on a bar density, section, youngs_modulus, wave_speed, attenuation there, and
+                            with ranges the name of its range
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
                             side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
-    snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
-                            of a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
+    snapshots/<number>/     displacement (n, 3), velocity (n, 3), the mean of those half a step before and after, if the
+                            run got so far (attribute velocity_of_half_step otherwise); coordination (n,) of a
+                            history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
                             and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
                             on each particle; attribute time; of disks, if the case asks for them, contacts/ with the
                             columns of `disks.contact_forces.contact_columns`; with a continuum, continuum/ with

@@ -6,7 +6,7 @@ Its layout is described in `new_record`.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
@@ -22,7 +22,6 @@ from dembound.results.committed import FORMAT, CommittedFile
 from dembound.results.datasets import datasets_of, describe, extend, text, write
 from dembound.results.new_record import (
     DISPLACEMENT_UNIT,
-    MOTION,
     SIDE_HISTORY,
     VELOCITY_UNIT,
     begin_record,
@@ -38,6 +37,9 @@ KEPT_BYTES, KEPT_SECONDS = 2**20, 10.0
 """Largest size (bytes) of samples, and longest time (s), for which samples and cracks are kept in RAM.
 
 Thousands of small writes take longer than all steps of a small scene."""
+
+HALF_STEP = "velocity_of_half_step"
+"""Attribute of a snapshot whose velocities are still those of half a step before its time."""
 
 
 class Recorder:
@@ -182,23 +184,56 @@ class Recorder:
         self._written = time.monotonic()
 
     def snapshot(self) -> None:
-        """Write the present state of the whole scene."""
+        """Write the present state of the whole scene.
+
+        Its velocities are of half a step before, except at the start, and `centre` is to be called a step later.
+        """
         state, snapshots = self.run.state, self.file["snapshots"]
         group = snapshots.create_group(f"{len(snapshots):04d}")
         group.attrs["time"] = self.run.time
-        widened, count, beside = self.run.scene.widened, self.scene.recorded, self.scene.beside
-        moved = widened("displacement", (state.displacement - state.datum).T), widened("velocity", state.velocity.T)
-        for name, values, unit in zip(MOTION, moved, (DISPLACEMENT_UNIT, VELOCITY_UNIT), strict=True):
-            write(group, name, values[:count], unit)
-            at = self.run.time - 0.5 * self.run.time_step * (name == "velocity")  # velocities are half a step behind
-            for kind, motion in ({} if beside is None else beside.motion(values, name, at)).items():
-                write(group.require_group("continuum"), f"{kind}{name}", motion, unit)
+        if state.step > 0:
+            group.attrs[HALF_STEP] = True
+        widened = self.run.scene.widened
+        for name, values, unit in (
+            ("displacement", state.displacement - state.datum, DISPLACEMENT_UNIT),
+            ("velocity", state.velocity, VELOCITY_UNIT),
+        ):
+            for path, each in self._moved(name, values, self.run.time):
+                write(group, path, each, unit)
         for name, (values, unit) in self.run.system.snapshot_beside(state.displacement).items():
             write(group["continuum"], name, values, unit)
         for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
             write(group, name, widened(name, values), unit)
         for name, (values, unit) in self.run.system.contact_forces(state.displacement).items():
             write(group.require_group("contacts"), name, values, unit)
+
+    def _moved(self, name: str, values: np.ndarray, time: float) -> Iterator[tuple[str, np.ndarray]]:
+        """Arrays of a snapshot, by their paths in it, for the motion (3, n) of the nodes at a time (s).
+
+        name : "displacement" or "velocity".
+        """
+        widened, beside = self.run.scene.widened(name, values.T), self.scene.beside
+        yield name, widened[: self.scene.recorded]
+        for kind, motion in ({} if beside is None else beside.motion(widened, name, time)).items():
+            yield f"continuum/{kind}{name}", motion
+
+    def centre(self) -> None:
+        """A step after a snapshot, give it the velocities of its time: means of those half a step before and after.
+
+        Nothing is done if it has them, as in a record that is ahead of the checkpoint from which the run continues.
+        """
+        group = snapshot_of(self.file, -1)
+        if group.attrs.get(HALF_STEP, False):
+            for path, later in self._moved("velocity", self.run.state.velocity, float(group.attrs["time"])):
+                group[path][...] = 0.5 * (group[path][...] + later)
+            del group.attrs[HALF_STEP]
+
+    def end(self, time: float, record: np.ndarray) -> None:
+        """Write the motion of the monitors at the end of the run, at a time (s); record (p, 6 or 7) : of the probes."""
+        motion = self.run.scene.observed(record[None], np.array([time]))[0]
+        for name, each in zip(self.scene.monitors, motion, strict=True):
+            ends = {"end_time": time, "end_displacement": each[:3], "end_velocity": each[3:6]}
+            describe(self.file["histories"][name], ends)
 
     def stalled_snapshot(self, stalled: StalledError) -> None:
         """Write the scene at the end of a stage that stalled, with unbalanced forces and cracks."""

@@ -113,7 +113,7 @@ def _describe_sides(record: Path) -> dict[str, Any]:
 
 
 def _describe_monitors(record: Path) -> dict[str, Any]:
-    """Peaks and arrivals of every history."""
+    """Peaks and arrivals of every history, and the motion at the end of the run, after its last sample."""
     with open_record(record) as file:
         groups: Mapping[str, h5py.Group] = file.get("histories", {})
         return {
@@ -122,6 +122,7 @@ def _describe_monitors(record: Path) -> dict[str, Any]:
                 "position": group.attrs["position"].tolist(),
                 **arrival(group["time"][:], group["velocity"][:, :2]),
                 "peak_displacement": np.abs(group["displacement"][:, :2]).max(axis=0).tolist(),
+                "end": {of: group.attrs[f"end_{of}"].tolist() for of in ("time", "displacement", "velocity")},
             }
             for name, group in groups.items()
         }

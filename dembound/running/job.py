@@ -215,6 +215,10 @@ class _Job:
                 checkpoints.write(simulation, durable=False)
                 if simulation.stopped:
                     snapshots.take_last(simulation)
+                time = simulation.time
+                with simulation.a_step_ahead() as motion:
+                    snapshots.complete()
+                    recorder.end(time, motion)
         return simulation, beginning
 
     def _begin(self, planned: Plan, partial: Path) -> Beginning:
