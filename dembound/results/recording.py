@@ -42,12 +42,13 @@ class Snapshots(Tracker):
         self._last, self._next, self._is_open = -1, NEVER, False
         self._after(-1)
         if at_rest and number > 0:
-            self.due = self._next = 0
+            self._next = 0
+        self.due = self._next
 
     def _after(self, step: int) -> None:
         """Set the first snapshot after this step: at the first k·steps/number, rounded down, above it."""
         later = -(-(step + 1) * self._number // self._steps)
-        self.due = self._next = self._steps * max(1, later) // self._number if self._number > 0 else NEVER
+        self._next = self._steps * max(1, later) // self._number if self._number > 0 else NEVER
 
     def handle(self, run: Run) -> None:
         """Give the snapshot of the step before, if any, the velocities of its time, and write that of this step."""

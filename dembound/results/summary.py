@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 FIELD_BYTES = 48
 """Bytes of displacement and velocity of a node in a snapshot."""
 
+END = ("time", "displacement", "velocity")
+"""What is written of the motion of a monitor at the end of a run."""
+
 WORTH_SAYING = 1e6
 """Bytes of a snapshot below which leaving it out saves too little."""
 
@@ -122,7 +125,7 @@ def _describe_monitors(record: Path) -> dict[str, Any]:
                 "position": group.attrs["position"].tolist(),
                 **arrival(group["time"][:], group["velocity"][:, :2]),
                 "peak_displacement": np.abs(group["displacement"][:, :2]).max(axis=0).tolist(),
-                "end": {of: group.attrs[f"end_{of}"].tolist() for of in ("time", "displacement", "velocity")},
+                "end": {of: group.attrs[f"end_{of}"].tolist() for of in END if f"end_{of}" in group.attrs},
             }
             for name, group in groups.items()
         }

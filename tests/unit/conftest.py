@@ -52,7 +52,7 @@ class At(Snapshots):
         super().__init__(recorder, 0, 1)
 
     def _after(self, step: int) -> None:
-        self.due = next((later for later in self.at if later > step), NEVER)
+        self._next = next((later for later in self.at if later > step), NEVER)
 
 
 def recorded(path: Path, planned: Plan, steps: int, shots: Sequence[int], entries: Sequence[int] = ()) -> Path:
