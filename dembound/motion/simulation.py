@@ -200,27 +200,30 @@ class Simulation:
         """Do the first step of a body at rest, with half a kick.
 
         What is recorded for time zero is rest, but half the prescribed velocities. The work F·(v⁻ + v⁺)/2·Δt that leads
-        from one step to the next in the ledger (`energy`) has, from rest, only its later half, F·v⁺Δt/2 of half of v⁺.
+        from one step to the next in the ledger (`energy`) has, from rest, only its later half, F·v⁺Δt/2 of half of v⁺;
+        that of prescribed velocities, which jump to v⁺, is a whole one.
         """
         state, before = self.state, self.state.u.copy()
         self._advance(record)
-        if not state.v.any():
-            return
         driven = np.zeros_like(state.v)
         driven[:, self._supports.slots] = self._supports.driven(state.v)
         half = 0.5 * state.v
         half[:, self._supports.slots] = self._supports.after_half_a_kick(state.v)
         if self.system.drag.size:
             half *= state.layout.spread(1.0 + 0.5 * self.time_step * self.system.drag)
-        state.v[...] = half + driven
+        half += driven
+        if np.array_equal(half, state.v):
+            return  # nothing moves but what is prescribed
+        state.v[...] = half
         state.u[...] = before + self.time_step * state.v
         record[0, :, 3:6] = 0.5 * driven[:, self._probe_slots].T
         speed = state.v[:, self._tracked_slots].T
         state.peaks[...] = np.stack([np.minimum(speed, 0.0), np.maximum(speed, 0.0)], axis=-1)
         if state.top.size:
             state.top[...] = np.hypot(*state.v[:2])
-        state.work[0] *= 0.5
-        state.side_work[0] *= 0.5
+        if not driven.any():
+            state.work[0] *= 0.5
+            state.side_work[0] *= 0.5
 
     def _advance(self, record: np.ndarray) -> None:
         """Do as many steps as the record (k, p, 6 or 7) has rows, with changes of law if necessary."""

@@ -59,8 +59,10 @@ def test_a_load_on_one_node_tears_the_end(horizon, strengths, spread):
 
 
 def test_springs_swing_under_a_sudden_load():
-    """To twice the load at ν = 1, exactly; at 0.9 by the overshoot of any dispersive chain."""
-    assert bars.odd_even_swing(0.0, 1.0) == pytest.approx(2.0, rel=1e-9)
+    """At ν = 1 to twice the load, exactly, if it begins between steps; at 0.9 by the overshoot of dispersion."""
+    assert bars.odd_even_swing(0.5, 1.0) == pytest.approx(2.0, rel=1e-9)
+    for late in (0.0, 7.0):
+        assert bars.odd_even_swing(late, 1.0) == pytest.approx(1.0, rel=1e-9)
     assert bars.odd_even_swing(0.0, 0.9) == pytest.approx(1.287, abs=0.01)
 
 

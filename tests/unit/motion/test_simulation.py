@@ -55,6 +55,25 @@ def test_supports_and_steady_loads_push_a_disk_by_central_differences(bar, presc
     np.testing.assert_allclose(simulation.state.displacement[:, 0], [u, -55 * 3e-4, 0.0], rtol=1e-13)
 
 
+def test_the_speed_of_a_load_on_a_dashpot_begins_with_half_a_kick(bar) -> None:
+    """M v' = F − C v from rest: means of half steps are (F/C)(1 − rⁿ), r = (1 − x)/(1 + x), x = CΔt/2M, from n = 0."""
+    scene = lone_disk(bar, one_row(damping=0.4 * MASS / STEP))
+    system = DiskSystem(scene, STEP, load=MASS * np.array([[2.0], [0.0], [0.0]]))
+    record = Simulation(scene, STEP, [0], system=system).advance(10)
+
+    final, rate = 2.0 * STEP / 0.4, 0.8 / 1.2
+    np.testing.assert_allclose(record[:, 0, 3], final * (1.0 - rate ** np.arange(10)), rtol=1e-12, atol=1e-16)
+
+
+def test_all_falls_alike_beside_free_fields(bar) -> None:
+    """Dashpots between disks and their columns see no relative motion, from the first step on."""
+    changes = {"boundary": {side: {"type": "free_field"} for side in ("left", "right")}, "wave": {}, "monitor": []}
+    scene = build(bar({**changes, "load": [{"name": "weight", "acceleration": [0.0, -10.0]}], "motion.held": []}))
+    record = Simulation(scene, 1e-5, np.arange(scene.count)).advance(20)
+    falling = -1e-4 * np.arange(20)[:, None] * np.ones(scene.count)
+    np.testing.assert_allclose(record[:, :, 4], falling, rtol=1e-9, atol=1e-18)
+
+
 def simulated(bar, probes: np.ndarray = NOBODY) -> Simulation:
     scene = build(bar())
     return Simulation(scene, choose_step(scene)[0], probes)

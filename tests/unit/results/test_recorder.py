@@ -20,7 +20,7 @@ from dembound.motion.simulation import Simulation
 from dembound.results import recorder as module
 from dembound.results.new_record import write_stages
 from dembound.results.reader import text_of
-from dembound.results.recorder import Recorder
+from dembound.results.recorder import HALF_STEP, Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.results import Results
 from dembound.version import __version__
@@ -234,6 +234,12 @@ def test_trackers_keep_histories_and_snapshots(tmp_path, simulation) -> None:
         assert [group.attrs["time"] for group in file["snapshots"].values()] == [6 * STEP, 12 * STEP, 19 * STEP]
         for group, displacement in zip(file["snapshots"].values(), moved, strict=True):
             assert np.array_equal(group["displacement"], displacement)
+        front = simulation.scene.monitors["front"]
+        for number, step in (("0000", 6), ("0001", 12)):  # means of two half steps, as histories
+            found = file[f"snapshots/{number}/velocity"][front]
+            np.testing.assert_allclose(found, expected[step, 0, 3:], rtol=1e-14, atol=1e-300)
+        # the step after the last one is not there
+        assert [HALF_STEP in group.attrs for group in file["snapshots"].values()] == [False, False, True]
 
 
 def test_what_is_cut_of_more_than_ten_thousand_snapshots_is_the_last(tmp_path, simulation) -> None:
