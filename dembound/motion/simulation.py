@@ -197,14 +197,14 @@ class Simulation:
         return record
 
     def _advance_from_rest(self, record: np.ndarray) -> None:
-        """Do the first step of a body at rest, with half a kick.
+        """Do the first step of a body at rest, with half a kick, but a whole one by waves: they give means at jumps.
 
         What is recorded for time zero is rest, but half the prescribed velocities. The work F·(v⁻ + v⁺)/2·Δt that leads
         from one step to the next in the ledger (`energy`) has, from rest, only its later half, F·v⁺Δt/2 of half of v⁺;
         that of prescribed velocities, which jump to v⁺, is a whole one.
         """
         state, before = self.state, self.state.u.copy()
-        self._advance(record)
+        self._advance(record, from_rest=True)
         driven = np.zeros_like(state.v)
         driven[:, self._supports.slots] = self._supports.driven(state.v)
         half = 0.5 * state.v
@@ -225,11 +225,16 @@ class Simulation:
             state.work[0] *= 0.5
             state.side_work[0] *= 0.5
 
-    def _advance(self, record: np.ndarray) -> None:
-        """Do as many steps as the record (k, p, 6 or 7) has rows, with changes of law if necessary."""
+    def _advance(self, record: np.ndarray, from_rest: bool = False) -> None:
+        """Do as many steps as the record (k, p, 6 or 7) has rows, with changes of law if necessary.
+
+        from_rest : with forces by waves of which `NodeSupports.after_half_a_kick` leaves the whole ones.
+        """
         times = (self.state.step + np.arange(len(record))) * self.time_step
         signals = self._supports.sampled(times)
         supports = self._supports.table(signals)
+        if from_rest:
+            supports.drive[...] *= np.where(self._supports.prescribed > 0.0, 1.0, 1.0 + self._supports.keep)
         done = 0
         while done < len(record):
             remaining = supports._replace(drive=supports.drive[done:])

@@ -17,7 +17,7 @@ class Constant(Shape):
     """v = M from `rise` seconds after the start on; during the rise v = M[s − sin(2πs)/2π], s = t/rise.
 
     The ramp's acceleration is one Hann lobe, so velocity and acceleration are continuous. rise = 0 is a step: at its
-    time v is the mean M/2 of before and after, as in sums of forces over time steps, unless that is time zero.
+    time v is the mean M/2 of before and after, as in sums of forces over time steps.
     """
 
     stays: ClassVar[bool] = True
@@ -28,8 +28,7 @@ class Constant(Shape):
     def _progress(self, since: np.ndarray) -> np.ndarray:
         """Position on the ramp: 0 before, 1 after."""
         if self.rise == 0.0:
-            jump = 0.5 if self.start > 0.0 else 1.0
-            return np.where(np.abs(since) <= ROUNDING * self.start, jump, np.where(since > 0.0, 1.0, 0.0))
+            return np.where(np.abs(since) <= ROUNDING * self.start, 0.5, np.where(since > 0.0, 1.0, 0.0))
         return np.clip(since / self.rise, 0.0, 1.0)
 
     def _velocity_shape(self, since: np.ndarray) -> np.ndarray:

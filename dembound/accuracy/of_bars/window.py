@@ -62,14 +62,10 @@ class Window:
         return self.rate + 2j * math.pi * np.fft.rfftfreq(self.samples, self.step)
 
     def transform(self, signal: Signal, ahead: float = 0.0) -> np.ndarray:
-        """Sum of the values of a signal times e^{−st}, (f,); ahead : s, by which it is sampled later.
-
-        At time zero, before which a body is at rest, a value counts half, as in steps (`Simulation`) and in integrals.
-        """
+        """Sum of the values of a signal times e^{−st}, (f,); ahead : s, by which it is sampled later."""
         time = self.step * np.arange(self.samples)
         after = np.clip((np.arange(self.samples) - self.steps) / (0.5 * (self.samples - self.steps)), 0.0, 1.0)
         values = np.asarray(signal(time + ahead)) * 0.5 * (1.0 + np.cos(np.pi * after))
-        values[time + ahead == 0.0] *= 0.5
         return np.fft.rfft(values * np.exp(-self.rate * time))
 
     def history(self, transform: np.ndarray) -> np.ndarray:

@@ -111,7 +111,9 @@ def test_a_step_and_a_ramp_hold_their_velocity() -> None:
     ramp = Constant(type="constant", amplitude=2.0, rise=0.5)
     assert ramp.velocity(np.array([0.25, 0.5, 7.0])) == pytest.approx([1.0, 2.0, 2.0], rel=1e-15)
     assert ramp.highest_frequency() == pytest.approx(3.2743 / 0.5, rel=1e-4)  # x³ − x = 100/π
-    assert STEP.velocity(np.array([0.1999, 0.2, 5.0])).tolist() == [0.0, -0.8, -0.8]
+    times = np.array([0.1999, 0.2, 0.2 + 2e-16, 0.2001, 5.0])
+    assert STEP.velocity(times).tolist() == [0.0, -0.4, -0.4, -0.8, -0.8]
+    assert STEP.model_copy(update={"start": 0.0}).velocity(np.zeros(1)).tolist() == [-0.4]
     assert (STEP.peak_time(), STEP.duration(), STEP.highest_frequency()) == (0.2, math.inf, math.inf)
 
 
