@@ -180,9 +180,8 @@ class Ledger(Tracker):
             u = state.u - run.time_step * state.v
             before = state.layout.spread(state.switch_velocity)
             balancing = system.balancing_work(u)
-        elif (
-            state.step == 1 and not before.any()
-        ):  # half a kick has moved it: as if it had come from there, and is at rest
+        elif state.step == 1 and not before.any():
+            # half a kick has moved it from rest: its velocities half a step before are the opposite ones
             before = state.layout.spread(np.where(run.scene.moves, -state.velocity, 0.0))
         kinetic, stepping = self._of_motion(before, state)
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
