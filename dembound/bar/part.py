@@ -33,6 +33,7 @@ class BarPart(Part):
     """
 
     name = "bar"
+    is_summarised = True
 
     def __init__(
         self, scene: BarBody, time_step: float, first: Bonds | None = None, through: np.ndarray | None = None

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -19,11 +19,13 @@ class Part(ABC):
     name : in the state and in messages.
     nodes : its range of the scene's nodes.
     law_name : name of the law in use, for reports.
+    is_summarised : whether summaries read its arrays at the end of a run.
     """
 
     name: str
     nodes: slice
     law_name: str
+    is_summarised: ClassVar[bool] = False
 
     @abstractmethod
     def law(self) -> NamedTuple:

@@ -9,7 +9,7 @@ import json
 import h5py
 import numpy as np
 import pytest
-from small_cases import PUSHED, TORN, small
+from small_cases import PUSHED, SPALLING, TORN, small
 
 from dembound.motion.simulation import Simulation
 from dembound.running import plan, resume_case, run_case
@@ -49,10 +49,11 @@ def test_a_recorded_fall(tmp_path) -> None:
             folder = resume_case(folder, until=0.13)
 
 
-def test_a_step_ahead_leaves_no_trace() -> None:
-    """Of a run whose bonds break; and the motion is that of the next record."""
-    planned = plan(small(PUSHED, "ahead", TORN))
-    simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
+@pytest.mark.parametrize("case", [small(PUSHED, "ahead", TORN), small(SPALLING)], ids=["disks", "bar"])
+def test_a_step_ahead_leaves_no_trace_in_summaries(case) -> None:
+    """Of a run whose bonds break: contacts of disks may be a step ahead; and the motion is that of the next record."""
+    planned = plan(case)
+    simulation, whole = (Simulation(planned.scene, planned.time_step, planned.scene.probes) for _ in range(2))
     simulation.advance(planned.steps // 2)
     before = simulation.state.arrays()
     with simulation.a_step_ahead() as motion:
@@ -61,5 +62,5 @@ def test_a_step_ahead_leaves_no_trace() -> None:
     after = simulation.state.arrays()
     assert before.keys() == after.keys()
     for name, values in before.items():
-        assert np.array_equal(values, after[name]), name
-    assert np.array_equal(simulation.advance(1)[0], ahead)
+        assert name.startswith("system/body/") or np.array_equal(values, after[name]), name
+    assert np.array_equal(whole.advance(planned.steps // 2 + 1)[-1], ahead)
