@@ -84,6 +84,7 @@ def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, A
     case = replace(case, run=case.run.lasting(min(case.run.duration, until)))
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
     causes = causes_of(case, recorded, summary["time_step"], work)
+    causes += judge_of(case).at_start(case, causes.motions or recorded, summary)
     causes += Causes([], broken, list(judge_of(case).notes(case, summary)))
     return causes + Causes([], list(_at_rest(Budget(causes.motions or recorded, causes))))
 

@@ -56,6 +56,10 @@ class Judge(ABC, Generic[C, S]):
         """
         raise no_seed(case)
 
+    def at_start(self, case: C, recorded: Motions, summary: Mapping[str, Any]) -> Causes:
+        """Causes of the error of a run by the state in which it began, from the summary of its results; none."""
+        return Causes([])
+
     def notes(self, case: C, summary: Mapping[str, Any]) -> Iterator[str]:
         """Lines on the validity of a run's estimate, from the summary of its results; by default none."""
         yield from ()

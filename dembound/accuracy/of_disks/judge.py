@@ -19,6 +19,7 @@ from dembound.accuracy.of_disks.exact.layered_column import ExactLayeredColumn
 from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
 from dembound.accuracy.of_disks.extended import extended_disks
 from dembound.accuracy.of_disks.formulas import Formulas
+from dembound.accuracy.of_disks.rest import causes_of_rest
 from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.proposal import Advice, Receiver
 from dembound.accuracy.reference import Exact
@@ -53,6 +54,10 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
     def of_other_seeds(self, case: DiskCase, motions: Motions, seeds: int) -> Causes:
         """The scatter of runs with several seeds; see `Judge.of_other_seeds`."""
         return cause_of_packing(case, motions, seeds)
+
+    def at_start(self, case: DiskCase, recorded: Motions, summary: Mapping[str, Any]) -> Causes:
+        """Errors by what the static stage left out of balance."""
+        return causes_of_rest(build(case), recorded, summary["static"])
 
     def notes(self, case: DiskCase, summary: Mapping[str, Any]) -> Iterator[str]:
         """A line on the ratio of the motion to the limit of the elastic law; damped ground has no load factor."""

@@ -6,6 +6,15 @@ from dembound.boundaries import Boundary
 from dembound.casefile.types import StaticSide
 from dembound.table import Table, quantity
 
+RATIO = 1e-5
+"""Force ratio at rest under the elastic law, where what is left acts as constant forces and changes no motion."""
+
+RATIO_SLIDING = 1e-7
+"""Force ratio at rest under a history-dependent law.
+
+What is left decides there which contacts at the limit of friction slide as a wave begins, see
+`dembound.accuracy.of_disks.rest`."""
+
 MOST_STEPS = 100_000_000
 """Largest number of steps of the stage: a hundred disks take minutes for these, and thousands of steps are enough."""
 
@@ -33,11 +42,12 @@ class Static(Table):
         ge=0.0,
         le=5.0,
     )
-    ratio: float = quantity(
-        1e-5,
+    ratio: float | None = quantity(
+        None,
         unit="1",
         means="rest",
-        help="mean unbalanced force over mean contact force at which the stage is over",
+        help="mean unbalanced force over mean contact force at which the stage is over; "
+        "absent: 1e-5, and 1e-7 once contacts slide or open or bonds break",
         gt=0.0,
         lt=1.0,
     )
@@ -55,6 +65,10 @@ class Static(Table):
     boundary: Mapping[str, StaticSide] = quantity(
         {}, unit="1", help="a table for each side during the stage; an absent side is free"
     )
+
+    def enough(self, *, slides: bool) -> float:
+        """The force ratio at which the stage is over; slides : whether under a history-dependent law."""
+        return self.ratio or (RATIO_SLIDING if slides else RATIO)
 
 
 def begins_stressed(static: Static, boundaries: Mapping[str, Boundary | None]) -> bool:

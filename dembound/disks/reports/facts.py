@@ -294,7 +294,9 @@ def _static_facts(scene: DiskScene) -> Entries:
     if case.material.locked_in:
         acting.append("the locked-in stress")
     sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
-    yield "static stage", f"under {' and '.join(acting)}, to an unbalanced force ratio of {static.ratio:g}"
+    ratio, sliding = (static.enough(slides=slides) for slides in (False, scene.has_history))
+    more = "" if sliding == ratio else f", of {sliding:g} once contacts slide or open"
+    yield "static stage", f"under {' and '.join(acting)}, to an unbalanced force ratio of {ratio:g}{more}"
     yield "static sides", sides
 
 

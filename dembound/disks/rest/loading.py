@@ -54,7 +54,7 @@ class Loading:
         self._lacking, self._begun, self._steps = np.zeros_like(start), 0, 0
         if system.uses_history:
             lacking = self._out_of_balance()
-            if body.force_ratio(system, lacking - system.load, system.contacts) > body.static.ratio:
+            if body.force_ratio(system, lacking - system.load, system.contacts) > body.static.enough(slides=True):
                 self._raise_from(lacking, 1.0, 0)
 
     def is_rising(self, step: int) -> bool:

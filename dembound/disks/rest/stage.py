@@ -146,7 +146,7 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
         steps=simulation.state.step,
         ratio=rest.ratio,
         mean_reaction=float(unbalanced[held].mean()) if held.any() else 0.0,
-        mean_residual=float(unbalanced[~held].mean()) if not held.all() else 0.0,
+        mean_residual=float(np.hypot(*body.unbalanced(system, forces))[~held].mean()) if not held.all() else 0.0,
         stress=block_stress(body.scene, system, displacement).mean(axis=(0, 1)),
         uniformity=None if asked is None else Uniformity.of(body.scene, system, displacement, asked),
         cracks=rest.take_cracks(),

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from dembound.casefile.disks.static import Static
 from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.stepping.contact_lists import contact_lists
@@ -65,7 +64,7 @@ class UntilAtRest(Tracker):
             self._on_look(state.step, self.ratio, self._stage)
         if loading.is_rising(state.step):
             self._begin_anew(state)
-        elif self.ratio <= static.ratio:
+        elif self.ratio <= self._enough:
             if loading.is_the_answer(state):
                 run.stopped = True
                 return
@@ -79,6 +78,11 @@ class UntilAtRest(Tracker):
         loading.put_on(state)
         self._look_after(state.step)
 
+    @property
+    def _enough(self) -> float:
+        """The force ratio at which the stage is over under the present law."""
+        return self._body.static.enough(slides=self._system.uses_history)
+
     def _begin_anew(self, state: State) -> None:
         """Reset the record of progress, as the loads or the law have changed."""
         self._best, self._best_at = np.inf, state.step
@@ -86,7 +90,8 @@ class UntilAtRest(Tracker):
     def _fail(self, run: Run) -> None:
         """Raise StalledError."""
         lacking, cracks = self._body.unbalanced(self._system, self.forces), self.take_cracks()
-        message = f"{self._stage} {_where_it_ended(self._body.static, run, self.ratio, lacking, cracks)}"
+        ended = _where_it_ended(run, self.ratio, self._enough, self._body.static.max_steps, lacking, cracks)
+        message = f"{self._stage} {ended}"
         raise StalledError(message, run, lacking.T, cracks)
 
     def saved_arrays(self) -> Arrays:
@@ -112,11 +117,14 @@ class UntilAtRest(Tracker):
         return self._system.forces.last(self._contacts) + self._system.forces.of_ties(displacement)
 
 
-def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarray, cracks: Cracks) -> str:
-    """Lines about a stage that takes too long, with its state and advice; unbalanced (2, n) N as for `_lacking`."""
+def _where_it_ended(run: Run, ratio: float, enough: float, most: int, unbalanced: np.ndarray, cracks: Cracks) -> str:
+    """Lines about a stage that takes too long, with its state and advice.
+
+    enough : the force ratio at which it is over. most : number of its steps. unbalanced (2, n) N as for `_lacking`.
+    """
     steps = run.state.step
-    facts = f"static.ratio requests {static.ratio:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
-    if steps >= static.max_steps:
+    facts = f"static.ratio requests {enough:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
+    if steps >= most:
         came = f"came to an unbalanced force ratio of {ratio:.3g} in {steps:,} steps"
         return f"{came}, {facts}\nallow more with static.max_steps"
     return (
