@@ -13,6 +13,10 @@ SHOWN = 1e-3
 """Share of the stress below which what differs in the packing itself is not printed."""
 
 
+SEVERAL = "contacts slid or opened while the body settled, so that its rest is one of several"
+"""Said of a static stage that left the elastic law."""
+
+
 def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
     """Reductions, the static stage, changes of law, broken bonds and the energy error."""
     facts = [*summary["reduced"], *summary["not_reduced"]]
@@ -23,6 +27,8 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
         lines = [line for name, stage in stages for line in _stages(name, stage)]
         took = with_unit(summary["seconds"]["settle"], "s", 2)
         facts += [*lines[:-1], f"{lines[-1]}; {took}{' for all stages' if len(lines) > 1 else ''}"]
+        if not static["elastic"]:
+            facts.append(f"{SEVERAL}: dembound estimate says how far they differ")
     if summary["has_history"]:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
         facts += _broken(summary["cracks"], static)

@@ -161,6 +161,8 @@ def test_loads_and_the_static_stage_are_reported(bar) -> None:
         == "under weight and σ_xx, σ_yy, σ_xy = -1, -2, 0 MPa, to an unbalanced force ratio of 1e-05"
     )
     assert facts["static sides"] == "left fixed"
+    own = facts_of(bar({"static": static, "material.law": "linearpbond"}))["static stage"]
+    assert own.endswith("ratio of 1e-05, of 1e-07 once contacts slide or open")
     assert Disks().not_estimated(case) == []
     assert Disks().settles(case)
 

@@ -7,7 +7,15 @@ def test_only_what_applies_is_reported() -> None:
     elastic = {"static": None, "has_history": False, "laws": [{"law": "elastic", "from": 0.0}]}
     elastic |= {"seconds": {"settle": 4.2}, "reduced": [], "not_reduced": [], "load_factor": None}
     quiet = {"has_history": True, "cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
-    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None, "column": None}
+    settled = {
+        "steps": 3100,
+        "ratio": 9.84e-6,
+        "cracks": 0,
+        "before": None,
+        "asked": None,
+        "column": None,
+        "elastic": True,
+    }
     steps = "3,100 steps, unbalanced force ratio 9.8e-06"
     stage, took = f"static stage: {steps}", "; 4.2 s"
 
@@ -17,6 +25,8 @@ def test_only_what_applies_is_reported() -> None:
         "no half",
     ]
     assert disk_outcome(elastic | {"static": settled}) == [stage + took]
+    said = "contacts slid or opened while the body settled, so that its rest is one of several: dembound estimate says"
+    assert disk_outcome(elastic | {"static": settled | {"elastic": False}})[1].startswith(said)
     first = {"factor": 1.25, "limit": "slides", "time": 0.5, "position": [3.0, 4.0], "particles": [1, 2]}
     assert disk_outcome(elastic | {"load_factor": first}) == [
         "the elastic law holds up to 1.25 times the waves, where the pair at (3, 4) m slides at t = 0.5 s"

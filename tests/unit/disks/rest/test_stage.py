@@ -201,3 +201,20 @@ def test_with_an_excavation_the_column_is_that_of_before(bar) -> None:
     # the column has lost nothing, the body some
     assert np.array_equal(after["column"].of("first"), before["column"].of("first"))
     assert len(after["body"].live) < len(before["body"].live)
+
+
+@pytest.mark.parametrize("ratio", [None, 1e-4])
+def test_contacts_that_slide_come_closer_to_rest_by_default(bar, ratio: float | None) -> None:
+    """With K0 they begin under their own law; forces of the ground beside are no residual."""
+    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
+    static = {"k0": 0.2, "boundary": {"bottom": FIXED}, **({} if ratio is None else {"ratio": ratio})}
+    law = {**LAWS["with a history"], "material.fric": 0.2}
+    settled = settle(
+        scene(bar, **{**STANDING, "packing.size": [3.0, 4.0], "boundary": boundary, **law, "static": static})
+    )
+
+    assert settled.column is not None
+    for stage in (settled, settled.column):
+        assert stage.start.has_history
+        assert stage.ratio <= (ratio or 1e-7)
+        assert stage.mean_residual <= 2.0 * stage.ratio * 4.0 * MASS * G * 8
