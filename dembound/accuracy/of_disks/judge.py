@@ -57,7 +57,8 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def at_start(self, case: DiskCase, recorded: Motions, summary: Mapping[str, Any]) -> Causes:
         """Errors by what the static stage left out of balance."""
-        return causes_of_rest(build(case), recorded, summary["static"])
+        static = summary["static"]
+        return Causes([]) if static is None else causes_of_rest(build(case), recorded, static)
 
     def notes(self, case: DiskCase, summary: Mapping[str, Any]) -> Iterator[str]:
         """A line on the ratio of the motion to the limit of the elastic law; damped ground has no load factor."""

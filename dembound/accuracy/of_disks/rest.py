@@ -33,12 +33,12 @@ REST_FACTOR = 2.0
 """Factor of these errors, see `CHANCE`; of what is left alone they were 0.3 to 2.9 times as large."""
 
 
-def causes_of_rest(scene: DiskScene, motions: Motions, static: Mapping[str, Any] | None) -> Causes:
-    """The errors of a run by the end of its static stage; without one or under the elastic law none.
+def causes_of_rest(scene: DiskScene, motions: Motions, static: Mapping[str, Any]) -> Causes:
+    """The errors of a run by the end of its static stage; under the elastic law none.
 
     motions : by monitor. static : of the summary, see `describe_static`.
     """
-    if static is None or static["elastic"]:
+    if static["elastic"]:
         return Causes([])
     stages = [each for each in (static, static["before"], static["column"]) if each is not None]
     broken = sum(each["cracks"] for each in stages)

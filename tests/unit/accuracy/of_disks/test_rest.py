@@ -44,7 +44,6 @@ def test_the_error_is_the_force_of_rest_over_that_of_the_wave(static: dict[str, 
 
 def test_nothing_is_said_without_sliding_and_nothing_is_known_with_breaks() -> None:
     body, moved = scene(), motions(PEAK)
-    assert causes_of_rest(body, moved, None).found == []
     assert causes_of_rest(body, moved, STATIC | {"elastic": True}).found == []
     for broken in ({"cracks": 3}, {"column": STATIC | {"cracks": 3}}, {"before": STATIC | {"cracks": 3}}):
         (cause,) = causes_of_rest(body, moved, STATIC | broken).found
