@@ -30,13 +30,15 @@ class Polygon(Hole):
     def depth(self, positions: np.ndarray) -> np.ndarray:
         """Distances (k,) m of positions (k, 2) m from the polygon, negative outside.
 
-        Inside is where a ray along +x meets an odd number of edges.
+        Inside is where a ray along +x meets an odd number of edges. A cut that is drawn there and back, as from the
+        outer to the inner corners of a ring, is no edge.
         """
         x, y = positions.T
         inside, away = np.zeros(len(positions), dtype=bool), np.full(len(positions), np.inf)
-        for (x0, y0), (x1, y1) in zip(self.points, self.points[1:] + self.points[:1], strict=True):
+        edges = list(zip(self.points, self.points[1:] + self.points[:1], strict=True))
+        for (x0, y0), (x1, y1) in edges:
             along, up = x1 - x0, y1 - y0
-            if along == up == 0.0:
+            if ((x1, y1), (x0, y0)) in edges:  # also of two corners in one place
                 continue
             part = np.clip(((x - x0) * along + (y - y0) * up) / (along * along + up * up), 0.0, 1.0)
             away = np.minimum(away, np.hypot(x - x0 - part * along, y - y0 - part * up))
