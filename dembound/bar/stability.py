@@ -9,6 +9,12 @@ opens within a step: of a force F that turns into a pull one sample, up to F/2, 
 then drift apart, those of a piece of N cells by 1/N of the velocity F/ρcA in every step. Where bonds or Δx/c differ,
 fronts themselves drive s.
 
+Of forces F_n on nodes the mode gets f = (−1)^i F_n, and Mq'' + 2Mq' + Mq = f Δt², M the mass of the whole bar. So
+S_k = Σ(−1)ⁿ f up to step k remains in s, and springs of cells of the mass m swing by 2(m/M) ΣS_k about the force of
+waves. A force that is sudden at one step has S = F, 0, F … and swings by F after one way through the bar, by as much
+more after each further way, and so has one with sudden ends at an odd distance. Held, absorbing and elastic ends have
+no such mode.
+
 At the share r of the limit the drift is the beat of a mode with cos(ωΔt/2) = √(1 − r²) in place of 0: it ends at
 F/ρcA/(2N √(1 − r²)), and no energy of the ledger exceeds 1/(1 − r²) of what was supplied.
 """
@@ -25,6 +31,9 @@ BELOW = 0.99
 The closer to 1, the shorter fronts ring: over 240 cells 1.2 % of the stress is left at 0.999, 0.6 % of it at 0.99 and
 2.4 % at 0.9; at 0.999 the swings of repeated impacts on 50 cells are half as large as their fronts.
 """
+
+SUDDEN = 0.2
+"""Swing of springs over the largest load above which a bar may not run at the limit: at `BELOW` fronts overshoot so."""
 
 
 def own_step(scene: BarScene, limit: float) -> float:
@@ -46,11 +55,34 @@ def _given_step(scene: BarScene, limit: float) -> float:
 
 
 def is_bounded_at_limit(scene: BarScene) -> bool:
-    """Whether the motion is d'Alembert's at the limit: local springs, one Δx/c in all ranges, and no contacts."""
+    """Whether the motion is d'Alembert's at the limit: local springs, one Δx/c in all ranges, no contacts.
+
+    And no loads so sudden that springs swing by more than `SUDDEN` of them within the run.
+    """
+    return _is_exact(scene) and _swing(scene) <= SUDDEN
+
+
+def _is_exact(scene: BarScene) -> bool:
+    """Whether waves are exact at the limit: local springs, one Δx/c in all ranges, and no contacts."""
     bonds = scene.case.method.begin(scene.rod)
     steps = [part.spacing / part.speed for part in scene.rod.ranges]
     is_local = not bonds.zones and np.array_equal(bonds.spring, scene.rod.springs)
     return is_local and not scene.rod.touching and max(steps) <= min(steps) * (1.0 + ROUNDING)
+
+
+def _swing(scene: BarScene) -> float:
+    """Largest swing of a spring's force in a run at the limit, over the largest force of the loads; 0 if it is bounded."""
+    rod, supports, step = scene.rod, scene.supports, unit_step(scene)
+    if not scene.case.load or not all(scene.case.side(side).is_free for side in scene.edges):
+        return 0.0
+    from scipy.signal import lfilter  # imported here, as it takes a second and other bars do not need it
+
+    forces = supports.sample(step * np.arange(round(scene.case.run.duration / step)), 0.0)
+    driven = forces @ (-1.0) ** supports.node
+    driven[1::2] *= -1.0
+    most, rest = np.abs(forces.sum(axis=1)).max(initial=0.0), 0.5 * step * float(rod.drag_rate @ rod.mass / rod.mass.sum())
+    sums = lfilter([1.0], [1.0 + rest, -2.0, 1.0 - rest], driven)  # ΣS, of which attenuation takes a part in each step
+    return float(2.0 * rod.mass.max() / rod.mass.sum() * np.abs(sums).max() / most) if most > 0.0 else 0.0
 
 
 def shortened_in_words(scene: BarScene, time_step: float) -> str:
@@ -64,7 +96,7 @@ def shortened_in_words(scene: BarScene, time_step: float) -> str:
         step = f"safety: is {run.safety:g}, shortened to {BELOW:g}"
     if run.courant is not None:
         step = f"courant: is {run.courant:g}, shortened to {time_step / unit_step(scene):.6g}"
-    cause = "contacts that open" if scene.rod.touching else "fronts"
+    cause = "contacts that open" if scene.rod.touching else "so sudden loads" if _is_exact(scene) else "fronts"
     return f"run.{step}, {BELOW:g} of the stability limit: at the limit {cause} leave swings that grow with every step"
 
 

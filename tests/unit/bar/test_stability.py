@@ -55,6 +55,11 @@ def test_a_step_is_that_of_its_courant_number_or_a_share_of_the_limit(spalling) 
     assert step == 0.75 * limit
 
 
+STEP = {"wave.pulse": {"type": "constant", "amplitude": 1.0}}
+HALF_WAY = {"wave.pulse": {"type": "triangle", "amplitude": 1.0, "start": 0.5 * UNIT, "rise": UNIT, "fall": 40 * UNIT}}
+ODD = {"wave.pulse": {"type": "triangle", "amplitude": 1.0, "rise": 5 * UNIT, "fall": 10 * UNIT}}
+SUDDENLY = "run.courant: is 1, shortened to 0.99, 0.99 of the stability limit: at the limit so sudden loads leave swings"
+
 ALIKE = [{"name": "a", "length": 0.5}, {"name": "b", "length": 0.5, "spacing": 0.0125, "wave_speed": 500.0}]
 TOUCHING = [ALIKE[0], ALIKE[1] | {"interface": "contact"}]
 UNLIKE = [ALIKE[0], ALIKE[1] | {"wave_speed": 500.1}]
@@ -78,6 +83,13 @@ PERIDYNAMIC = {"method": {"type": "peridynamics", "horizon": 3}}
         (CENTRAL | {"bar.range": UNLIKE}, {"courant": 1.0}, "run.courant: is 1, shortened to 0.990"),
         (PERIDYNAMIC, {"safety": 1.0}, "run.safety: is 1, shortened to 0.99"),
         ({"method": {"type": "switch", "horizon": 3, "before": "peridynamics"}}, {"safety": 1.0}, "run.safety: is 1, "),
+        (CENTRAL | STEP, {"courant": 1.0}, SUDDENLY),
+        (CENTRAL | STEP | {"boundary.right": {"type": "viscous"}}, {"courant": 1.0}, ""),
+        (CENTRAL | HALF_WAY, {"courant": 1.0}, ""),
+        # S = F/2 (1/5), by which springs swing by 0.2 F on the way of every 40 cells
+        (CENTRAL | ODD, {"courant": 1.0, "duration": 35 * UNIT}, ""),
+        (CENTRAL | ODD, {"courant": 1.0, "duration": 70 * UNIT}, SUDDENLY),
+        (PATCH | ODD | {"bar.attenuation": 10.0}, {"courant": 1.0, "duration": 70 * UNIT}, ""),
     ],
 )
 def test_only_waves_that_are_exact_may_have_a_step_at_the_limit(spalling, changes, run, line) -> None:

@@ -135,7 +135,10 @@ def test_a_bar_of_peridynamics_that_cannot_break_is_taken_by_finite_differences(
 
 
 def test_two_rocks_get_nodes_of_equal_travel_times() -> None:
-    """Finite differences at Courant number 1 are then exact in both rocks, except for whole numbers of nodes."""
+    """Finite differences near Courant number 1 are then exact in both rocks, except for whole numbers of nodes.
+
+    Whole numbers make Δx/c differ a little, so that the bar may not run at the limit itself.
+    """
     bar = {"length": 1.0, "range": [{"name": "a", "length": 0.6}, {"name": "b", "length": 0.4, "wave_speed": 1400.0}]}
     changes = {f"bar.{key}": value for key, value in bar.items()} | RICKER
     case = with_changes(scene("finite differences, ν = 0.9"), changes)
@@ -146,7 +149,7 @@ def test_two_rocks_get_nodes_of_equal_travel_times() -> None:
     assert choice.holds
     ways = [part.length / part.cells / part.speed for part in choice.case.bar.parts]
     assert ways[1] == pytest.approx(ways[0], rel=0.1)
-    assert choice.case.run.courant == 1.0
+    assert choice.case.run.safety == 0.99
     assert true_error(choice) <= 0.005
 
 
