@@ -111,6 +111,12 @@ def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
                 f"run.courant: is {time_step / steps.max():.3g}, so fronts of impacts overshoot by some 20 % of the "
                 f"stress and ring; as Δx/c is alike in all ranges, courant = {BELOW:g} makes it shortest"
             )
+        if np.isfinite(case.bar.least_strength) and all(part.fracture_energy is None for part in case.bar.parts):
+            yield (
+                "bar.range: fronts of impacts overshoot for some steps, and where several meet the tension can be "
+                "twice that of waves, so that springs can break too early; give bar.fracture_energy, with which they "
+                "open slowly"
+            )
         return
     listed = ", ".join(f"{1e6 * step:.3g}" for step in steps)
     yield (

@@ -71,7 +71,7 @@ def _is_exact(scene: BarScene) -> bool:
 
 
 def _swing(scene: BarScene) -> float:
-    """Largest swing of a spring's force in a run at the limit, over the largest force of the loads; 0 if it is bounded."""
+    """Largest swing of a spring's force in a run at the limit, over that of the loads; 0 where no swing can grow."""
     rod, supports, step = scene.rod, scene.supports, unit_step(scene)
     if not scene.case.load or not all(scene.case.side(side).is_free for side in scene.edges):
         return 0.0
@@ -80,9 +80,10 @@ def _swing(scene: BarScene) -> float:
     forces = supports.sample(step * np.arange(round(scene.case.run.duration / step)), 0.0)
     driven = forces @ (-1.0) ** supports.node
     driven[1::2] *= -1.0
-    most, rest = np.abs(forces.sum(axis=1)).max(initial=0.0), 0.5 * step * float(rod.drag_rate @ rod.mass / rod.mass.sum())
+    most, mass = np.abs(forces).sum(axis=1).max(initial=0.0), rod.mass.sum()
+    rest = 0.5 * step * (rod.drag_rate @ rod.mass) / mass
     sums = lfilter([1.0], [1.0 + rest, -2.0, 1.0 - rest], driven)  # ΣS, of which attenuation takes a part in each step
-    return float(2.0 * rod.mass.max() / rod.mass.sum() * np.abs(sums).max() / most) if most > 0.0 else 0.0
+    return float(2.0 * rod.mass.max() / mass * np.abs(sums).max() / most) if most > 0.0 else 0.0
 
 
 def shortened_in_words(scene: BarScene, time_step: float) -> str:

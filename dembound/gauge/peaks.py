@@ -31,6 +31,9 @@ NARROWEST, WIDER, WIDE = 3, 1.2, 0.25
 """Reach (samples) of the first parabola of a crest, the factor from one reach to the next, and the reach of the
 smoothing that finds its place, in widths: with a shorter one the place has a chance maximum of the noise."""
 
+MOVES, SHORTER = 5, 1.5
+"""Most ranges of a crest that follow its place, and the last of them over the one whose top is taken."""
+
 
 class Crest(NamedTuple):
     """The largest value of a history without its noise, its standard error, and its place in samples."""
@@ -92,22 +95,30 @@ def crest(values: np.ndarray, noise: float, width: int) -> Crest:
 
     The largest sample is too high, by some standard deviations; a smoothed crest is too low. At the place of the crest
     smoothed over a quarter of its width, parabolas over longer and longer ranges agree within their standard errors
-    until their bias grows as large as these (the intersection of confidence intervals). Over the last of these ranges
-    the top of a polynomial of the fourth degree, with an error of the sixth order of the range in place of the fourth,
-    has hardly any bias beside its standard error. The top of a curve with a slope of variance s² and a curvature κ is
-    too high by s²/2κ, which is subtracted. Sharp corners, which no polynomial has, come out up to 2 % too low.
+    until their bias grows as large as these (the intersection of confidence intervals). The top of a polynomial of the
+    fourth degree over the last of these ranges is a better place, from which all is repeated until it stays, as
+    smoothing shifts crests with unlike sides. Over a range shorter by `SHORTER` this top has hardly any bias beside its
+    standard error; the change between both ranges, of which bias is a part, is added to the error. The top of a curve
+    with a slope of variance s² and a curvature κ is too high by s²/2κ, which is subtracted. Corners of two straight
+    lines, which no polynomial has, come out low by up to 0.7 % with 0.3 % of noise, twice the standard error.
 
     width : of the crest at half its height, samples; the range reaches up to half of it on either side.
     """
-    start = int(smooth(values, max(NARROWEST, round(WIDE * width))).argmax())
-    low, high, best, reach = -np.inf, np.inf, NARROWEST, NARROWEST
-    while reach <= width // 2:
-        height, error, _ = _top(values, start, reach, 2, noise, 0.0)
-        low, high = max(low, height - error), min(high, height + error)
-        if low > high:
+    place = float(smooth(values, max(NARROWEST, round(WIDE * width))).argmax())
+    for _ in range(MOVES):
+        start, low, high, best, reach = round(place), -np.inf, np.inf, NARROWEST, NARROWEST
+        while reach <= width // 2:
+            height, error, _ = _top(values, start, reach, 2, noise, 0.0)
+            low, high = max(low, height - error), min(high, height + error)
+            if low > high:
+                break
+            best, reach = reach, max(reach + 1, int(WIDER * reach))
+        longer = _top(values, start, best, 4, noise, 0.5)
+        place = longer.place
+        if round(place) == start:
             break
-        best, reach = reach, max(reach + 1, int(WIDER * reach))
-    return _top(values, start, best, 4, noise, 0.5)
+    height, error, place = _top(values, round(place), round(best / SHORTER), 4, noise, 0.5)
+    return Crest(height, float(np.hypot(error, longer.height - height)), place)
 
 
 def _top(values: np.ndarray, start: int, reach: int, degree: int, noise: float, within: float) -> Crest:

@@ -55,10 +55,19 @@ def test_a_step_is_that_of_its_courant_number_or_a_share_of_the_limit(spalling) 
     assert step == 0.75 * limit
 
 
-STEP = {"wave.pulse": {"type": "constant", "amplitude": 1.0}}
-HALF_WAY = {"wave.pulse": {"type": "triangle", "amplitude": 1.0, "start": 0.5 * UNIT, "rise": UNIT, "fall": 40 * UNIT}}
-ODD = {"wave.pulse": {"type": "triangle", "amplitude": 1.0, "rise": 5 * UNIT, "fall": 10 * UNIT}}
-SUDDENLY = "run.courant: is 1, shortened to 0.99, 0.99 of the stability limit: at the limit so sudden loads leave swings"
+def blow(**wave: object) -> dict[str, object]:
+    """A load on the left end node."""
+    return {"load": [{"name": "blow", "pressure": 1e6, "wave": "it"}], "wave": {"it": {"amplitude": 1.0, **wave}}}
+
+
+STEP = CENTRAL | blow(type="constant")
+HALF_WAY = CENTRAL | blow(type="triangle", start=0.5 * UNIT, rise=UNIT, fall=40.0 * UNIT)
+ODD = blow(type="triangle", rise=5.0 * UNIT, fall=10.0 * UNIT)
+BOTH = blow(type="constant")
+BOTH["load"] = [{"name": side, "side": side, "pressure": 1e6, "wave": "it"} for side in ("left", "right")]
+SUDDENLY = (
+    "run.courant: is 1, shortened to 0.99, 0.99 of the stability limit: at the limit so sudden loads leave swings"
+)
 
 ALIKE = [{"name": "a", "length": 0.5}, {"name": "b", "length": 0.5, "spacing": 0.0125, "wave_speed": 500.0}]
 TOUCHING = [ALIKE[0], ALIKE[1] | {"interface": "contact"}]
@@ -83,12 +92,15 @@ PERIDYNAMIC = {"method": {"type": "peridynamics", "horizon": 3}}
         (CENTRAL | {"bar.range": UNLIKE}, {"courant": 1.0}, "run.courant: is 1, shortened to 0.990"),
         (PERIDYNAMIC, {"safety": 1.0}, "run.safety: is 1, shortened to 0.99"),
         ({"method": {"type": "switch", "horizon": 3, "before": "peridynamics"}}, {"safety": 1.0}, "run.safety: is 1, "),
-        (CENTRAL | STEP, {"courant": 1.0}, SUDDENLY),
-        (CENTRAL | STEP | {"boundary.right": {"type": "viscous"}}, {"courant": 1.0}, ""),
-        (CENTRAL | HALF_WAY, {"courant": 1.0}, ""),
-        # S = F/2 (1/5), by which springs swing by 0.2 F on the way of every 40 cells
+        (STEP, {"courant": 1.0}, SUDDENLY),
+        (STEP | {"boundary.right": {"type": "viscous"}}, {"courant": 1.0}, ""),
+        (HALF_WAY, {"courant": 1.0}, ""),
+        # from its corners S = F/4 (1/5 + 1/5 + 1/10 − 1/10), by which springs swing by 0.2 F on the way of 40 cells
         (CENTRAL | ODD, {"courant": 1.0, "duration": 35 * UNIT}, ""),
         (CENTRAL | ODD, {"courant": 1.0, "duration": 70 * UNIT}, SUDDENLY),
+        # equal pressures on both ends of an odd number of cells add up in the mode, of an even one they cancel
+        (CENTRAL | {"bar.spacing": 1.0 / 39.0} | BOTH, {"courant": 1.0}, SUDDENLY),
+        (CENTRAL | BOTH, {"courant": 1.0}, ""),
         (PATCH | ODD | {"bar.attenuation": 10.0}, {"courant": 1.0, "duration": 70 * UNIT}, ""),
     ],
 )
