@@ -31,8 +31,8 @@ NARROWEST, WIDER, WIDE = 3, 1.2, 0.25
 """Reach (samples) of the first parabola of a crest, the factor from one reach to the next, and the reach of the
 smoothing that finds its place, in widths: with a shorter one the place has a chance maximum of the noise."""
 
-MOVES, SHORTER = 5, 1.5
-"""Most ranges of a crest that follow its place, and the last of them over the one whose top is taken."""
+RAISED, SHORTER = 2.0, 1.5
+"""Standard errors by which a crest must rise to be followed, and its last range over the one whose top is taken."""
 
 
 class Crest(NamedTuple):
@@ -95,30 +95,35 @@ def crest(values: np.ndarray, noise: float, width: int) -> Crest:
 
     The largest sample is too high, by some standard deviations; a smoothed crest is too low. At the place of the crest
     smoothed over a quarter of its width, parabolas over longer and longer ranges agree within their standard errors
-    until their bias grows as large as these (the intersection of confidence intervals). The top of a polynomial of the
-    fourth degree over the last of these ranges is a better place, from which all is repeated until it stays, as
-    smoothing shifts crests with unlike sides. Over a range shorter by `SHORTER` this top has hardly any bias beside its
-    standard error; the change between both ranges, of which bias is a part, is added to the error. The top of a curve
-    with a slope of variance s² and a curvature κ is too high by s²/2κ, which is subtracted. Corners of two straight
-    lines, which no polynomial has, come out low by up to 0.7 % with 0.3 % of noise, twice the standard error.
+    until their bias grows as large as these (the intersection of confidence intervals). Over the last of these ranges a
+    polynomial of the fourth degree has a top, at whose place all is repeated while this raises it by more than noise
+    does: smoothing shifts crests with unlike sides. Over a range shorter by `SHORTER` this top has hardly any bias of
+    smooth crests beside its standard error. Bias that grows as the range, as of corners, is 1/(`SHORTER` − 1) of the
+    change between both ranges, which is added to the error. The top of a curve with a slope of variance s² and a
+    curvature κ is too high by s²/2κ, which is subtracted.
 
     width : of the crest at half its height, samples; the range reaches up to half of it on either side.
     """
-    place = float(smooth(values, max(NARROWEST, round(WIDE * width))).argmax())
-    for _ in range(MOVES):
-        start, low, high, best, reach = round(place), -np.inf, np.inf, NARROWEST, NARROWEST
-        while reach <= width // 2:
-            height, error, _ = _top(values, start, reach, 2, noise, 0.0)
-            low, high = max(low, height - error), min(high, height + error)
-            if low > high:
-                break
-            best, reach = reach, max(reach + 1, int(WIDER * reach))
-        longer = _top(values, start, best, 4, noise, 0.5)
-        place = longer.place
-        if round(place) == start:
+    start, found = int(smooth(values, max(NARROWEST, round(WIDE * width))).argmax()), []
+    while len(found) < 2 or found[-1][0].height > found[-2][0].height + RAISED * found[-1][0].error:
+        reach = _agreeing_reach(values, start, noise, width)
+        found.append((_top(values, start, reach, 4, noise, 0.5), start, reach))
+        start = round(found[-1][0].place)
+    longer, start, reach = found[-2]
+    height, error, place = _top(values, start, round(reach / SHORTER), 4, noise, 0.5)
+    return Crest(height, float(np.hypot(error, (longer.height - height) / (SHORTER - 1.0))), place)
+
+
+def _agreeing_reach(values: np.ndarray, start: int, noise: float, width: int) -> int:
+    """The longest reach, of up to half the width, at which parabolas agree with all shorter ones at a start."""
+    low, high, best, reach = -np.inf, np.inf, NARROWEST, NARROWEST
+    while reach <= width // 2:
+        height, error, _ = _top(values, start, reach, 2, noise, 0.0)
+        low, high = max(low, height - error), min(high, height + error)
+        if low > high:
             break
-    height, error, place = _top(values, round(place), round(best / SHORTER), 4, noise, 0.5)
-    return Crest(height, float(np.hypot(error, longer.height - height)), place)
+        best, reach = reach, max(reach + 1, int(WIDER * reach))
+    return best
 
 
 def _top(values: np.ndarray, start: int, reach: int, degree: int, noise: float, within: float) -> Crest:
