@@ -35,6 +35,9 @@ The closer to 1, the shorter fronts ring: over 240 cells 1.2 % of the stress is 
 SUDDEN = 0.2
 """Swing of springs over the largest load above which a bar may not run at the limit: at `BELOW` fronts overshoot so."""
 
+FORESEEN = 1_000_000
+"""Most steps of a run for which swings by loads are computed, within half a second and 100 MB."""
+
 
 def own_step(scene: BarScene, limit: float) -> float:
     """The time step (s) of the case: a share of the stability limit (s), or the given step, even above the limit.
@@ -77,7 +80,7 @@ def _swing(scene: BarScene) -> float:
         return 0.0
     from scipy.signal import lfilter  # imported here, as it takes a second and other bars do not need it
 
-    forces = supports.sample(step * np.arange(round(scene.case.run.duration / step)), 0.0)
+    forces = supports.sample(step * np.arange(min(round(scene.case.run.duration / step), FORESEEN)), 0.0)
     driven = forces @ (-1.0) ** supports.node
     driven[1::2] *= -1.0
     most, mass = np.abs(forces).sum(axis=1).max(initial=0.0), rod.mass.sum()

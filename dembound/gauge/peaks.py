@@ -104,7 +104,8 @@ def crest(values: np.ndarray, noise: float, width: int) -> Crest:
 
     width : of the crest at half its height, samples; the range reaches up to half of it on either side.
     """
-    start, found = int(smooth(values, max(NARROWEST, round(WIDE * width))).argmax()), []
+    found: list[tuple[Crest, int, int]] = []
+    start = int(smooth(values, max(NARROWEST, round(WIDE * width))).argmax())
     while len(found) < 2 or found[-1][0].height > found[-2][0].height + RAISED * found[-1][0].error:
         reach = _agreeing_reach(values, start, noise, width)
         found.append((_top(values, start, reach, 4, noise, 0.5), start, reach))
