@@ -63,8 +63,19 @@ def motions(tables: Tables) -> tuple[Any, Mapping[str, Any]]:
     return case, measure(case, Progress())[0].motions
 
 
-def exact(case: Any, own: Mapping[str, Any], radius: float, middle: np.ndarray, is_pressed: bool) -> dict[str, Any]:
-    """The exact motion at the monitors that are in the body, by name and quantity."""
+def exact(
+    case: Any,
+    own: Mapping[str, Any],
+    radius: float,
+    middle: np.ndarray,
+    is_pressed: bool,
+    every: int = 1,
+    tolerance: float = 1e-4,
+) -> dict[str, Any]:
+    """The exact motion at the monitors that are in the body, by name and quantity.
+
+    every : of how many samples one is computed. tolerance : over the largest motion; that of a wave at all monitors.
+    """
     from dembound.disks.beyond.ground_waves import incident_in
     from dembound.disks.beyond.mesh import medium_of
     from dembound.disks.scene import build
@@ -76,17 +87,17 @@ def exact(case: Any, own: Mapping[str, Any], radius: float, middle: np.ndarray, 
     solid = Solid(ground.density, *np.mean([ground.wave_speeds(axis) for axis in (0, 1)], axis=0).tolist())
     away = {name: history.place - middle for name, history in own.items()}
     away = {name: ray for name, ray in away.items() if np.hypot(*ray) >= radius}
-    time = next(iter(own.values())).time
+    time = next(iter(own.values())).time[::every]
     if not is_pressed:
         delay = float(incident_in(case, medium_of(ground)).delays(middle[None])[0])
-        coming = PlaneWave("sv", 0.5 * np.pi, wave.velocity)
-        found = scattered_motion(time - delay, np.array(list(away.values())), coming, radius, solid, tolerance=1e-4)
+        coming = PlaneWave(case.incident.type, 0.5 * np.pi, wave.velocity)
+        found = scattered_motion(time - delay, np.array(list(away.values())), coming, radius, solid, tolerance)
         both = zip(away, found.velocity, found.displacement, strict=True)
         return {name: {"velocity": v.T, "displacement": u.T} for name, v, u in both}
     result = {}
     for name, ray in away.items():
         r = float(np.hypot(*ray))
-        moved = cavity_motion(time, r, lambda t: 1e6 * wave.velocity(t), radius, solid, tolerance=1e-4)
+        moved = cavity_motion(time, r, lambda t: 1e6 * wave.velocity(t), radius, solid, tolerance)
         result[name] = {quantity: getattr(moved, quantity)[:, None] * ray / r for quantity in QUANTITIES}
     return result
 
