@@ -47,6 +47,7 @@ from dembound.studies.strip import (
 )
 from dembound.version import __version__
 from dembound.waves import Cosine
+from dembound.words import percent
 
 Method = Literal["impedance", "ratio", "homogenised"]
 
@@ -227,10 +228,12 @@ def calibrate(
             if method == "impedance" and abs(found.result / matched - 1.0) > tolerance:
                 usual = float(f"{matched:.{HOMOGENISED_DIGITS}g}")
                 own, other = returned(plain, side, motion, pulse, [found.result, usual])
-                found.compared = f"returned: {own:.2%} with {found.result:g}, {other:.2%} with the matched {usual:g}"
+                with_own, with_usual = (percent(share, 3) for share in (own, other))
+                found.compared = f"returned: {with_own} with {found.result:g}, {with_usual} with the matched {usual:g}"
                 if other < own:
                     add_pass(usual)
                     found.result = usual
+                    found.compared += ", which is kept"
             return found
         beta = _next_beta(found)
     raise RunError(

@@ -172,7 +172,8 @@ def test_the_matched_factor_is_kept_where_it_returns_less(long_bar, monkeypatch,
     assert own == known(found.beta[1], found.ratio[1]) != matched
     assert found.result == (matched if kept else own)
     assert found.beta[-1] == pytest.approx(found.result, abs=1e-4)
-    assert found.compared.startswith(f"returned: {shares[0]:.2%} with {own:g}, {shares[1]:.2%} with the matched")
+    words = f"returned: {100 * shares[0]:g} % with {own:g}, {100 * shares[1]:g} % with the matched {matched:g}"
+    assert found.compared == words + (", which is kept" if kept else "")
     # Z's iteration is that of the paper
     assert calibrate(long_bar(), "right", method="ratio", tolerance=1e-4).compared == ""
     assert len(asked) == 1
