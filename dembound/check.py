@@ -49,13 +49,13 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
         seconds = _estimate(planned)
     except RunError as error:
         yield "estimated time", f"unknown, as in the first steps {error}"
-        return
-    static = ""
-    if planned.kind.settles(scene.case):  # 3,300 to 14,300 steps in the shipped cases, 0.1 to 40 crossings of S waves
-        many = with_unit(1000.0 * seconds / planned.steps, "s", 2)
-        static = f"; the static stage comes on top: usually thousands of steps, about {many} for 1,000 of them"
-    time_needed = f"{duration_in_words(seconds)} with {counted(scene.threads, 'thread')}"
-    yield "estimated time", f"{time_needed}, without {left_out}{static}"
+    else:
+        static = ""
+        if planned.kind.settles(scene.case):  # 3,300 to 14,300 steps in shipped cases, 0.1 to 40 crossings of S waves
+            many = with_unit(1000.0 * seconds / planned.steps, "s", 2)
+            static = f"; the static stage comes on top: usually thousands of steps, about {many} for 1,000 of them"
+        time_needed = f"{duration_in_words(seconds)} with {counted(scene.threads, 'thread')}"
+        yield "estimated time", f"{time_needed}, without {left_out}{static}"
     for name, reductions in (("reduced", scene.reduced), ("not reduced", planned.refused)):
         if reductions:
             yield name, "; ".join(reductions)

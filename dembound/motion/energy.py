@@ -25,7 +25,11 @@ ROUNDING = 1e-9
 """Share of the largest energy below which energies count as zero: rounding errors of sums over contacts are smaller."""
 
 OPPOSED = 50.0
-"""Share as of `Opposed` at which a run stops: 1/(1 − r²), which no step of up to r = 0.99 of the limit can exceed."""
+"""Share as of `Opposed` at which a run stops: 1/(1 − r²), which no step of up to r = 0.99 of the limit can exceed.
+
+It stops at two entries in a row: at the first one after the beginning of a wave v⁻ may be next to nothing beside v⁺,
+and the share v⁺/4v⁻, whatever the step. From the next step on a wave that rises as tⁿ has v⁺/v⁻ below 2ⁿ.
+"""
 
 AT_REST = 1e-13
 """Share of the energy stored at the start below which supplied energy is rounding, as for a body at rest."""
@@ -251,7 +255,7 @@ class Ledger(Tracker):
                 f"boundaries had supplied {came:.3g} {self._unit} at most; take {run.scene.against_growth}"
             )
         high, low, share = opposed(vars(last))
-        if share > OPPOSED:
+        if share > OPPOSED < opposed(vars(self.entries[-2])).share:
             raise RunError(
                 f"the velocities swing from step to step without bound: at t = {last.time:g} s {low} and {high} of the "
                 f"energy ledger are {share:.3g} times all the energy there was, and opposite; take a step of "

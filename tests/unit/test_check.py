@@ -3,6 +3,7 @@
 from dembound.bar.facts import bar_facts
 from dembound.check import check, duration_in_words
 from dembound.disks.reports.facts import disk_facts
+from dembound.errors import RunError
 from dembound.motion.ram import in_words
 from dembound.running import plan, warnings_before
 from dembound.words import with_unit
@@ -67,3 +68,14 @@ def test_times_are_reported_as_one_would_say_them() -> None:
         *("less than 1 s", "about 8 s", "about 40 s", "about 90 s"),
         *("about 2.2 min", "about 15 min", "about 2.5 h", "about 25 h", "about 3 d"),
     ]
+
+
+def test_a_case_whose_first_steps_blow_up_is_checked_without_an_estimate_of_time(bar, monkeypatch) -> None:
+    def advance(self, steps: int) -> None:
+        raise RunError("the motion grew without bound")
+
+    monkeypatch.setattr("dembound.check.Simulation.advance", advance)
+    facts, warnings = check(bar())
+    assert facts["estimated time"] == "unknown, as in the first steps the motion grew without bound"
+    assert {"errors", "reduced"} <= set(facts)  # which follow
+    assert warnings == warnings_before(plan(bar()))

@@ -37,6 +37,7 @@ def near_pairs(
     return pairs, images
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of motion without bound, which ends the run
 def cells_of(
     positions: np.ndarray, radii: np.ndarray, numbers: np.ndarray, periods: tuple[float | None, float | None]
 ) -> Cells:

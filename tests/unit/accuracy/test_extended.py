@@ -229,7 +229,7 @@ def test_a_rock_bar_grows_beyond_its_absorbing_end(spalling) -> None:
     assert lengths[:-1] == [0.2, 0.0017, 1.2, 0.0109]
     assert 2.606 < found.case.bar.length < 2.7
     assert found.case.bar.length == pytest.approx(sum(lengths), rel=1e-12)
-    assert found.case.run.courant == 1.0
+    assert found.case.run.courant == 0.99  # as that of the case
 
 
 def test_monitors_and_loads_in_a_continuum_are_at_disks_of_the_larger_scene(bar) -> None:

@@ -6,6 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 import tomli_w
+from small_cases import PUSHED, small
 
 from dembound.bar import stability as bar_stability
 from dembound.bar.scene import build_bar
@@ -16,10 +17,11 @@ from dembound.disks.stepping.start import Start
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
 from dembound.kinds import loads
-from dembound.motion.energy import GAIN, Entry, Ledger
+from dembound.motion.energy import GAIN, OPPOSED, Entry, Ledger, opposed
 from dembound.motion.simulation import Simulation
 from dembound.motion.state import State
 from dembound.motion.trackers import NEVER, Tracker
+from dembound.running import plan
 
 MASS = 2500.0 * 0.5**2
 STEP = 0.01
@@ -243,6 +245,20 @@ def test_a_gain_is_compared_with_what_came_and_went() -> None:
     simulation.track(Push(590, lambda state: state.velocity + speed * np.array([[1.0], [0.0], [0.0]])))
     with pytest.raises(RunError, match=f"had supplied {came:.3g} J at most"):
         simulation.advance(302)
+
+
+def test_a_wave_that_begins_just_before_a_half_step_is_not_stopped() -> None:
+    """Of v ~ t² a step Δt and 0.01 Δt after its beginning v⁺/4v⁻ is 1.01²/(4 · 0.01²), and 2.01²/(4 · 1.01²) later."""
+    push = {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.01, "start": 2.49e-4}}
+    side = {"boundary.left": {"type": "velocity", "wave_p": "push"}}
+    planned = plan(small(PUSHED, changes=side | {"wave": push, "run.time_step": 1e-4}))  # type: ignore[arg-type]
+    simulation = Simulation(planned.stepped, planned.time_step)
+    ledger = booked(simulation)
+    simulation.advance(8)
+    shares = [opposed(vars(entry)).share for entry in ledger.entries]
+    assert shares[3] == pytest.approx(2550.0, rel=0.01)
+    assert shares[3] > OPPOSED
+    assert max(shares[:3] + shares[4:]) < 1.0
 
 
 @pytest.mark.parametrize("law", [{}, {"material.elastic_start": False}], ids=["elastic", "linearpbond"])

@@ -180,6 +180,17 @@ def test_motion_that_grows_without_bound_ends_the_run_and_says_when_and_where(ba
     assert caught.value.exit_code == 3
 
 
+def test_disks_infinitely_far_away_end_a_run_whose_pairs_cannot_be_listed_anymore(bar) -> None:
+    """As a stress at rest of 1e12 Pa beside free fields leaves them within `check`, where no step would follow."""
+    planned = plan(bar({"material.law": "linearpbond", "material.elastic_start": False}))
+    simulation = Simulation(planned.stepped, planned.time_step)
+    simulation.advance(2)
+    simulation.state.u[0] = np.inf
+    with pytest.raises(RunError, match=f"grew without bound by t = {2.0 * planned.time_step:g} s"):
+        simulation.advance(1)
+    assert simulation.state.step == 2
+
+
 @pytest.mark.parametrize(("axis", "sign"), [(0, -1.0), (1, 1.0)])
 def test_a_runaway_node_ends_the_run_whichever_way_it_flies(bar, axis: int, sign: float) -> None:
     simulation = simulated(bar)
