@@ -6,7 +6,7 @@ Cavities in a full space, compared with the exact series, and semicircular canyo
 smaller, for which differences are multiplied by 3/2, as these errors are of first order. Each pair is the number of
 disks along the radius, and how many radii S waves run in the pulse. RMS over RMS of the larger component, of which
 the estimate is; the error of the smaller one is judged by that expected of the larger one. The cavities `HELD_OUT` had
-no part in the fit. All take fifteen minutes of CPU time, half of them for the largest cavity.
+no part in the fit. All take some ten minutes of CPU time.
 """
 
 import argparse

@@ -221,7 +221,7 @@ def _print_pass_of_side(found: Calibration) -> None:
 
 
 def _print_table(found: Sequence[Calibration]) -> None:
-    """One line per factor: side and wave, old and new value, and M_out/M_in with the new value."""
+    """One line per factor: side and wave, old and new value, and M_out/M_in; below what sides return, if compared."""
     from dembound.studies.all_sides import changes_of
 
     table = compact_table("key", "side", "β", "before", "M_out/M_in", "passes", title=found[0].case.name)
@@ -231,6 +231,9 @@ def _print_table(found: Sequence[Calibration]) -> None:
         given = before if before == "matched" else f"{before:g}"
         table.add_row(key, each.kind, f"{result:g}", given, ratio, str(len(each.beta)))
     out.print(table)
+    for key, each in zip(changes_of(found), found, strict=True):
+        if each.compared:
+            out.print(f"{key} {each.compared}")
 
 
 def _print_result(found: Calibration) -> None:

@@ -29,6 +29,7 @@ from dembound.kinds import load
 from dembound.machine import Memory
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
+from dembound.studies.all_sides import calibrate_all
 from dembound.version import __version__
 
 
@@ -440,7 +441,9 @@ def test_a_calibration_writes_the_case_with_its_factor_beside_it(dembound, tmp_p
     assert f"β_P = {beta:g}\n" in answer.out
     passes = [line for line in answer.out.splitlines() if line.startswith("pass ")]
     assert passes[0].startswith("pass  1: β_P = 0.500000, M_out = ")
-    assert len(passes) == 2
+    assert len(passes) == 3  # the last one with the matched factor, which returns less
+    assert beta == 1.0
+    assert [line for line in answer.out.splitlines() if line.endswith(" with the matched 1, which is kept")]
     assert dembound("check", "mine/bar_calibrated.toml").code == 0
 
     # the next side in the case that was left; then all sides at once, of the same case
@@ -469,7 +472,7 @@ def test_a_calibration_replaces_no_other_case(dembound, tmp_path) -> None:
     assert (tmp_path / "other_calibrated.toml").is_file()
 
 
-def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, tmp_path) -> None:
+def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, tmp_path, monkeypatch) -> None:
     path = written(changes={"wave.pulse.period": 0.05, "boundary.right.beta_p": 0.5})
     assert dembound("calibrate", path) == (2, "", "--boundary: is missing; name a side, or give --all\n")
     answer = dembound("calibrate", path, "--all", "-b", "left", "--wave", "p")
@@ -482,8 +485,16 @@ def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, 
     assert not (tmp_path / "results").exists()
     other.unlink()
 
+    def compared(*given, **options):
+        found = calibrate_all(*given, **options)
+        found[1].compared = "returned: 1 % with 1, 2 % with the matched 1.1"
+        return found
+
+    monkeypatch.setattr("dembound.studies.all_sides.calibrate_all", compared)
     answer = dembound("calibrate", path, "--all", "--tolerance", "1e-2")
     assert answer.code == 0
+    said = [line for line in answer.out.splitlines() if "returned" in line]
+    assert said == ["boundary.right.beta_p returned: 1 % with 1, 2 % with the matched 1.1"]
     folder = tmp_path / "results" / "bar_calibration"
     records = {"left_p/calibration.h5", "right_p/calibration.h5"}
     assert files(folder) == {*records, "summary.json", "convergence.png"}
