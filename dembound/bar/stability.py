@@ -11,9 +11,9 @@ fronts themselves drive s.
 
 Of forces F_n on nodes the mode gets f = (−1)^i F_n, and Mq'' + 2Mq' + Mq = f Δt², M the mass of the whole bar. So
 S_k = Σ(−1)ⁿ f up to step k remains in s, and springs of cells of the mass m swing by 2(m/M) ΣS_k about the force of
-waves. A force that is sudden at one step has S = F, 0, F … and swings by F after one way through the bar, by as much
-more after each further way, and so has one with sudden ends at an odd distance. Held, absorbing and elastic ends have
-no such mode.
+waves. A force that jumps between two steps has S = F, 0, F … and swings by F after one way through the bar, by as much
+more after each further way, and so has one with corners at an odd distance. One that jumps at a step, where it has its
+mean, has S = F/2, −F/2, … and stays bounded. Held, absorbing and elastic ends have no such mode.
 
 At the share r of the limit the drift is the beat of a mode with cos(ωΔt/2) = √(1 − r²) in place of 0: it ends at
 F/ρcA/(2N √(1 − r²)), and no energy of the ledger exceeds 1/(1 − r²) of what was supplied.

@@ -177,8 +177,9 @@ def compare_histories(
 
     End and reference are the values of the component in both at the end.
 
-    All twins in a free-field column have one line, for the twin with the largest RMS. Monitors at which the reference
-    does not move are left out.
+    All twins in a free-field column have one line, for the twin with the largest RMS.
+
+    Monitors at which the reference does not move are left out.
 
     If waves enter a run later or earlier than the reference because of other disks or sides, the shift is subtracted.
     """

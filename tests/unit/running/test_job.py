@@ -107,7 +107,8 @@ def test_histories_alone_are_written_without_snapshots(bar, spalling, tmp_path) 
 
 KEYS = """name title version particles contacts loose_disks_left_out time_step step_limit steps duration ended
 wall_time seconds layers has_history threads particle_steps_per_second memory_bytes packing load_factor far
-forces_at_rest boundaries monitors laws static cracks energy keys reduced not_reduced resumed sides warnings waves"""
+forces_at_rest boundaries turns monitors laws static cracks energy keys reduced not_reduced resumed sides warnings
+waves"""
 
 
 def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> None:
@@ -330,7 +331,7 @@ def test_a_static_stage_that_fails_does_not_stand_in_the_way_of_the_next_run(bar
 
 def test_a_run_that_fails_leaves_what_there_was_beside_earlier_results(bar, tmp_path, unstable) -> None:
     run_case(bar(), tmp_path)
-    with unstable(), pytest.raises(RunError, match="grew without bound"):
+    with unstable(), pytest.raises(RunError, match="without bound: at t = "):
         run_case(bar(BLOW_UP), tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bar", "bar.partial"]
     assert summary(tmp_path / "bar")["steps"] == 29
