@@ -258,10 +258,10 @@ class Ledger(Tracker):
         if share > OPPOSED < opposed(vars(self.entries[-2])).share:
             x, y = run.scene.positions[np.abs(run.state.velocity[:2]).max(axis=0).argmax()]
             raise RunError(
-                f"the velocities swing from step to step without bound: at t = {last.time:g} s, most near ({x:g}, {y:g}) "
-                f"m; {low} and {high} of the energy ledger are {share:.3g} times all the energy there was, and opposite; "
-                f"take a step of {np.sqrt(1.0 - 1.0 / OPPOSED):.2g} of the stability limit at most, and waves that rise "
-                "over several"
+                f"the velocities swing from step to step without bound: at t = {last.time:g} s near ({x:g}, {y:g}) m, "
+                f"{low} and {high} of the energy ledger are {share:.3g} times all the energy there was, and opposite; "
+                f"take a step of {np.sqrt(1.0 - 1.0 / OPPOSED):.2g} of the stability limit at most, and waves that "
+                "rise over several"
             )
 
     @property

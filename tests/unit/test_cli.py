@@ -364,7 +364,7 @@ def test_a_run_that_blows_up_ends_with_3_and_says_where(dembound, written, tmp_p
         answer = dembound("run", written(changes=BLOW_UP))
 
     assert answer.code == 3
-    assert re.search(r"without bound: at t = [\d.]+ s, most near \([\d.]+, [\d.]+\) m", answer.err)
+    assert re.search(r"without bound: at t = [\d.]+ s near \([\d.]+, [\d.]+\) m", answer.err)
     assert [path.name for path in (tmp_path / "results").iterdir()] == ["bar.partial"]
 
 

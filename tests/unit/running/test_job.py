@@ -107,8 +107,8 @@ def test_histories_alone_are_written_without_snapshots(bar, spalling, tmp_path) 
 
 KEYS = """name title version particles contacts loose_disks_left_out time_step step_limit steps duration ended
 wall_time seconds layers has_history threads particle_steps_per_second memory_bytes packing load_factor far
-forces_at_rest boundaries turns monitors laws static cracks energy keys reduced not_reduced resumed sides warnings
-waves"""
+forces_at_rest boundaries turns monitors laws static cracks energy keys reduced not_reduced resumed sides
+warnings waves"""
 
 
 def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> None:
