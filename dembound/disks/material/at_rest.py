@@ -19,6 +19,7 @@ from dembound.disks.material.homogenise import Network
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.sliding import springs_of, strains_of, strains_with_slip, within_friction
+from dembound.edges import ROUNDING
 from dembound.packings.tiling import Assembly
 
 
@@ -58,8 +59,9 @@ class StressAtRest:
         return stress
 
     def layer_of(self, heights: np.ndarray) -> np.ndarray:
-        """Number of the layer, from the surface, at heights (k,) m; the first above the surface."""
-        return np.maximum(np.searchsorted(-self.tops, -heights, side="right") - 1, 0)
+        """Number of the layer, from the surface, at heights (k,) m; the upper one between two, the first above all."""
+        near = ROUNDING * (self.tops[0] - self.low)
+        return np.maximum(np.searchsorted(-self.tops, -heights - near, side="right") - 1, 0)
 
     def ends(self, layer: int) -> tuple[np.ndarray, np.ndarray]:
         """The upper and the lower end (2,) m of a layer, and the stresses (2, 3) Pa in it there."""
