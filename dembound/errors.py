@@ -8,7 +8,7 @@ other exception is a bug and prints a traceback.
 | 0 | done |
 | 1 | a bug |
 | 2 | bad input, nothing was written: the case file or the command's arguments |
-| 3 | a run, calibration, view or choice failed: motion grew, memory ran out, β did not converge, no window or choice |
+| 3 | a run, calibration or choice failed: motion grew, memory ran out, β did not converge, no window or choice |
 | 4 | a packing could not be made |
 | 5 | a file could not be read or written |
 | 130 | stopped with Ctrl-C, 143 by SIGTERM, 129 by SIGHUP |

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from dembound.casefile.disks import DiskCase
 
 EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
-    "Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration, view or choice failed; 4 a "
+    "Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or choice failed; 4 a "
     "packing could not be made; 5 a file could not be read or "
     "written; 130 stopped with Ctrl-C, 143 by SIGTERM, 129 by SIGHUP."
 )
@@ -60,9 +60,13 @@ ORDER = (
     *("new", "check", "run", "advise", "plot", "report", "calibrate", "chart", "sweep", "test"),
     *("cases", "schema", "material", "packing", "boundary", "stability", "dispersion", "exact"),
     *("resume", "rerun", "library", "respond"),
-    *("estimate", "compare", "signals", "view", "movie", "wave", "gauge", "hopkinson", "cache"),
+    *("estimate", "compare", "signals", "movie", "wave", "gauge", "hopkinson", "cache"),
 )
 """All commands in the order of work: the usual steps, then the panel `MORE`."""
+
+
+GONE = {"view": "open paraview/ of the results in ParaView, or take dembound plot --field, report or movie"}
+"""What to do in place of commands of earlier versions."""
 
 
 class _Commands(TyperGroup):
@@ -77,6 +81,12 @@ class _Commands(TyperGroup):
         for option in self.get_params(ctx):
             option.hidden = True  # type: ignore[attr-defined]
         super().format_help(ctx, formatter)
+
+    def resolve_command(self, ctx: Any, args: Any) -> Any:
+        """The command of the first argument; raises CaseError for those of earlier versions, with their replacement."""
+        if args[0] in GONE:
+            raise CaseError([f"{args[0]}: is no longer a command; {GONE[args[0]]}"])
+        return super().resolve_command(ctx, args)
 
     def make_context(self, *arguments: Any, **more: Any) -> Any:
         """Read the options."""

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from dembound.cli.app import MORE, PICTURE, PictureTitle, Side, app, png, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, Side, app, writable
 from dembound.cli.console import out, print_rows
 from dembound.cli.plotted import (
     CALIBRATIONS,
@@ -25,13 +24,6 @@ from dembound.words import in_one_unit
 
 ROUNDING = 1e-6
 """Relative error below which two runs differ by rounding only."""
-
-
-class Field(StrEnum):
-    """Fields of the motion that colour the disks."""
-
-    velocity = "velocity"
-    displacement = "displacement"
 
 
 @app.command("plot")
@@ -107,36 +99,6 @@ def _kind(file: Path) -> str:
     from dembound.kinds import kind_of_record
 
     return CALIBRATIONS if file.name == "calibration.h5" else f"runs of {kind_of_record(file).plural}"
-
-
-@app.command("view", rich_help_panel=MORE)
-def view_disks(
-    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
-    snapshot: Annotated[
-        int | None,
-        typer.Option(help="Number of the first snapshot, −1 the last; by default the one with the largest motion."),
-    ] = None,
-    field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
-    picture: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", "--picture", help="Picture to write (PNG) instead of opening a window.", callback=png
-        ),
-    ] = None,
-    exaggerate: Annotated[float, typer.Option(help="Factor of the displacements shown; 0: undeformed.")] = 0.0,
-) -> None:
-    """Show the disks of a run in a window, with a slider in time.
-
-    A window needs a display; without one, --output draws a picture.
-    """
-    from dembound.results.reader import understood
-    from dembound.results.view import view
-
-    file = results_file(results)
-    with understood(file):
-        view(file, snapshot, field.value, picture, exaggerate)
-    if picture is not None:
-        out.print(f"wrote {picture}")
 
 
 @app.command("cache", rich_help_panel=MORE)

@@ -45,7 +45,6 @@ READING: Sequence[tuple[str, ...]] = (
     ("signals", "{}"),
     ("signals", "{}", "--show", "response"),
     ("signals", "{}", "--show", "section"),
-    ("view", "{}", "-o", "view.png"),
     ("gauge", "{}", "--monitor", "gauge"),
     ("rerun", "{}", "-o", "again"),
     ("resume", "{}", "--until", "0.004"),
