@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -46,7 +46,7 @@ class Run:
     work : in the unit of its kind of body. threads : of the steps. late : delay of all motion relative to waves that
     start
     at the planes of sides, s, see `Kind.late`.
-    motions, findings : by name. laws : names of those used.
+    motions, findings : by name. laws : names of those used. settled : numbers of the stages before, see `Beginning`.
     cpu, wall : s, of every timed run: CPU time of all threads while stepping, and time of the whole run.
     """
 
@@ -61,6 +61,7 @@ class Run:
     motions: Motions = field(default_factory=dict)
     findings: Mapping[str, Finding] = field(default_factory=dict)
     laws: tuple[str, ...] = ()
+    settled: Mapping[str, Any] | None = None
     cpu: list[float] = field(default_factory=list)
     wall: list[float] = field(default_factory=list)
 
@@ -154,7 +155,8 @@ def measure(
         simulation.track(*planned.kind.trackers(simulation))
         with cpu.with_compiling():
             simulation.run(planned.steps)
-    return _run_of(planned, simulation, records, inside), cpu.seconds["step"], wall.seconds["whole"]
+    run = replace(_run_of(planned, simulation, records, inside), settled=beginning.summary)
+    return run, cpu.seconds["step"], wall.seconds["whole"]
 
 
 def _run_of(planned: Plan, simulation: Simulation, records: Records, inside: Box | None) -> Run:

@@ -10,7 +10,7 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import OWN, Choice
-from dembound.accuracy.of_disks.causes import causes_of_choice, entry_notes, of_ground
+from dembound.accuracy.of_disks.causes import causes_of_choice, entry_notes, of_ground, of_rest
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.law import elastic_twin
@@ -82,7 +82,7 @@ def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
     scene = companions.scene
     ground = of_ground(companions, scene, companions.time_step, told=True)
     causes = causes_of_choice(companions, scene, companions.time_step, 0.0, ground)
-    causes += Causes([], [], entry_notes(scene))
+    causes += of_rest(companions, scene) + Causes([], [], entry_notes(scene))
     budget = Budget(companions.recorded(scene), causes, of)
     return Proposal(Choice(OWN + before_breaks(companions), {}, companions.case), cost, budget)
 

@@ -15,6 +15,7 @@ from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.kinks import causes_of_kinks
 from dembound.accuracy.of_disks.pair import sides_of_pair
+from dembound.accuracy.of_disks.rest import REST, causes_of_rest
 from dembound.accuracy.watch import current
 from dembound.casefile.disks import DiskCase
 from dembound.disks.entry import late_by
@@ -191,6 +192,15 @@ def of_ground(companions: Companions, scene: DiskScene, time_step: float, *, tol
         _tell(known, scene, motions)
     known = _with_steps_of_contacts(known, companions, scene, time_step)
     return [*known, *kinks, places, *_held(companions, scene)]
+
+
+def of_rest(companions: Companions, scene: DiskScene) -> Causes:
+    """The errors of a choice by its static stage, which ends as that of the given case or its companion."""
+    try:
+        static = companions.settled
+    except DemboundError as error:
+        return Causes([Cause.unknown(REST, "; ".join(str(error).splitlines()))])
+    return Causes([]) if static is None else causes_of_rest(scene, companions.recorded(scene), static)
 
 
 def _with_steps_of_contacts(

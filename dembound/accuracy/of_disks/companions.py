@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
 from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.pair import Pair, pair_of, ratios, sides_of_pair
 from dembound.accuracy.of_disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
+from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import SIDES, is_far, normal_axis
 from dembound.boundaries.boundary import Boundary
@@ -229,9 +231,7 @@ class Companions:
         case is run with both steps if that is affordable, else its companion, whose error scales with the step over its
         limit, which is proportional to the diameter. Empty where the law remains elastic.
         """
-        is_own = OFTEN * self.scene.count * self.case.run.duration / self.time_step <= self.most
-        case, step = (self.case, self.time_step) if is_own else (self._own, self.step)
-        run = self.runner.run(at_step(case, step), self._named("where contacts open or slide"))
+        is_own, (case, step), run = self._runs_own, self._with_contacts, self._sliding
         if not any(LAWS[name].has_history for name in run.laws):
             return {}
         shorter = self.runner.run(at_step(case, 0.5 * step), self._named("with half the step"))
@@ -246,6 +246,39 @@ class Companions:
         times = time_step / step * diameter / scene.ground.brick.mean_diameter / math.sqrt(1.25)
         known = times * (1.0 if is_own else OF_LARGER) * (time < end)[:, None]
         return {name: {q: known * each for q, each in by_quantity.items()} for name, by_quantity in found.items()}
+
+    @property
+    def settled(self) -> Mapping[str, Any] | None:
+        """Numbers of the static stage, see `describe_static`; None without one, and under laws without history.
+
+        Forces of a companion are in proportion to its diameter. Its lattice may come to rest elastically where contacts
+        of a random packing slide, which therefore count as sliding.
+
+        Raises the errors of running the case or its companion.
+        """
+        if self.case.static is None or not self.scene.has_history:
+            return None
+        found = self._sliding.settled
+        if self._runs_own or found is None:
+            return found
+        force = found["mean_residual"] * self.scene.ground.brick.mean_diameter / self.diameter
+        rests_elastically = found["elastic"] and is_square_lattice(self.scene.ground)
+        return {**found, "mean_residual": force, "elastic": rests_elastically}
+
+    @cached_property
+    def _runs_own(self) -> bool:
+        """Whether the given case itself is run where contacts may open or slide, as that is affordable."""
+        return OFTEN * self.scene.count * self.case.run.duration / self.time_step <= self.most
+
+    @property
+    def _with_contacts(self) -> tuple[DiskCase, float]:
+        """The case or companion that is run where contacts may open or slide, and its step, s."""
+        return (self.case, self.time_step) if self._runs_own else (self._own, self.step)
+
+    @property
+    def _sliding(self) -> Run:
+        """The run where contacts may open or slide."""
+        return self.runner.run(at_step(*self._with_contacts), self._named("where contacts open or slide"))
 
     def _with_mirror_at(self, side: str) -> Motions:
         """The motion of the disks of all patches with far sides and a mirror plane at a side that stays."""

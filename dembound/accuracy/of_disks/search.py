@@ -22,7 +22,7 @@ from dembound.accuracy.cause import SIDES, STEP, Cause, Causes, Truth
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, of_ground, of_sides
+from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, of_ground, of_rest, of_sides
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.law import ElasticTwin
 from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_errors
@@ -354,6 +354,7 @@ class Search:
             self.tried += 1
             self.spent += PER_ERROR
             causes = causes_of_choice(self.companions, scene, step, option.wider, ground)
+            causes += of_rest(self.companions, scene)
         except DemboundError:
             return []
         self._note_sides(option, causes.found, scene)

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
+from dembound.accuracy.advise import advise
 from dembound.accuracy.cause import STEP
-from dembound.accuracy.of_disks.causes import causes_of_run, of_ground
+from dembound.accuracy.of_disks.causes import causes_of_run, of_ground, of_rest
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.places import places_of_loads
+from dembound.accuracy.of_disks.rest import REST
 from dembound.accuracy.runner import at_step, measure
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
@@ -170,6 +172,15 @@ GRAVEL = PUSHED | {
 }
 """Disks under their weight that slide as their base is shaken, from half of the run on."""
 
+SHEARED = GRAVEL | {
+    "material": GRAVEL["material"] | {"fric": 0.2, "pb_ten": 1e9, "pb_coh": 1e9},
+    "static": {"stress": [-1e5, -1e5, 4e4]},
+    "boundary": {"bottom": {"type": "viscous"}, "left": {"type": "viscous"}, "right": {"type": "viscous"}},
+    "load": [{"name": "hit", "force": [0.0, 1e3], "region": [4.0, 2.0, 6.0, 3.0], "wave": "shake"}],
+    "run": {"duration": 0.05},
+}
+"""Disks whose contacts slide while they settle, under twice the shear that friction bears, and then a weak wave."""
+
 
 def test_where_contacts_slide_the_time_step_is_found_with_half_of_it() -> None:
     """The error of the time step is 3.8 times that of the formula, which holds for elastic contacts."""
@@ -220,3 +231,27 @@ def test_contacts_that_remain_elastic_have_the_errors_of_the_formula() -> None:
     planned = plan(case)
     assert isinstance(planned.scene, DiskScene)
     assert Companions(case, planned.scene, planned.time_step, 1e9).of_steps(planned.scene, planned.time_step) == {}
+
+
+def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() -> None:
+    """Forces at rest are in proportion to the diameter, so that larger disks find the same error."""
+    case = small(SHEARED)
+    assert isinstance(case, DiskCase)
+    planned = plan(case)
+    scene, step = planned.scene, planned.time_step
+    assert isinstance(scene, DiskScene)
+    own, larger = (Companions(case, scene, step, most) for most in (1e9, 0.0))
+    assert larger.diameter > 1.5 * own.scene.ground.brick.mean_diameter
+    found = [of_rest(each, scene).found[0].parts["top"]["velocity"] for each in (own, larger)]
+    peaks = [np.abs(each.recorded(scene)["top"].velocity[:, :2]).max() for each in (own, larger)]
+    assert found[1] * peaks[1] == pytest.approx(found[0] * peaks[0], rel=0.15)
+    assert own.settled is not None
+    assert not own.settled["elastic"]
+
+
+def test_choices_have_the_error_of_the_rest() -> None:
+    """An estimate of a run has it, so that a choice must, too."""
+    advice = advise(small(SHEARED), (1e-6,), kept=("packing", "run", "outside"))
+    assert advice.best[1e-6].choice.changes
+    for each in (advice.given, advice.best[1e-6]):
+        assert REST in [cause.name for cause in each.budget.causes.found]
