@@ -13,8 +13,11 @@ from pathlib import Path
 from dembound.errors import CaseError
 from dembound.gauge.reading.units import time_unit, value_unit
 
-SIGNS = str.maketrans({"−": "-", "∞": "inf"})
-"""Characters in numbers that float() does not read."""
+SIGNS = str.maketrans({"−": "-", "∞": "inf", "：": ":"})
+"""Characters in numbers that float() does not read, and the colon of Chinese text."""
+
+CHINESE = re.compile(rb"(?:[\xa1-\xfe]{2}){2}")
+"""Two characters of Chinese text in GB18030 or GBK; Latin-1 has no four letters with accents in a row."""
 
 UNIT_IN_NAME = re.compile(r"^(.*?)\s*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
 """A name with its unit in brackets, or only a unit in brackets."""
@@ -138,6 +141,8 @@ def decoded(content: bytes) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
+        if CHINESE.search(content):
+            return content.decode("gb18030", errors="replace")
         return content.decode("latin-1")  # where µ is the only usual character beyond ASCII
 
 

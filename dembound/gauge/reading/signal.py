@@ -224,7 +224,7 @@ def _converted(values: np.ndarray, unit: Unit, reading: Reading) -> tuple[np.nda
     measured, notes = unit.of, []
     if reading.bridge is not None:
         if unit.of not in ("V", ""):
-            raise CaseError([f"--gauge-factor: is for voltages, the values are in {unit.name}"])
+            raise CaseError([f"--gauge-factor: is for voltages, the values are in {unit.name}; if in volts: --unit V"])
         values, measured = reading.bridge.strain(values), "strain"
         notes.append(f"strain: {reading.bridge.wiring} bridge, gauge factor {reading.bridge.gauge_factor:g}")
     if abs(reading.scale) != 1.0:

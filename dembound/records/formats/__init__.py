@@ -17,7 +17,7 @@ from dembound.records.formats.geonet import Geonet
 from dembound.records.formats.knet import Knet
 from dembound.records.formats.networks import Cwb, Nsmn, Unam
 from dembound.records.formats.peer import Peer
-from dembound.records.formats.seismic import read_binary
+from dembound.records.formats.seismic import is_seismic, read_binary
 from dembound.records.formats.smc import Smc
 from dembound.records.formats.source import MOTIONS, USUAL, Flaw, Reading, Source, Unknown
 from dembound.records.formats.text_columns import TextColumns
@@ -50,9 +50,10 @@ def read_record(path: Path, given: Reading = Reading()) -> Record:  # noqa: B008
     lines = re.split(r"\r*\n|\r", text)
     source = Source(path, lines, given)
     form = FORMATS[-1] if given.is_of_text else next(form for form in FORMATS if form.recognises(source.lines))
-    name = "SAC or MiniSEED" if "\0" in text else form.name
+    seismic = is_seismic(lines)
+    name = "SAC or MiniSEED" if seismic else form.name
     try:
-        record = read_binary(content, source) if "\0" in text else form.read(source)
+        record = read_binary(content, source) if seismic else form.read(source)
         if given.unit is not None and len(source.quantities) > 1:
             raise Flaw(f"--unit: is {given.unit}, but the channels are different quantities; leave it out")
     except Flaw as flaw:

@@ -66,6 +66,10 @@ def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
             pattern = rf"^{quantity}:?\s+(?:peak\s+({DECIMAL})\s+{unit})?"
             peak = source.found(pattern, begin, begin + TEXTS, quantity)[1] or ""
             measured = source.measured(unit, quantity)
+            spelled = rf"^(?:{quantity}:?\s+peak|raw readings in units of)\s+{DECIMAL}\s+(\S+)"
+            for other in re.findall(spelled, "\n".join(source.lines[begin : begin + TEXTS]), re.IGNORECASE | re.M):
+                if other != unit and source.given.unit is None:
+                    raise Flaw(f"line {begin + 1} begins a text with {other}, must be {unit}; give the unit by --unit")
             found.append(source.channel(name, measured, values, float(reals[STEP]), peak=peak, length=length))
             at += rows_of(count, LAYOUT)
     if not found:

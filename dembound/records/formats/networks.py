@@ -35,7 +35,10 @@ class Cwb(Format):
         begin = 0
         while source.line(begin).startswith("#") or not source.line(begin).strip():
             begin += 1
-        names = re.findall(r"([A-Z])\([+-]\)", value(source, "#DataSequence"))
+        sequence = value(source, "#DataSequence")
+        names = re.findall(r"([A-Z])\([+-]\)", sequence)
+        if "(-)" in sequence:
+            raise Flaw(f"has columns of the opposite sense ({sequence}); --skip {begin} reads them as columns of text")
         unit = source.measured(value(source, "#AmplitudeUnit").partition(".")[0])
         rate = float(source.found(rf"^#SampleRate\(Hz\):\s*({DECIMAL})", 0, begin, "the sampling rate")[1])
         rows = columns_below(source, begin, 1 + len(names))
@@ -132,9 +135,14 @@ def columns_below(source: Source, begin: int, width: int, count: int | None = No
 
 
 def value(source: Source, key: str) -> str:
-    """The text behind a key of the header, further words and a colon; empty without one."""
-    found = (re.match(rf"{key}[^:]*:(.*)", line) for line in source.lines[:LONGEST])
-    return next((each[1].strip() for each in found if each), "")
+    """The text behind a key of the header, further words and a colon; empty without one. Raises Flaw for two texts."""
+    matches = (re.match(rf"{key}[^:]*:(.*)", line) for line in source.lines[:LONGEST])
+    found = list(dict.fromkeys(each[1].strip() for each in matches if each))
+    if len(found) > 1:
+        raise Flaw(
+            f'has the line "{key}" twice, with {found[0]} and {found[1]}; remove the wrong one'.replace("\\", "")
+        )
+    return found[0] if found else ""
 
 
 def _title(source: Source, *keys: str) -> str:

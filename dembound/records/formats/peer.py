@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from dembound.records.channel import Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import COUNT, DECIMAL, SECONDS, Source, quantity_named, seconds_of
+from dembound.records.formats.source import COUNT, DECIMAL, SECONDS, Flaw, Source, number_of, quantity_named, seconds_of
 
 UNITS = re.compile(r"\bunits\s+(?:of|are|is|:|=)?\s*[(\[]?\s*([^\s.,;)\]]+)", re.IGNORECASE)
 SAMPLES = re.compile(
@@ -18,6 +18,9 @@ SAMPLES = re.compile(
     re.IGNORECASE,
 )
 """As "NPTS=  5000, DT=   .0050 SEC", and before 2006 "5000  .0050  NPTS, DT"."""
+
+STEPS = re.compile(rf"\bDT\s*=\s*({DECIMAL})(?:[\s,]+({DECIMAL})(?=\s*s))?", re.IGNORECASE)
+"""All time steps that a header states."""
 
 LONGEST = 11
 """Lines of the longest header."""
@@ -45,6 +48,11 @@ class Peer(Format):
         title = next((line for line in [*above[1:2], *above[:1]] if line != stated), "")
         spelled = match[1] if (match := UNITS.search(stated)) else ""
         source.require_no_factor(enumerate(source.lines[:at], start=1))
+        steps = {text for pair in STEPS.findall("\n".join(source.lines[: at + 1])) for text in pair if text}
+        if len(set(map(number_of, steps))) > 1:
+            raise Flaw(
+                f"states time steps of {' and '.join(sorted(steps))}; --skip {at + 1} and --dt read what is below"
+            )
         named = source.measured(spelled, stated if quantity_named(stated) else " ".join(above))
         component = title.rpartition(",")[2].strip() if "," in title else ""
         values = source.free(at + 1, int(count))

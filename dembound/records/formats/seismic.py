@@ -2,12 +2,22 @@
 
 import io
 import warnings
+from collections.abc import Sequence
 
 from dembound.records.channel import Record
 from dembound.records.formats.source import USUAL, Flaw, Source, Unknown
 
-FORMATS = ("MSEED", "SAC")
-"""Names of the formats in ObsPy."""
+FORMATS = ("MSEED", "SAC", "SACXY")
+"""Names of the formats in ObsPy; the last one is SAC in numbers."""
+
+UNDEFINED = "-12345"
+"""Of header variables of SAC that are not set."""
+
+
+def is_seismic(lines: Sequence[str]) -> bool:
+    """Whether lines have null characters, or begin with a header of SAC in numbers."""
+    in_numbers = len(lines[0].split()) == 5 and any(UNDEFINED in line for line in lines[:14])
+    return in_numbers or any("\0" in line for line in lines)
 
 
 def read_binary(content: bytes, source: Source) -> Record:

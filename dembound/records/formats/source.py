@@ -43,12 +43,13 @@ COUNT = r"(\d{1,9})"
 DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
 """Patterns of a number of samples and of any number, Fortran's double precision (1.5D-03) included."""
 
-SECONDS = r"((?:milli)?seconds?|m?s(?:ec(?:onds?|s)?)?)"
+SECONDS = r"((?:milli|micro)?seconds?|[mu]?sec|m?secs|[mµμu]?s|min(?:ute)?s?)"
 BARE = 0.1
 """The unit of a time step, and the longest one that is taken in seconds without a unit, s."""
 
 FACTOR = re.compile(
-    r"scal(?:e|ing) factor|\bmultipl(?:y|ied|ier)\b|factor de escala|(?:\bg|gal|s2|s²|s\^2|s/s)\)? *\(?[x*×] *[\d.]+",
+    r"(?:scal(?:e|ing)|multiplication) factor|\bmultipl(?:y|ied|ier)\b|factor de escala"
+    r"|(?:\bg|gal|s2|s²|s\^2|s/s)\)? *\(?[x*×] *[\d.]+",
     re.IGNORECASE,
 )
 """A factor in a header: whether the numbers have it is not said."""
@@ -269,7 +270,7 @@ class Source:
         time_step = self._given_step(time_step)
         if not SMALLEST <= time_step <= LARGEST:
             raise Flaw(f"has a time step of {time_step:g} s, must be positive")
-        stated, rounding = _with_rounding(length)
+        stated, rounding = with_rounding(length)
         if (
             stated
             and self.given.time_step is None
@@ -279,7 +280,7 @@ class Source:
             said = f"the header states a length of {stated:g} s, {have}; if they are right, give --dt {time_step:g}"
             raise Flaw(f"{component or quantity}: {said}")
         values = size * _sound(numbers)
-        stated, rounding = _with_rounding(peak)
+        stated, rounding = with_rounding(peak)
         if stated is None:
             return Channel(component, quantity, values, time_step, begin, unit=spelled)
         found = float(np.abs(numbers).max()) if found is None else found
@@ -337,7 +338,8 @@ def seconds_of(number: str, unit: str, line: int) -> float:
     step = float(number.replace(",", "."))
     if not unit and step > BARE:
         raise Flaw(f'line {line} states a time step of {step:g} without a unit: write "{step:g} ms" or "{step:g} s"')
-    return step * (1e-3 if unit.lower().startswith("m") else 1.0)
+    named = unit_named(unit)
+    return step * (named.size if named is not None else 1.0)
 
 
 def quantities_named(words: str) -> set[str]:
@@ -364,7 +366,7 @@ def _columns_of(layout: str) -> tuple[int, int]:
     return size
 
 
-def _with_rounding(text: str) -> tuple[float | None, float]:
+def with_rounding(text: str) -> tuple[float | None, float]:
     """Size of a number, None for other text, and half of its last digit."""
     try:
         number = Decimal(text.strip())

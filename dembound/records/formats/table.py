@@ -17,6 +17,9 @@ MARKS = "#%!"
 TOUCHING = re.compile(r"(?<=[.\d])(?=[+-]\d*\.)")
 """Where two numbers of Fortran touch: before the sign of the second one."""
 
+CLOCK = re.compile(r"\d:\d\d|\d{4}-\d\d-\d\d")
+"""A date or a time of day."""
+
 VALUE = re.compile(r"[=:]\s*[-+.\d]")
 """A field of the header that states a value and heads no column."""
 
@@ -25,10 +28,13 @@ RULER = re.compile(r"[-=+*_|\s]+")
 
 EITHER = "give --columns NAME,NAME,… for columns or --series for one series"
 
+LONGEST = 40
+"""Characters in the longest name of a column."""
+
 LOWEST = 4
 """Lines of the header, from below, among which one may name the columns."""
 
-TIME = re.compile(r"(?i:time|zeit|tiempo|temps|tempo|zaman|secs?|seconds?|时间)(?![A-Za-z])|t(?![A-Za-z0-9])")
+TIME = re.compile(r"(?i:time|x_value|zeit|tiempo|temps|tempo|zaman|secs?|seconds?|时间)(?![A-Za-z])|t(?![A-Za-z0-9])")
 COMPONENT = re.compile(
     r"ns|ew|ud|n-s|e-w|u-d|[xyzhvlrtneu]\d?|[hb][hnl][nez123]|(north|east|up|down|vert|long|trans|rad|comp|ch(?=an|\d))\w*"
     r"|[ns]?\d{1,3}[ew°]?",
@@ -110,6 +116,8 @@ def read_table(source: Source) -> Table:
         if text.strip("\t ;,") and not END.match(text)
     ]
     separator = _separator([text for _, text in lines])
+    if separator == "\t" and lines[-1][1].startswith("\t"):  # LabVIEW's column of times is empty
+        lines = [(number, text.removeprefix("X_Value").removeprefix("\t")) for number, text in lines]
     found = [(number, text, _numbers(text, separator)) for number, text in lines if text]
     first = len(found)
     while first > 0 and found[first - 1][2]:
@@ -117,22 +125,36 @@ def read_table(source: Source) -> Table:
     if first == len(found):
         if any(numbers for _, _, numbers in found):
             raise Flaw(f"line {found[-1][0]} is no line of numbers, there must be none behind them")
-        said = (f', but line {number}: "{text[:30]}"' for number, text in reversed(lines) if re.search(r"\d", text))
-        raise Unknown(f"has no lines of numbers alone{next(said, '')}")
-    rows = [numbers for _, _, numbers in found[first:]]
+        last = next(((number, text) for number, text in reversed(lines) if re.search(r"\d", text)), None)
+        said = "" if last is None else f', but line {last[0]}: "{last[1][:30]}"'
+        if last is not None and CLOCK.search(last[1]):
+            said += "; write seconds in place of dates and times of day"
+        raise Unknown(f"has no lines of numbers alone{said}")
+    rows, beside = [numbers for _, _, numbers in found[first:]], []
+    while separator != " " and first > 0 and (parts := _with_text(found[first - 1][1], separator, len(rows[0]))):
+        first -= 1
+        rows.insert(0, parts[0])
+        beside.append((found[first][0], parts[1]))
     above = [len(numbers) for _, _, numbers in found[:first] if numbers]
     if above.count(len(rows[0])) >= (BROKEN_OFF if len(rows[0]) == 1 else 1):
         number, text, _ = found[first - 1]
         advice = f"; --skip {number} leaves out all above" if len(above) < len(rows) / LOWEST else f': "{text[:30]}"'
         raise Flaw(f"line {number} is no line of numbers like those around it{advice}")
     if separator == "," and all(value.is_integer() for row in rows for value in row) and len(rows[0]) > 1:
-        raise Flaw("has whole numbers between commas; if numbers have decimal commas, separate columns by semicolons")
+        raise Flaw(
+            "has whole numbers between commas; if these are decimal commas, write points, or semicolons between columns"
+        )
     if not source.given.series:
         _require_no_header(rows, [text for _, text, _ in found[first:]], found[first][0])
     for number, text, numbers in found[:first]:
         if not numbers and _numbers(separator.join(filter(None, _fields(text, separator))) or MARKS, separator):
             raise Flaw(f"line {number} has empty fields beside numbers; --skip {number} leaves it out")
+    number, text, _ = found[first - 1]
+    fields = _fields(text, separator)[: len(rows[0])] if separator != " " and len(rows[0]) > 1 and first > 0 else []
+    if fields and all(number_of(field.replace(",", ".")) is not None for field in fields):
+        raise Flaw(f"line {number} has text behind its numbers; remove the text")
     header = [(number, text.lstrip(MARKS + " ")) for number, text, _ in found[:first] if not RULER.fullmatch(text)]
+    header = beside + header  # above the names of columns
     table = Table(header, (), rows, [number for number, _, _ in found[first:]])
     if source.given.columns or source.given.series:
         return table
@@ -144,11 +166,11 @@ def _separator(texts: Sequence[str]) -> str:
     last = next((text for text in reversed(texts) if any(map(str.isdigit, text))), "")
     for separator in ("\t", ";"):
         if separator in last:
-            return separator
+            return " " if "\t\t" in last.strip() else separator
     fields = _fields(last, ",")
     if len(fields) == 2 and "." not in last and any(re.search(r"=\s*\d+,\d|;", text) for text in texts):
         return " "  # a single column with decimal commas, as the header has
-    return "," if len(fields) > 1 and all(number_of(text) is not None for text in fields) else " "
+    return "," if len(fields) > 1 and all(number_of(text.replace(",", ".")) is not None for text in fields) else " "
 
 
 def _fields(text: str, separator: str) -> list[str]:
@@ -164,12 +186,20 @@ def _fields(text: str, separator: str) -> list[str]:
 def _numbers(text: str, separator: str) -> list[float]:
     """The numbers of a line; none for a line with other fields, and for a comment."""
     fields = [] if text[0] in MARKS else _fields(text.partition("#")[0], separator)
-    if separator != ",":
-        fields = [field.replace(",", ".") for field in fields]
+    fields = [field.replace(",", ".") for field in fields]  # between commas only those in quotes have any
     if separator == " ":  # fields of Fortran may touch
         fields = [part for field in fields for part in (TOUCHING.split(field) if field.count(".") > 1 else [field])]
     numbers = [number for field in fields if (number := number_of(field)) is not None]
     return numbers if len(numbers) == len(fields) else []
+
+
+def _with_text(text: str, separator: str, width: int) -> tuple[list[float], str] | None:
+    """The numbers of a line, as many as in others, and the text behind an empty field beside them; None for others."""
+    fields = _fields(text, separator)
+    numbers = [number_of(field.replace(",", ".")) for field in fields[:width]]
+    if len(fields) <= width or fields[width] or any(number is None for number in numbers):
+        return None
+    return [number for number in numbers if number is not None], " ".join(filter(None, fields[width:]))
 
 
 def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], number: int) -> None:
@@ -178,6 +208,8 @@ def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], nu
     These have the number of all others, or fewer numbers than other lines, or other digits behind the point than all.
     """
     widths, total = [len(row) for row in rows], sum(map(len, rows))
+    if len(rows) > 3 and widths[0] == 2 == widths[1] and rows[0][0] > rows[1][0] < rows[2][0] < rows[3][0]:
+        raise Flaw(f"line {number} precedes times and is none: --skip {number} leaves it out")
     for lines in (1, 2):
         top = [value for row in rows[:lines] for value in row]
         stands_out = len(rows) > lines and widths[0] < widths[lines] and len(set(widths[:lines])) == 1
@@ -202,9 +234,13 @@ def _heads(header: Sequence[str], separator: str, width: int) -> list[Head]:
         fields = _fields(text, separator)
         if separator == " " and width > 1:
             fields = joined(fields, width)
+        if len(fields) == width + 1 and fields[-1] == "Comment":  # of LabVIEW, without numbers
+            fields.pop()
         if any(VALUE.search(field) for field in fields):
             continue
         heads = [head_of(field) for field in fields]
+        if any(len(head.name) > LONGEST for head in heads):  # a sentence with commas
+            continue
         if len(fields) != width:
             if separator != " " and len(fields) > 1 < width and 2 * sum(head.is_known for head in heads) > len(fields):
                 raise Flaw(f'"{text}" names {len(fields)} columns, lines have {width} numbers: {EITHER}')
@@ -224,7 +260,7 @@ def head_of(text: str) -> Head:
         return Head(text)
     if known := next((head for head in parts if head.name and (Head(head.name).is_known or text[-1] in "])")), None):
         return known  # before "NS g" is taken as a unit
-    if quantity_of(whole := text.strip("[]()")) in (*MOTIONS, "times"):
+    if quantity_of(whole := text.strip("[]()")) in (*MOTIONS, "times", "strains"):
         return Head("", whole)
     bracketed = UNIT_IN_NAME.match(text)
     if not parts and bracketed and bracketed[1] and not COMPONENT.fullmatch(bracketed[2].strip()):

@@ -23,6 +23,7 @@ from dembound.records.formats.source import (
     SECONDS,
     Flaw,
     Source,
+    number_of,
     quantities_named,
     require_increasing,
     seconds_of,
@@ -33,16 +34,17 @@ from dembound.waves.unit_names import unit_named
 
 NUMBER = r"([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[Ee][+-]?\d+)?)"
 STEP = re.compile(
-    r"(?:\bdt\b|Δt|\bdelta ?t|\btime ?step|\bstep(?=\s*[=:])|\b(?:sampl\w*|time|digiti\w*) ?(?:interval|period|step)"
+    r"(?:\bdt\b|Δt|\bdelta ?t|\btime ?step|\bstep(?=\s*[=:])|\bdelta x(?=\t)"
+    r"|\b(?:sampl\w*|time|digiti\w*) ?(?:interval|period|step)"
     r"|\b(?:interpolated|resampled) (?:at|to|every)(?= *[\d.,]+ *m?s)"
     rf"|\bintervals? of|\bspac(?:ing|ed)(?: of| at)?)\s*[\[(]?(?:{SECONDS}\b)?[\])]?\s*[=:,]?\s*{NUMBER}"
-    rf"(?![.\d\s]*(?:/|min))\s*[\[(]?(?:{SECONDS}\b)?",
+    rf"(?![.\d\s]*/)\s*[\[(]?(?:{SECONDS}\b)?",
     re.IGNORECASE,
 )
 """The time step in a header, its unit before or behind it."""
 
 RATE = re.compile(
-    r"\b(?:sampl(?:ing|es?)? ?(?:rate|freq\w*)?|(?:interpolated|resampled) (?:at|to)|fs|rate)\s*"
+    r"\b(?:sampl(?:ing|es?)? ?(?:rate|freq\w*)?|(?:interpolated|resampled) (?:at|to)|fs|(?:mess|abtast)?rate)\s*"
     rf"(?:[\[(](?:hz|sps)[\])]\s*[=:,]?\s*{NUMBER}|[=:,]?\s*{NUMBER}\s*(?:hz|sps)\b)"
     rf"|{NUMBER}\s*(?:samples\s*(?:/|per)\s*s(?:ec(?:ond)?)?\b|sps\b)",
     re.IGNORECASE,
@@ -50,27 +52,36 @@ RATE = re.compile(
 """The sampling rate in a header, Hz or samples/s."""
 
 SAMPLES = re.compile(
-    r"\b(?:npts?|ndata|(?:number|no\.?) of (?:points|samples|data(?: points)?|values))\s*[=:]?\s*"
-    rf"{COUNT}\b|\b{COUNT}\s+(?:(?:data )?points|samples|values)\b(?!\s*(?:/|per))",
+    r"(?:\b(?:npts?|ndata|(?:number|no\.?) of (?:points|samples|data(?: points)?|values)"
+    r"|n?samples(?=\s*[=:]|\t)|anzahl (?:der )?werte|nombre de points)|点数)"
+    rf"\s*[=:]?\s*{COUNT}\b(?!\s*(?:/|per|hz|sps))"
+    rf"|\b{COUNT}\s+(?:(?:data )?points|pts|samples|values)\b(?!\s*(?:/|per))",
     re.IGNORECASE,
 )
 """The number of samples in a header."""
 
 PEAK = re.compile(
-    r"\b(?:pg[avd]|(?:peak|max(?:imum|\.)?)(?: ground)?(?: (?:acc|vel|disp)\w*\.?)?)\s*(?:[\[(]([^\])]*)[\])])?"
-    rf"\s*[=:]?\s*{NUMBER}\s*([^\s,;]*)",
+    r"\b(?:pg[avd]|\w*ppv|(?:peak|max(?:imum|\.)?)(?: ground| value)?(?: (?:acc|vel|disp)\w*\.?)?)"
+    rf"\s*(?:[\[(]([^\])]*)[\])])?\s*(?:[=:]|\"?,\"?)?\s*{NUMBER}\s*([^\s,;\"]*)",
     re.IGNORECASE,
 )
 """A peak in a header, its unit before or behind it."""
 
-DURATION = re.compile(rf"(?:^|[,;])\s*(?:duration|(?:record )?length)\s*[=:]\s*{NUMBER}\s*s(?:ec\w*)?\b", re.IGNORECASE)
-"""The length of the record in a header, s."""
+DURATION = re.compile(
+    r"(?:(?:^|[,;|]|=\s*[\d.]+\s|\b(?:s|secs?|sps|total)\s)\s*(?:dura(?:tion|ci[oó]n)|(?:record )?length)(?: time)?\s*"
+    rf"(?:[=:]?\s*(?={NUMBER[1:-1]}\s*s)|[\[(]s(?:ec\w*)?[\])]\s*[=:]\s*)|\bsps[,;]\s*(?={NUMBER[1:-1]}\s*s)){NUMBER}(?![.\d])",
+    re.IGNORECASE,
+)
+"""The length of the record in a header, s, and not that of the strong motion in it."""
 
-MISSING = frozenset(("999", "9999", "99999", "999999"))
+CHANNELS = re.compile(r"\b(?:channels|components)(?:\s*[=:]\s*|\t)(\d{1,3})\b(?!\s*[-,;&/]\s*\d)", re.IGNORECASE)
+"""The number of channels in a header."""
+
+MISSING = frozenset(("999", "9999", "99999", "999999", "1e+06"))
 """Sizes of numbers that stand for missing samples, where they are far from all others."""
 
 UNIT = re.compile(
-    r"(?:\bunits?\b(?:\s*(?:are|is|of|:|=))*|(?:"
+    r"(?:\bunits?\b(?:\s*(?:are|is|of|:|=))*|\bdata(?= in )|单位|(?:"
     + "|".join(pattern.pattern for pattern in QUANTITY.values())
     + r")(?:\s+time (?:series|history))?)\s*(?:,\s*)?(?:in(?:\s+units\s+of)?\s+|[:=/]\s*)?"
     r"(?:[\[(]([^\])]+)[\])]|([^\s,;]+))(?!\s*[=:]?\s*[+-]?[.\d])",
@@ -81,8 +92,14 @@ UNIT = re.compile(
 LONG = 5
 """Numbers in a line from which on lines without heads of columns are one series."""
 
+SHORT, OFFSET = 1e-5, 1e6
+"""Time step and ratio of the first time to it below and above which times are days: no record is sampled so, s."""
+
 FAR = 2.0
 """Ratio of a number to all others from which on it may stand for a missing sample."""
+
+MOST = 0.9
+"""Share of the lines of a deck with the next number from which on others are missing."""
 
 SMOOTHER = 0.7
 """Ratio of mean differences between neighbours at which numbers contradict the order in which they are read."""
@@ -101,6 +118,7 @@ class TextColumns(Format):
         """The channels of a file; raises Flaw for one that may be read in two ways."""
         if source.given.series and source.given.columns:
             raise Flaw("--series: is not allowed together with --columns")
+        _require_no_card(source)
         table = _without_counter(source, read_table(source))
         heads = [head_of(name) for name in source.given.columns] or table.heads
         if source.given.columns and (len(heads) != table.width or table.ragged < len(table.rows)):
@@ -108,9 +126,9 @@ class TextColumns(Format):
             raise Flaw(f"--columns: names {len(heads)} columns, line {at} has {len(table.rows[-1])} numbers or another")
         source.require_no_factor(table.header)
         for number, text in table.header:
-            if (
-                quantity_of(spelled := next((unit[unit.lastindex or 0] for unit in UNIT.finditer(text)), ""))
-                == "counts"
+            if quantity_of(spelled := next((unit[unit.lastindex or 0] for unit in UNIT.finditer(text)), "")) in (
+                "counts",
+                "voltages",
             ):
                 raise Flaw(f"line {number} has {spelled}, which must be converted to {' or '.join(MOTIONS)} before")
         step, count = _step(source, table), _stated_count(table)
@@ -124,6 +142,8 @@ class TextColumns(Format):
         for samples in {len(channel.values) for channel in channels}:
             if count is not None and samples != count[0]:
                 raise Flaw(f"line {count[1]} states {count[0]} samples, there are {samples}; {_skip(count[1])}")
+        if len(channels) > 1:
+            _compare_peaks(source, table, channels)
         return Record("columns of text", "", tuple(channels))
 
 
@@ -169,6 +189,8 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     if spectra is not None and not source.given.columns:
         raise Flaw(f'has a column "{spectra}", must have times; name the columns by --columns')
     chosen = [at for at in range(len(heads)) if at not in timed and heads[at].name != "-"]
+    if not source.given.columns:
+        _require_motions(table, heads, values, timed, chosen)
     if timed:
         time = _times(source, table, heads[timed[0]], timed[0])
     else:
@@ -197,6 +219,49 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     return channels
 
 
+def _require_motions(
+    table: Table, heads: Sequence[Head], values: np.ndarray, timed: Sequence[int], chosen: Sequence[int]
+) -> None:
+    """Raise Flaw for values over periods, which are never negative, and for another number of channels than stated."""
+    about = any(re.search("spectr|谱", text, re.IGNORECASE) for _, text in table.header)
+    if (
+        any(heads[at].name == "T" or (about and heads[at].name in ("", "t")) for at in timed)
+        and (values[chosen] >= 0.0).all()
+    ):
+        at = timed[0] + 1
+        raise Flaw(f"column {at} may have periods, as no value is negative: name it by --columns, time if it has times")
+    for number, text in table.header if len(chosen) > 1 else ():
+        if (found := CHANNELS.search(text)) and int(found[1]) != len(chosen):
+            raise Flaw(f"line {number} states {found[1]} channels, there are {len(chosen)}; name them by --columns")
+
+
+def _require_no_card(source: Source) -> None:
+    """Raise Flaw for a card of LS-DYNA, the first numbers of a curve, with factors or offsets other than 1 and 0."""
+    lines = list(enumerate(source.lines, start=1))[source.given.skip :]
+    curve = next((at for at, (_, text) in enumerate(lines) if re.match(r"\*define_curve", text, re.IGNORECASE)), None)
+    for number, card in [] if curve is None else lines[curve + 1 :]:
+        fields = card.split(",") if "," in card else [card[at : at + 10] for at in range(0, 60, 10)]
+        if number_of(fields[0]) is not None:
+            factors, offsets = ([number_of(text) or 0.0 for text in some] for some in (fields[2:4], fields[4:6]))
+            if any(offsets) or any(factor not in (0.0, 1.0) for factor in factors):
+                said = f"line {number} has factors or offsets of the numbers"
+                raise Flaw(f"{said}; apply them, and leave it out by --skip {number}")
+            return
+
+
+def _compare_peaks(source: Source, table: Table, channels: Sequence[Channel]) -> None:
+    """Remark on a stated peak that none of several channels has; it may be that of their resultant."""
+    for number, text in table.header:
+        for found in PEAK.finditer(text):
+            named = unit_named(found[1] or found[3] or "")
+            if named is None or named.quantity not in MOTIONS:
+                continue
+            peak = float(found[2].replace(",", ".")) * named.size
+            peaks = [np.abs(each.values).max() for each in channels if each.quantity == MOTIONS[named.quantity]]
+            if peaks and all(abs(each - abs(peak)) > SAME * each for each in peaks):
+                source.remarks.append(f"line {number} states a peak that no channel has: {found[0].strip()}")
+
+
 def _single(source: Source, table: Table, numbers: np.ndarray, step: Stated) -> Channel:
     """The channel of a series."""
     if step is None:
@@ -216,7 +281,7 @@ def _channel(
         if found := DURATION.search(text):
             length = found[1].replace(",", ".")
         for found in PEAK.finditer(text) if alone else ():
-            named = unit_named(found[1] or found[3] or "")
+            named = unit_named(found[1] or found[3] or "") or (unit if " value" in found[0].lower() else None)
             if named is not None and named.quantity == unit.quantity:
                 stated = f"{float(found[2].replace(',', '.')) * named.size / unit.size:.4g}"
     sizes = np.abs(numbers)
@@ -234,8 +299,12 @@ def _without_counter(source: Source, table: Table) -> Table:
             and table.width > 2
             and not (any(table.heads) or source.given.columns)
             and counted[0] in (0.0, 1.0)
-            and (np.diff(counted) == 1.0).all()
+            and np.isin(steps := np.diff(counted), (1.0, 2.0)).all()
+            and (steps == 1.0).mean() > MOST
         ):
+            if (steps != 1.0).any():
+                at = int(np.argmax(steps))
+                raise Flaw(f"line {table.numbers[at]} has the number {counted[at]:g}, the next one {counted[at + 1]:g}")
             source.chosen.append(f"the {which} number of each line is that of the line, left out")
             return replace(table, rows=[row[1:] if at == 0 else row[:-1] for row in table.rows])
     return table
@@ -315,8 +384,12 @@ def _times(source: Source, table: Table, head: Head, at: int) -> np.ndarray:
         line = f" in line {table.numbers[int(np.argmin(steps)) + 1]}" if (steps < 0.0).any() else ""
         raise Flaw(f"{flaw}{line}; {otherwise}") from None
     step = (values[-1] - values[0]) / (len(values) - 1)
-    if unit is None and head.unit:
-        raise Flaw(f'has times in "{head.unit}", which is not known; {otherwise}')
+    if step < SHORT and values[0] > OFFSET * step:
+        raise Flaw(
+            f"has times of {values[0]:.10g}, {step:.3g} apart, days of a spreadsheet? Write seconds; {otherwise}"
+        )
+    if unit is None and (head.unit or re.search(r"/\s*[\d.]", head.name)):
+        raise Flaw(f'has times in "{head.unit or head.name}", which is not known; {otherwise}')
     if unit is None and step > BARE:
         raise Flaw(f"has times {step:.4g} apart without a unit: write it in their head, as time (ms); {otherwise}")
     if unit is None and head.unit == "" and not head.name:

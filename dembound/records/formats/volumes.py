@@ -16,7 +16,7 @@ import numpy as np
 
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import COUNT, DECIMAL, END, Flaw, Source, number_of, rows_of
+from dembound.records.formats.source import COUNT, DECIMAL, END, Flaw, Source, number_of, rows_of, with_rounding
 from dembound.waves.unit_names import Named, unit_named
 
 BLOCK = re.compile(
@@ -106,9 +106,11 @@ def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], in
         step = rate if not block[4] else 1.0 / rate if rate else 0.0
         unit = source.measured(block[5], block[2])
         in_text = TENTHS.search("\n".join(source.lines[begin:at])) if volume == "CSMIP V1" else None
-        if in_text is not None and source.measured(in_text[1])[1:] != unit[1:]:
+        if in_text is not None and source.measured(in_text[1] + (in_text[2] or ""))[1:] != unit[1:]:
             raise Flaw(f"line {at + 1} states {unit.spelled.strip()}, the header another unit; give it by --unit")
         peak = _peak(source, at) if volume == "CSMIP V1" else _peak_of(block[2], source, begin, unit)
+        if volume == "CSMIP V1":
+            _require_text(source, begin, at, count, peak, step)
         length = _length(source, begin, at)
         found.append(source.channel(component, unit, values, step, peak=peak, length=length))
         at += 1 + rows_of(count, layout)
@@ -122,13 +124,19 @@ def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], in
 def _in_tenths(source: Source, begin: int, at: int) -> tuple[int, Named, float]:
     """The number of points of uncorrected data, their unit, and its part in which they are: g, or a tenth of it.
 
-    Raises Flaw for a unit that is given in place of tenths.
+    Raises Flaw for a unit that is given in place of tenths, and if the numbers of the header have another part, but not
+    those of CSMIP, which are not reliable.
     """
     count = int(source.found(rf"no\. of points\s*=\s*{COUNT}\b", begin, at, "the number of points")[1])
     unit = TENTHS.search("\n".join(source.lines[begin:at]))
     is_tenth = unit is not None and unit[2] is not None
     if is_tenth and source.given.unit is not None:
         raise Flaw(f"--unit: is {source.given.unit}, the header states tenths of g; leave it out")
+    volume = _volume(source.lines, begin)
+    width = 13 if volume == "BHRC V1" else 10
+    scale = number_of(source.line(at - 7)[4 * width : 5 * width]) if volume != "CSMIP V1" else None
+    if scale == 0.1 and not is_tenth and source.given.unit is None:
+        raise Flaw("states g in the text, a tenth of it in the numbers; give --unit for the numbers as they are")
     return count, source.measured(unit[1] if unit else ""), 0.1 if is_tenth else 1.0
 
 
@@ -150,6 +158,7 @@ def _from_film(source: Source, component: str, begin: int, at: int) -> tuple[Cha
     step, values = source.from_film(pairs[::2], part * pairs[1::2])
     found = float(np.abs(part * pairs[1::2]).max())
     peak = _peak(source, at) if _volume(source.lines, begin) == "CSMIP V1" else ""
+    _require_text(source, begin, at, count, peak)
     length = _length(source, begin, at)
     return source.channel(component, unit, values, step, float(pairs[0]), peak, found, length), at + rows
 
@@ -160,6 +169,26 @@ def _length(source: Source, begin: int, at: int) -> str:
         rf"(?:record length|duration)\s*=\s*({DECIMAL})", "\n".join(source.lines[begin:at]), re.IGNORECASE
     )
     return found[1] if found else ""
+
+
+def _require_text(source: Source, begin: int, at: int, count: int, peak: str, step: float | None = None) -> None:
+    """Raise Flaw if the text of a V1 header states another number, rate or peak than below, unless a unit is given."""
+    text = "\n".join(source.lines[begin:at])
+    for what, pattern, below in (
+        ("number of points", rf"no\. of points\s*=\s*{COUNT}", count),
+        ("sampling rate", rf"\bat\s+({DECIMAL})\s+samples/sec", 1.0 / step if step else None),
+        ("peak", rf"\bmax\s*=\s*({DECIMAL})\s*g\b", number_of(peak)),
+    ):
+        said, rounding = with_rounding(match[1] if (match := re.search(pattern, text, re.IGNORECASE)) else "")
+        if (
+            said is not None
+            and below is not None
+            and abs(said - abs(below)) > 1.01 * rounding
+            and not source.given.unit
+        ):
+            raise Flaw(
+                f"line {begin + 1} begins a text with a {what} of {said:g}, below is {abs(below):g}; --unit takes that"
+            )
 
 
 def _peak(source: Source, at: int) -> str:

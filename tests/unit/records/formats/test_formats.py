@@ -179,7 +179,7 @@ def test_a_column_of_times_has_a_beginning(tmp_path):
 def test_a_wrong_peak_in_the_header_is_refused_and_with_the_unit_remarked_on(tmp_path):
     wrong = changed(tmp_path, "sample.v1", ("-1.2345670", "-1.2500000"))
     said = "90: the header states a peak of 12.26 m/s², the samples have 12.11 m/s²"
-    assert refusal(wrong).endswith(f"{said}; to read it nevertheless, give the unit by --unit")
+    assert refusal(wrong).endswith("line 1 begins a text with a peak of 1.235, below is 1.25; --unit takes that")
     assert read_record(wrong, Reading("g")).remarks == (said,)
     assert read_record(changed(tmp_path, "sample.v1", ("-1.2345670", "    -1.235"))).remarks == ()  # rounded
 

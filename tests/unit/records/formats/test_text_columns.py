@@ -31,6 +31,10 @@ def timed(head: str, columns: int = 1, separator: str = ",", step: float = STEP)
 
 AT2 = "PEER STRONG MOTION\nPlace, 090\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 60, DT= .0100 SEC\n"
 SERIES = "Acceleration (g), dt = 0.01 s"
+NUMBERED = "\n".join(f"{line} {n}" for n, line in enumerate(in_lines(4).splitlines(), start=1))
+"""A deck whose lines are numbered."""
+
+LOST = next(line for line in NUMBERED.splitlines(keepends=True) if line.endswith(" 3\n"))
 
 
 def read(folder: Path, text: str, given: Reading = Reading()) -> Record:  # noqa: B008
@@ -58,6 +62,10 @@ def read(folder: Path, text: str, given: Reading = Reading()) -> Record:  # noqa
         timed("# Vs30 [m/s]: 450\n# Depth(km): 10\n# time s, acceleration in g"),
         timed("Zeit (s);Beschl. (g)", separator=";").replace(".", ","),
         timed("t ns\nsec g", separator=" "),  # "ns" is a component above a line of units, not nanoseconds
+        timed("Time (s),a (g)").replace(",", "\t\t"),
+        re.sub(r"(-?\d+)\.(\d+)", r'"\1,\2"', timed("Time (s),a (g)")),
+        timed("Time (s),a (g)").replace("0.00,0.000000", "0.00,0.000000,,Monitor: 7"),
+        "Delta_X\t0.01\nX_Value\ta (g)\tComment\n\t" + in_lines(1).strip().replace("\n", "\n\t"),
         AT2 + in_lines(5, shape="{:.7E}") + "*** End\n\0\0",
         (AT2 + in_lines(5)).replace("\n", "\r\r\n"),
         AT2.replace(".0100 SEC", "10.0 MSEC") + in_lines(5),
@@ -113,6 +121,19 @@ def test_what_states_all_is_read(tmp_path, text):
         (f"{SERIES}, duration: 5 s\n{in_lines(1)}", "a length of 5 s, 60 samples, one every", Reading(time_step=STEP)),
         (re.sub("\n0.30,.*", "", timed("time (s),a (g)")), "0.31 s is behind 0.29 s, most steps are 0.01 s", None),
         (re.sub("\n0.30,.*", "\n0.30,-999", timed("time (s),a (g)")), "a has 999, far from all others", None),
+        (re.sub("\n0.30,.*", "\n0.30,-1000000", timed("time (s),a (g)")), "a has 1e+06, far from all others", None),
+        (f"{SERIES} duration 5 s\n{in_lines(1)}", "a length of 5 s, 60 samples", Reading(time_step=STEP)),
+        (timed("Channels: 3\ntime (s),NS (g),EW (g)", 2), "line 1 states 3 channels, there are 2", None),
+        (timed("61,0.02"), "line 1 precedes times and is none: --skip 1", None),
+        (f"{SERIES}\n{NUMBERED.replace(LOST, '')}", "line 3 has the number 2, the next one 4", None),
+        (f"{SERIES}\nmultiplication factor = 2\n{in_lines(1)}", '"multiplication factor"', Reading("g")),
+        (timed("time (s),a (g),e (µm/m)", 2), 'column 3, "e", is no motion', Reading(columns=("time", "a (g)", "-"))),
+        (timed("T (s),a (g)").replace("-", ""), "column 1 may have periods, as no value is negative", None),
+        (f"*DEFINE_CURVE\n1,0,1.0,9.81\n{timed('').strip()}", "line 2 has factors or offsets of the numbers", None),
+        (timed("time,a (g)").replace("\n0.", "\n45000.00000"), "days of a spreadsheet? Write seconds", None),
+        (timed("time,a (g)").replace("\n0.", "\n10:04:00."), "write seconds in place of dates and times of day", None),
+        (timed("time (s),a (g)").replace("0.00,0.000000", "0.00,0.000000,start"), "has text behind its numbers", None),
+        (AT2.replace("SEC", "SEC, DT= .02 SEC") + in_lines(5), "states time steps of .0100 and .02", None),
     ],
 )  # fmt: skip
 def test_what_may_be_read_in_two_ways_is_refused_with_what_helps(tmp_path, text, said, given):
@@ -123,6 +144,24 @@ def test_what_may_be_read_in_two_ways_is_refused_with_what_helps(tmp_path, text,
     if given is not None and given.skip == 0:
         (channel,) = read(tmp_path, text, given).channels
         np.testing.assert_allclose(channel.values, G * VALUES, atol=1e-5)
+
+
+def test_a_peak_that_no_channel_has_is_remarked_on(tmp_path):
+    """It may be that of their resultant."""
+    said = "line 1 states a peak that no channel has: PGA = 0.5 g"
+    assert read(tmp_path, timed("PGA = 0.5 g\ntime (s),NS (g),EW (g)", 2)).remarks == (said,)
+
+
+def test_a_sentence_names_no_columns(tmp_path):
+    said = "The first column has times in s and an evenly spaced step, the second one the motion across the fault"
+    (channel,) = read(tmp_path, timed(said), Reading("g")).channels
+    assert channel.component == ""
+
+
+def test_chinese_text_of_gb18030_is_read(tmp_path):
+    path = tmp_path / "record.txt"
+    path.write_bytes(f"时间间隔 dt = 0.01 s\n单位: gal\n加速度\n{in_lines(1)}".encode("gb18030"))
+    assert read_record(path).channels[0].unit == "gal"
 
 
 def test_pairs_of_time_and_value_are_no_series(tmp_path):
