@@ -11,6 +11,8 @@ from dembound.gauge.hopkinson.pulses import at_faces
 from dembound.gauge.plausibility import differing_modulus
 from dembound.gauge.spalling import evaluate
 
+pytestmark = pytest.mark.slow
+
 STEP, CREST, SPEED, DENSITY = 2e-7, 30e6, 3500.0, 2500.0
 TIME = STEP * np.arange(2500)
 BAR = (0.7, 1.2, DENSITY)
