@@ -17,7 +17,7 @@ from dembound.records.formats.geonet import Geonet
 from dembound.records.formats.knet import Knet
 from dembound.records.formats.networks import Cwb, Nsmn, Unam
 from dembound.records.formats.peer import Peer
-from dembound.records.formats.seismic import is_seismic, read_binary
+from dembound.records.formats.seismic import is_sac_in_numbers, read_binary
 from dembound.records.formats.smc import Smc
 from dembound.records.formats.source import MOTIONS, USUAL, Flaw, Reading, Source, Unknown
 from dembound.records.formats.text_columns import TextColumns
@@ -50,7 +50,7 @@ def read_record(path: Path, given: Reading = Reading()) -> Record:  # noqa: B008
     lines = re.split(r"\r*\n|\r", text)
     source = Source(path, lines, given)
     form = FORMATS[-1] if given.is_of_text else next(form for form in FORMATS if form.recognises(source.lines))
-    seismic = is_seismic(lines)
+    seismic = "\0" in text or (is_sac_in_numbers(lines) and not given.is_of_text)
     name = "SAC or MiniSEED" if seismic else form.name
     try:
         record = read_binary(content, source) if seismic else form.read(source)

@@ -5,7 +5,7 @@ import warnings
 from collections.abc import Sequence
 
 from dembound.records.channel import Record
-from dembound.records.formats.source import USUAL, Flaw, Source, Unknown
+from dembound.records.formats.source import USUAL, Flaw, Source, Unknown, number_of
 
 FORMATS = ("MSEED", "SAC", "SACXY")
 """Names of the formats in ObsPy; the last one is SAC in numbers."""
@@ -14,10 +14,10 @@ UNDEFINED = "-12345"
 """Of header variables of SAC that are not set."""
 
 
-def is_seismic(lines: Sequence[str]) -> bool:
-    """Whether lines have null characters, or begin with a header of SAC in numbers."""
-    in_numbers = len(lines[0].split()) == 5 and any(UNDEFINED in line for line in lines[:14])
-    return in_numbers or any("\0" in line for line in lines)
+def is_sac_in_numbers(lines: Sequence[str]) -> bool:
+    """Whether lines begin with a header of SAC in numbers: five in a line, some of them not set."""
+    first = lines[0].split()
+    return len(first) == 5 and None not in map(number_of, first) and any(UNDEFINED in line for line in lines[:14])
 
 
 def read_binary(content: bytes, source: Source) -> Record:

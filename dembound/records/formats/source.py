@@ -338,8 +338,9 @@ def seconds_of(number: str, unit: str, line: int) -> float:
     step = float(number.replace(",", "."))
     if not unit and step > BARE:
         raise Flaw(f'line {line} states a time step of {step:g} without a unit: write "{step:g} ms" or "{step:g} s"')
-    named = unit_named(unit)
-    return step * (named.size if named is not None else 1.0)
+    named = unit_named(unit.lower() or "s")
+    assert named is not None, "SECONDS has known units alone"
+    return step * named.size
 
 
 def quantities_named(words: str) -> set[str]:

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from dembound.gauge.reading.scope import BROKEN_OFF, SIGNS, UNIT_IN_NAME, joined
 from dembound.records.formats.source import END, MOTIONS, Flaw, Source, Unknown, number_of, quantity_named
 from dembound.waves.unit_names import unit_named
@@ -149,10 +151,9 @@ def read_table(source: Source) -> Table:
     for number, text, numbers in found[:first]:
         if not numbers and _numbers(separator.join(filter(None, _fields(text, separator))) or MARKS, separator):
             raise Flaw(f"line {number} has empty fields beside numbers; --skip {number} leaves it out")
-    number, text, _ = found[first - 1]
-    fields = _fields(text, separator)[: len(rows[0])] if separator != " " and len(rows[0]) > 1 and first > 0 else []
-    if fields and all(number_of(field.replace(",", ".")) is not None for field in fields):
-        raise Flaw(f"line {number} has text behind its numbers; remove the text")
+    for number, text, _ in found[max(0, first - 1) : first] if separator != " " and len(rows[0]) > 1 else ():
+        if all(number_of(field.replace(",", ".")) is not None for field in _fields(text, separator)[: len(rows[0])]):
+            raise Flaw(f"line {number} has text behind its numbers; remove the text")
     header = [(number, text.lstrip(MARKS + " ")) for number, text, _ in found[:first] if not RULER.fullmatch(text)]
     header = beside + header  # above the names of columns
     table = Table(header, (), rows, [number for number, _, _ in found[first:]])
@@ -166,7 +167,8 @@ def _separator(texts: Sequence[str]) -> str:
     last = next((text for text in reversed(texts) if any(map(str.isdigit, text))), "")
     for separator in ("\t", ";"):
         if separator in last:
-            return " " if "\t\t" in last.strip() else separator
+            in_pairs = all(number_of(field.replace(",", ".")) is not None for field in last.split("\t\t"))
+            return " " if in_pairs and "\t\t" in last else separator
     fields = _fields(last, ",")
     if len(fields) == 2 and "." not in last and any(re.search(r"=\s*\d+,\d|;", text) for text in texts):
         return " "  # a single column with decimal commas, as the header has
@@ -208,7 +210,12 @@ def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], nu
     These have the number of all others, or fewer numbers than other lines, or other digits behind the point than all.
     """
     widths, total = [len(row) for row in rows], sum(map(len, rows))
-    if len(rows) > 3 and widths[0] == 2 == widths[1] and rows[0][0] > rows[1][0] < rows[2][0] < rows[3][0]:
+    if (
+        len(rows) > 3
+        and set(widths) == {2}
+        and rows[0][0] > rows[1][0]
+        and increases(np.array([row[0] for row in rows[1:]]))
+    ):
         raise Flaw(f"line {number} precedes times and is none: --skip {number} leaves it out")
     for lines in (1, 2):
         top = [value for row in rows[:lines] for value in row]
@@ -220,6 +227,12 @@ def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], nu
     if len(others) > 2 and first != others[0] and len(set(others)) == 1 and any(rows[0]):
         said = f"--skip {number} leaves it out, --series takes all as one series"
         raise Flaw(f"line {number} has other digits than all lines below: {said}")
+
+
+def increases(values: np.ndarray) -> bool:
+    """Whether numbers (n,) increase evenly, as times and numbers of samples do."""
+    steps = np.diff(values)
+    return len(values) > 2 and bool((steps >= 0.0).all() and steps.mean() > 0.0 and np.ptp(steps) <= 0.5 * steps.mean())
 
 
 def _decimals(text: str) -> tuple[int, ...]:

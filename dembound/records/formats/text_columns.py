@@ -28,7 +28,7 @@ from dembound.records.formats.source import (
     require_increasing,
     seconds_of,
 )  # fmt: skip
-from dembound.records.formats.table import EITHER, OTHER, Head, Table, head_of, quantity_of, read_table
+from dembound.records.formats.table import EITHER, OTHER, Head, Table, head_of, increases, quantity_of, read_table
 from dembound.table import LARGEST, SMALLEST
 from dembound.waves.unit_names import unit_named
 
@@ -154,11 +154,11 @@ Stated = tuple[float, int] | None
 def _is_series(source: Source, table: Table, heads: Sequence[Head], step: Stated, count: Stated) -> bool:
     """Whether the numbers are one series and no columns; raises Flaw where both are possible."""
     width, lines = table.width, len(table.rows)
-    if source.given.series and width % 2 == 0 and _increases(np.concatenate(table.rows)[::2]):
+    if source.given.series and width % 2 == 0 and increases(np.concatenate(table.rows)[::2]):
         raise Flaw("has pairs of time and value, which are no series; write one pair to a line")
     if source.given.series or source.given.columns:
         return source.given.series
-    are_columns = any(heads) or _increases(np.array([row[0] for row in table.rows]))
+    are_columns = any(heads) or increases(np.array([row[0] for row in table.rows]))
     cut = lines if are_columns or width == 1 else lines - 1
     if table.ragged < cut and (count is None or count[0] != table.total):
         at = table.numbers[table.ragged]
@@ -181,7 +181,7 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     values, heads = np.array(table.rows).T, heads or [Head()] * table.width
     timed = [at for at, head in enumerate(heads) if head.is_time]
     may_be_time = not (heads[0].is_known or OTHER.search(heads[0].name) or source.given.columns)
-    if not timed and may_be_time and (step is None or not heads[0].name) and _increases(values[0]):
+    if not timed and may_be_time and (step is None or not heads[0].name) and increases(values[0]):
         timed = [0]
     if any((values[at] != values[timed[0]]).any() for at in timed[1:]):
         raise Flaw(f"columns {', '.join(str(at + 1) for at in timed)} have times; name one by --columns, others -")
@@ -202,7 +202,7 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     names = {at: heads[at].name or (f"column {at + 1}" if len(chosen) > 1 else "") for at in chosen}
     for at, name in names.items():
         is_other = len(chosen) > 1 and any(head.is_motion for head in table.heads) and not heads[at].is_motion
-        if OTHER.search(name) or _increases(values[at]) or (is_other and not source.given.columns):
+        if OTHER.search(name) or increases(values[at]) or (is_other and not source.given.columns):
             raise Flaw(f'column {at + 1}, "{name}", is no motion; name the columns by --columns, this one -')
     for at, name in names.items():
         if timed:
@@ -364,12 +364,6 @@ def _stated_count(table: Table) -> tuple[int, int] | None:
 def _skip(number: int) -> str:
     """How to leave out a line of the header."""
     return f"--skip {number} leaves that line and those above out"
-
-
-def _increases(values: np.ndarray) -> bool:
-    """Whether numbers (n,) increase evenly, as times and numbers of samples do."""
-    steps = np.diff(values)
-    return len(values) > 2 and bool((steps >= 0.0).all() and steps.mean() > 0.0 and np.ptp(steps) <= 0.5 * steps.mean())
 
 
 def _times(source: Source, table: Table, head: Head, at: int) -> np.ndarray:

@@ -152,6 +152,21 @@ def test_a_peak_that_no_channel_has_is_remarked_on(tmp_path):
     assert read(tmp_path, timed("PGA = 0.5 g\ntime (s),NS (g),EW (g)", 2)).remarks == (said,)
 
 
+def test_two_columns_that_begin_with_a_fall_are_no_times(tmp_path):
+    """A larger number above an even column may be that of the samples, but not above motion."""
+    fallen = np.column_stack([np.roll(VALUES, -20), VALUES])
+    rows = "\n".join(f"{one:.6f},{two:.6f}" for one, two in fallen[np.argmin(fallen[:, 0]) - 1 :])
+    record = read(tmp_path, f"dt = 0.01 s\nNS (g),EW (g)\n{rows}\n")
+    assert [channel.component for channel in record.channels] == ["NS", "EW"]
+
+
+def test_empty_columns_are_not_closed_up(tmp_path):
+    """Of several tabs between numbers, only two between all of them are one separator."""
+    text = timed("time (s),NS (g),EW (g)", 2).replace(",", "\t").replace("\t", "\t\t", 4)
+    with pytest.raises(CaseError, match="has"):
+        read(tmp_path, re.sub("(\n[^\t]+)\t+", "\\1\t\t", text), Reading("g"))
+
+
 def test_a_sentence_names_no_columns(tmp_path):
     said = "The first column has times in s and an evenly spaced step, the second one the motion across the fault"
     (channel,) = read(tmp_path, timed(said), Reading("g")).channels
