@@ -241,15 +241,6 @@ def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
     return snapshots_of(file, required=True)[number]
 
 
-def snapshot_of_largest_motion(file: h5py.File, field: str) -> h5py.Group:
-    """The snapshot of an open record in which a disk's `field` (velocity or displacement) is largest in x or y.
-
-    Raises CaseError when there is no snapshot.
-    """
-    groups = snapshots_of(file, required=True)
-    return max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))
-
-
 def datasets_in(group: h5py.Group) -> dict[str, h5py.Dataset]:
     """All datasets of a group by name, also those of groups within it, such as ``contacts/bonded``."""
     import h5py

@@ -227,10 +227,7 @@ def calibrate(
             found.result = known(beta, found.ratio[-1])
             if method == "impedance" and abs(found.result / matched - 1.0) > tolerance:
                 usual = float(f"{matched:.{HOMOGENISED_DIGITS}g}")
-                own, other = returned(plain, side, motion, pulse, [found.result, usual])
-                with_own, with_usual = (percent(share, 3) for share in (own, other))
-                found.compared = f"returned: {with_own} with {found.result:g}, {with_usual} with the matched {usual:g}"
-                if other < own:
+                if _returns_less(found, plain, pulse, usual):
                     add_pass(usual)
                     found.result = usual
                     found.compared += ", which is kept"
@@ -250,6 +247,17 @@ def known(beta: float, ratio: float) -> float:
     change = beta * abs(ratio / (2.0 - ratio) - 1.0)
     largest = MOST_DIGITS - 1 - math.floor(math.log10(beta))
     return round(beta, largest if change == 0.0 else min(largest, -math.floor(math.log10(change))))
+
+
+def _returns_less(found: Calibration, plain: DiskCase, pulse: Cosine, usual: float) -> bool:
+    """Whether the side returns less of the pulse with the matched factor than with the result, both put into words.
+
+    plain : the case from `linear_medium`. usual : the matched factor.
+    """
+    own, other = returned(plain, found.side, found.motion, pulse, [found.result, usual])
+    with_own, with_usual = (percent(share, 3) for share in (own, other))
+    found.compared = f"returned: {with_own} with {found.result:g}, {with_usual} with the matched {usual:g}"
+    return other < own
 
 
 def _next_beta(found: Calibration) -> float:
