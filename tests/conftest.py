@@ -41,7 +41,6 @@ FIRST = (
     "of_bars/test_search.py",
     "verification/test_resume.py",
     "verification/test_gauge_records.py",
-    "gauge/test_strong_pulses.py",
     "report/test_page.py",
     "running/test_faults.py",
     "unit/test_mistakes.py",

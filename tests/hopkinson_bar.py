@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dembound.gauge.hopkinson.pulses import Setup, Signals
-from dembound.gauge.hopkinson.separation import LongBar
+from dembound.gauge.hopkinson import Setup, Signals
 
 SPEED, DENSITY, AREA = 5000.0, 7800.0, np.pi * 0.01**2
 MODULUS = DENSITY * SPEED**2
@@ -14,7 +13,7 @@ SPECIMEN_SPEED, SPECIMEN_DENSITY = 2500.0, 2000.0
 SPECIMEN_MODULUS = SPECIMEN_DENSITY * SPECIMEN_SPEED**2
 """12.5 GPa, as of a weak rock."""
 
-SETUP = Setup(LongBar(SPEED), MODULUS, AREA, 1.0, 0.8, LENGTH, SPECIMEN_AREA)
+SETUP = Setup(SPEED, DENSITY, 0.02, 1.0, 0.8, LENGTH, SPECIMEN_AREA)
 STEP = 0.2e-6
 
 
@@ -25,11 +24,10 @@ def ramp(time: np.ndarray, rise: float = 150e-6, length: float = 350e-6) -> np.n
 
 def signals(
     pulse: Callable[[np.ndarray], np.ndarray] = ramp,
-    second: float | None = None,
     amplitude: float = 1e-3,
     specimen: tuple[float, float] = (SPECIMEN_SPEED, SPECIMEN_DENSITY),
 ) -> Signals:
-    """Strains at the gauges; the pulse passes the first one at 100 µs. second : distance of a second gauge, m.
+    """Strains at the gauges; the pulse passes the first one at 100 µs.
 
     specimen : its wave speed, m/s, and density, kg/m³.
 
@@ -61,4 +59,4 @@ def signals(
         return incident(time - arrives + way) + reflected(time - arrives - way)
 
     behind = transmitted(time - arrives - SETUP.transmitted_gauge / SPEED)
-    return Signals(time, at_gauge(SETUP.incident_gauge), behind, None if second is None else at_gauge(second))
+    return Signals(time, at_gauge(SETUP.incident_gauge), behind)

@@ -17,8 +17,7 @@ from dembound.cli.signal_options import FILE, SignalOptions
 
 if TYPE_CHECKING:
     from dembound.gauge.estimates import Estimate
-    from dembound.gauge.findings import Findings
-    from dembound.gauge.reading.recorded import BarMetadata
+    from dembound.gauge.spalling import Findings
 
 MPA = 1e6
 """Pascals in a megapascal."""
@@ -93,29 +92,17 @@ def gauge(
         )
     if peaks is not None and found.peaks is not None and len(found.peaks.time) < peaks:
         err.print(f"--peaks: requests {peaks} tension peaks, there are {len(found.peaks.time)}")
-    for warning in found.warnings:
-        err.print(f"warning: {warning}")
     for note in gauge.notes:
         out.print(note)
     known = gauge.metadata
-    out.print(_overview(found, _sources(known, wave_speed, attenuation), None if known is None else known.strength))
+    sources = ["results" if given is None else "given" for given in (wave_speed, attenuation)]
+    out.print(_overview(found, sources, None if known is None else known.strength))
     if output is not None:
         from dembound.plot.gauge import plot_gauge
         from dembound.plot.style import save
 
         save(plot_gauge(gauge, found), output, title)
         out.print(f"wrote {output}")
-
-
-def _sources(known: BarMetadata | None, speed: float | None, attenuation: float | None) -> list[str]:
-    """Sources of speed and attenuation other than peaks, and the values in the results if others are given."""
-    from dembound.gauge.gauge_io import differs
-
-    there = (None, None) if known is None else (known.speed, known.attenuation)
-    return [
-        "results" if given is None else f"given, results have {value:.5g}" if differs(given, value) else "given"
-        for given, value in zip((speed, attenuation), there, strict=True)
-    ]
 
 
 def _overview(found: Findings, sources: Sequence[str], known: tuple[float, float] | None) -> Table:

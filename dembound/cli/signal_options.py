@@ -10,9 +10,9 @@ import typer
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
+    from dembound.gauge.baseline import Treatment
     from dembound.gauge.reading.signal import Reading
     from dembound.gauge.reading.units import Bridge
-    from dembound.gauge.treatment import Treatment
 
 FILE, BRIDGE, CLEANING = "Text files", "Strain gauges", "Baseline and filters"
 """Panels of the help."""
@@ -70,7 +70,6 @@ class SignalOptions:
         bool, typer.Option("--no-baseline", help="Remove no baseline at all.", rich_help_panel=CLEANING)
     ] = False
     no_drift: Annotated[bool, typer.Option("--no-drift", help="Remove no drift.", rich_help_panel=CLEANING)] = False
-    no_hum: Annotated[bool, typer.Option("--no-hum", help="Remove no mains hum.", rich_help_panel=CLEANING)] = False
     low_pass: Annotated[float | None, typer.Option(help="Keep what is below (Hz).", rich_help_panel=CLEANING)] = None
     high_pass: Annotated[float | None, typer.Option(help="Keep what is above (Hz).", rich_help_panel=CLEANING)] = None
     band: Annotated[
@@ -109,8 +108,8 @@ class SignalOptions:
 
         Raises CaseError for a band beside a low or high pass.
         """
+        from dembound.gauge.baseline import Treatment
         from dembound.gauge.filters import Filters
-        from dembound.gauge.treatment import Treatment
 
         low_pass, high_pass = self.low_pass, self.high_pass
         if self.band is not None:
@@ -118,5 +117,5 @@ class SignalOptions:
                 raise CaseError(["--band: is a high and a low pass at once, it can have none beside it"])
             high_pass, low_pass = self.band
         filters = Filters(low_pass, high_pass, tuple(self.notch or ()))
-        treatment = Treatment(not self.no_baseline, not self.no_drift, not self.no_hum, filters)
+        treatment = Treatment(not self.no_baseline, not self.no_drift, filters)
         return None if treatment == Treatment() else treatment

@@ -1,32 +1,24 @@
-"""The baseline of a signal, recorded where no wave passes the gauge: an offset, a drift, and mains hum.
+"""The baseline of a measured signal, an offset and a drift, and its removal together with filters.
 
-It is fitted by least squares to the *quiet* samples: those before the trigger and between passages of the pulse. As
-these are known only with the baseline, the first fit is one of least absolute deviations to all samples, which passages
-hardly change if they take less than half of the time; then selection of quiet samples and fit alternate. In a record
-with longer waves only an offset is fitted, to its beginning.
+The baseline is fitted by least squares to the *quiet* samples, at which no wave passes the gauge. As these are known
+only with the baseline, the first fit is one of least absolute deviations to all samples, which passages hardly change
+if they take less than half of the time; then selection of quiet samples and fit alternate. In a record with longer
+waves only an offset is fitted, to its beginning.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
+from dembound.gauge.filters import Filters
 from dembound.gauge.peaks import CREST, noise_left, smooth, white_noise, width_of
+from dembound.gauge.reading.signal import Signal
+from dembound.words import percent
 
-MAINS = (50.0, 60.0)
-"""Frequencies of hum, Hz; each is fitted with the harmonics below."""
-
-HARMONICS = (1, 2, 3)
-"""Harmonics of the mains that are fitted to records longer than a period."""
-
-SHORTEST = 0.05
-"""Periods of the mains in a record below which hum is a drift in it."""
-
-LEAST = 0.003
-"""Largest baseline, over the largest value, that is not removed: it changes α by some parts in a thousand."""
-
-SIGNIFICANT = 5.0
-"""Least size of a baseline over its standard error."""
+LEAST, SIGNIFICANT = 0.003, 5.0
+"""Largest baseline that is not removed: over the largest value, where it changes α by some parts in a thousand, and in
+standard errors."""
 
 QUIET = 0.01
 """Largest deviation of quiet samples from the baseline, over the largest value; noise increases it."""
@@ -38,7 +30,7 @@ FEWEST_QUIET = 20
 """Least number of quiet samples for a baseline."""
 
 SPREAD = 0.5
-"""Part of the record that quiet samples must extend over for a drift or hum to be fitted."""
+"""Part of the record that quiet samples must extend over for a drift to be fitted."""
 
 ROUNDS = 4
 """Iterations of fit and selection of quiet samples; the second already changes little."""
@@ -47,76 +39,56 @@ BEGINNING = 20
 """Inverse of the part of the record whose median is the offset where it has no other quiet samples."""
 
 TRIED = 4000
-"""Number of samples of the first fit, enough for a few terms."""
-
-
-class Terms(NamedTuple):
-    """Terms of a baseline: their name, and the functions (k, m) of time."""
-
-    name: str
-    functions: np.ndarray
+"""Number of samples of the first fit, enough for two terms."""
 
 
 @dataclass(frozen=True)
-class Baseline:
-    """The baseline of a signal (k,).
+class Treatment:
+    """Removal of the baseline from a signal, with or without drift, and of frequencies by filters."""
 
-    quiet : (k,) where no wave passes. before : number of quiet samples before the first wave. values : (k,) the fit.
-    worthwhile : whether it is large enough to be removed. names : of its terms. functions : (k, m) and covariance : (m,
-    m) of its uncertainty.
-    """
+    baseline: bool = True
+    drift: bool = True
+    filters: Filters = field(default_factory=Filters)
 
-    quiet: np.ndarray
-    before: int
+
+class Baseline(NamedTuple):
+    """A baseline: its values (k,), whether it has a drift, where (k,) no wave passes, and whether to remove it."""
+
     values: np.ndarray
+    drifts: bool
+    quiet: np.ndarray
     worthwhile: bool
-    names: tuple[str, ...]
-    functions: np.ndarray
-    covariance: np.ndarray
 
 
-def find_baseline(
-    time: np.ndarray, values: np.ndarray, *, drift: bool = True, mains: tuple[float, ...] = MAINS
-) -> Baseline | None:
-    """The baseline of a signal; None without quiet samples.
+def treated(signal: Signal, treatment: Treatment | None = None) -> Signal:
+    """The signal without its baseline, filtered, with notes on the treatment.
 
-    Of offset, drift and hum only significant terms are fitted, of five standard errors or more. A record whose
-    quiet samples are only at its beginning gives an offset only.
-
-    Parameters
-    ----------
-    time, values : (k,) s, evenly spaced, and any unit. drift : whether a drift may be fitted. mains : frequencies, Hz.
+    A baseline below 0.3 % of the signal or below five of its standard errors is not removed. Raises CaseError for
+    filters that the record does not allow.
     """
-    offset = Terms("offset", np.ones((len(time), 1)))
-    possible = [Terms("drift", np.linspace(-1.0, 1.0, len(time))[:, None])] if drift else []
-    hums = _hums(time, mains)
-    candidates = [[offset, *possible, each] for each in hums] or [[offset, *possible]]
-    fits = [_absolute_fit(_joined(terms), values) for terms in candidates]
-    best = int(np.argmin([float(np.abs(values - fitted).sum()) for fitted in fits]))
-    found = _settled(fits[best], offset, candidates[best][1:], values)
-    if found is None or not found.before:
-        level = float(np.median(values[: max(FEWEST_QUIET, len(values) // BEGINNING)]))
-        found = _settled(np.full(len(values), level), offset, [], values, only_before=True) or found
+    treatment = treatment or Treatment()
+    values, notes = signal.values, list(signal.notes)
+    if treatment.baseline:
+        found = find_baseline(values, drift=treatment.drift)
+        notes.append(_in_words(found, signal))
+        if found is not None and found.worthwhile:
+            values = values - found.values
+    values, filtered = treatment.filters.apply(signal.time, values)
+    return replace(signal, values=values, notes=(*notes, *filtered))
+
+
+def find_baseline(values: np.ndarray, *, drift: bool = True) -> Baseline | None:
+    """The baseline of an evenly sampled signal (k,); None without quiet samples.
+
+    drift : whether a drift may be fitted. A record that has no quiet samples before its first wave gives an offset.
+    """
+    count = len(values)
+    terms = np.column_stack([np.ones(count), np.linspace(-1.0, 1.0, count)])[:, : 2 if drift else 1]
+    found = _settled(values, terms, _absolute_fit(terms, values))
+    if found is None or not found.quiet[0]:
+        level = float(np.median(values[: max(FEWEST_QUIET, count // BEGINNING)]))
+        found = _settled(values, terms[:, :1], np.full(count, level), only_before=True) or found
     return found
-
-
-def _settled(
-    fit: np.ndarray, offset: Terms, possible: list[Terms], values: np.ndarray, *, only_before: bool = False
-) -> Baseline | None:
-    """The baseline of a signal (k,) from a first fit (k,); only_before: from its beginning only."""
-    for _ in range(ROUNDS):
-        quiet = quiet_samples(values - fit)
-        before = int(np.argmin(quiet)) if not quiet.all() else len(quiet)
-        if only_before:
-            quiet[before:] = False
-        if quiet.sum() < FEWEST_QUIET:
-            return None
-        chosen = _significant(offset, possible if _is_spread(quiet) else [], quiet, values)
-        fit, functions, covariance = _fit(chosen, quiet, values)
-    size = float(np.abs(fit).max())
-    error = float(np.sqrt(np.einsum("km,mn,kn->k", functions, covariance, functions).max()))
-    worthwhile = size > max(LEAST * np.abs(values - fit).max(), SIGNIFICANT * error)
-    return Baseline(quiet, before, fit, bool(worthwhile), tuple(terms.name for terms in chosen), functions, covariance)
 
 
 def quiet_samples(values: np.ndarray) -> np.ndarray:
@@ -131,37 +103,35 @@ def quiet_samples(values: np.ndarray) -> np.ndarray:
     return ~around
 
 
-def _hums(time: np.ndarray, mains: tuple[float, ...]) -> list[Terms]:
-    """Sines and cosines of the mains and of their harmonics of which the record has a period.
+def _settled(values: np.ndarray, terms: np.ndarray, fit: np.ndarray, *, only_before: bool = False) -> Baseline | None:
+    """The baseline of terms (k, m) from a first fit (k,); only_before: from the samples before the first wave."""
+    for _ in range(ROUNDS):
+        quiet = quiet_samples(values - fit)
+        if only_before and not quiet.all():
+            quiet[int(np.argmin(quiet)) :] = False
+        if quiet.sum() < FEWEST_QUIET:
+            return None
+        used, fit = terms[:, :1], np.full(len(values), values[quiet].mean())
+        if _is_spread(quiet):
+            line = terms @ np.linalg.lstsq(terms[quiet], values[quiet], rcond=None)[0]
+            least, most = (float(np.sum((values - each)[quiet] ** 2)) for each in (line, fit))
+            if most - least > SIGNIFICANT**2 * least / quiet.sum():
+                used, fit = terms, line
+    rest = values - fit
+    error = 2.0 * float(rest[quiet].std()) / np.sqrt(quiet.sum())  # at the ends of a drift
+    worthwhile = np.abs(fit).max() > max(LEAST * np.abs(rest).max(), SIGNIFICANT * error)
+    return Baseline(fit, used.shape[1] > 1, quiet, bool(worthwhile))
 
-    In a record of less than a period all mains are the same slow curve, and only the first is used; in a record of less
-    than a twentieth of a period none is used.
-    """
-    length, found = float(time[-1] - time[0]), []
-    for frequency in mains if max(mains, default=0.0) * length > 1.0 else mains[:1]:
-        orders = [order for order in HARMONICS if order == 1 or frequency * length > 1.0]
-        phases = 2.0 * np.pi * frequency * np.outer(time - time[0], orders)
-        name = f"{frequency:g} Hz hum" if frequency * length > 1.0 else f"slow curve as of {frequency:g} Hz hum"
-        if frequency * length > SHORTEST:
-            found.append(Terms(name, np.hstack([np.sin(phases), np.cos(phases)])))
-    return found
 
-
-def _joined(terms: list[Terms]) -> np.ndarray:
-    """All functions (k, m) of terms."""
-    return np.hstack([each.functions for each in terms])
-
-
-def _absolute_fit(functions: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """The combination (k,) of functions with the least sum of absolute deviations, by reweighted least squares."""
+def _absolute_fit(terms: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """The combination (k,) of terms (k, m) with the least sum of absolute deviations, by reweighted least squares."""
     step = max(1, len(values) // TRIED)
-    few, tried = functions[::step], values[::step]
-    smallest = 1e-4 * float(np.ptp(values))
+    few, tried = terms[::step], values[::step]
     weights = np.ones(len(tried))
     for _ in range(50):
         shares = np.linalg.lstsq(few * weights[:, None], tried * weights, rcond=None)[0]
-        weights = 1.0 / np.sqrt(np.maximum(np.abs(tried - few @ shares), smallest))
-    return functions @ shares
+        weights = 1.0 / np.sqrt(np.maximum(np.abs(tried - few @ shares), 1e-4 * np.ptp(values)))
+    return terms @ shares
 
 
 def _is_spread(quiet: np.ndarray) -> bool:
@@ -170,33 +140,12 @@ def _is_spread(quiet: np.ndarray) -> bool:
     return bool(np.ptp(places) > SPREAD * len(quiet) and np.mean(places > 0.5 * len(quiet)) > 0.1)
 
 
-def _significant(offset: Terms, possible: list[Terms], quiet: np.ndarray, values: np.ndarray) -> list[Terms]:
-    """The offset and the possible terms that reduce the deviations of quiet samples by more than noise does."""
-    chosen, left = [offset], list(possible)
-    while left:
-        now = _sum_of_squares(chosen, quiet, values)
-        sums = [_sum_of_squares([*chosen, each], quiet, values) for each in left]
-        best = int(np.argmin(sums))
-        freedom = quiet.sum() - _joined([*chosen, left[best]]).shape[1]
-        gain = (now - sums[best]) / max(sums[best] / max(freedom, 1), 1e-300) / left[best].functions.shape[1]
-        if gain < SIGNIFICANT**2:
-            break
-        chosen.append(left.pop(best))
-    return chosen
-
-
-def _sum_of_squares(terms: list[Terms], quiet: np.ndarray, values: np.ndarray) -> float:
-    """Sum of squared deviations of quiet samples from their fit."""
-    functions = _joined(terms)[quiet]
-    shares = np.linalg.lstsq(functions, values[quiet], rcond=None)[0]
-    return float(np.sum((values[quiet] - functions @ shares) ** 2))
-
-
-def _fit(terms: list[Terms], quiet: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The fit (k,) to quiet samples, its functions (k, m) and the covariance (m, m) of their shares."""
-    functions = _joined(terms)
-    shares = np.linalg.lstsq(functions[quiet], values[quiet], rcond=None)[0]
-    fit = functions @ shares
-    freedom = max(int(quiet.sum()) - functions.shape[1], 1)
-    variance = float(np.sum((values - fit)[quiet] ** 2)) / freedom
-    return fit, functions, variance * np.linalg.pinv(functions[quiet].T @ functions[quiet])
+def _in_words(found: Baseline | None, signal: Signal) -> str:
+    """The treatment of the baseline in words."""
+    if found is None:
+        return "baseline: not removed, as no part of the record is quiet"
+    share = percent(np.abs(found.values).max() / np.abs(signal.values - found.values).max())
+    if not found.worthwhile:
+        return f"baseline: nothing to remove, {share} of the signal"
+    what, lowest, highest = "offset and drift" * found.drifts or "offset", found.values.min(), found.values.max()
+    return f"baseline: removed {what}, {lowest:.4g} to {highest:.4g} {signal.unit}, {share} of the signal"

@@ -10,15 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.gauge.peaks import (
-    SMALLEST,
-    Peaks,
-    crest,
-    denoised,
-    first_fall,
-    positive_peaks,
-    width_of,
-)
+from dembound.gauge.peaks import SMALLEST, Peaks, crest, denoised, first_fall, positive_peaks, width_of
 
 ONSET = 0.01
 """Share of its largest compression at which a pulse begins."""
@@ -32,7 +24,7 @@ values.
 """
 
 FEWEST = 3
-"""Samples of a history from which its noise is estimated."""
+"""Least number of samples of a history."""
 
 
 class Estimate(NamedTuple):
@@ -154,13 +146,7 @@ def near_free_end(
 
 
 def nominal_strength(
-    time: np.ndarray,
-    stress: np.ndarray,
-    gauge: float,
-    length: float,
-    speed: float,
-    position: float,
-    noise: float = 0.0,
+    time: np.ndarray, stress: np.ndarray, gauge: float, length: float, speed: float, position: float, noise: float = 0.0
 ) -> tuple[float, float, float]:
     """Largest tension at the spall (`position`, m) at any time, without attenuation; its time in s; a standard error.
 

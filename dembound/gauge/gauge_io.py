@@ -7,33 +7,19 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.gauge.noise import Noise
-from dembound.gauge.plausibility import (
-    implausible_length,
-    implausible_modulus,
-    implausible_signal,
-    implausible_size,
-)
+from dembound.gauge.baseline import Treatment, treated
+from dembound.gauge.checks import implausible_size, not_above_zero, unfit_signal
 from dembound.gauge.reading.recorded import (
     BarMetadata,
-    GaugeMetadata,
-    bar_length,
-    bar_metadata,
-    is_at,
     is_record,
-    loaded_end,
+    recorded_free_end,
     recorded_gauge,
     require_for_results,
 )
 from dembound.gauge.reading.signal import Reading, Signal, read_signal
-from dembound.gauge.treatment import Treatment, treated
-from dembound.results.reader import history_of, open_record
 
-FREE = "free"
-"""The type of a free end."""
-
-DIFFERENT = 0.01
-"""Relative difference above which a given value differs from that of the results."""
+LONGEST = 100.0
+"""Length of a bar, m, above which it was probably given in millimetres."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +28,7 @@ class Gauge:
 
     time, stress : (k,) s and Pa, or the unit measured, tension positive; position : from the loaded end, m; length :
     the bar's, m; density : kg/m³, or None; metadata : data of the bar from a record, None for a text file; unit : Pa,
-    V, strain, or empty if unknown; modulus : E in Pa of strains, None for ρc²; noise : of a measured signal; notes :
-    what was done to it; recorded : (k,) the measured signal before treatment, in any unit.
+    V, strain, or empty if unknown; modulus : E in Pa of strains, None for ρc²; notes : what was done to the signal.
     """
 
     time: np.ndarray
@@ -54,14 +39,12 @@ class Gauge:
     metadata: BarMetadata | None = None
     unit: str = "Pa"
     modulus: float | None = None
-    noise: Noise | None = None
     notes: tuple[str, ...] = ()
-    recorded: np.ndarray | None = None
 
     def in_pascals(self, speed: float) -> "Gauge":
         """The gauge with stresses in Pa: strains times E, by default ρc² with c = speed, m/s.
 
-        Raises CaseError where they cannot be computed, and for a modulus that contradicts density and speed.
+        Raises CaseError where they cannot be computed.
         """
         if self.unit == "Pa":
             return self
@@ -73,8 +56,6 @@ class Gauge:
             modulus = self.density * speed**2
         if modulus is None:
             raise CaseError(["--youngs-modulus: is missing, or --density for E = ρc², to make stresses of strains"])
-        if problems := list(implausible_modulus(modulus, self.density, speed)):
-            raise CaseError(problems)
         return replace(self, stress=modulus * self.stress, unit="Pa", modulus=modulus)
 
 
@@ -107,47 +88,29 @@ def read_gauge(
     reading = reading or Reading()
     if is_record(path):
         require_for_results(path, reading, column=reading.column, modulus=modulus)
-        time, stress, known = recorded_gauge(path, monitor)
-        signal = Signal(time, stress, "Pa")
+        found = recorded_gauge(path, monitor)
+        signal, metadata = Signal(*found[:2], "Pa"), found[5]
+        position, length, density = (
+            known if given is None else given
+            for given, known in zip((position, length, density), found[2:5], strict=True)
+        )
+        treatment = treatment and replace(treatment, baseline=False)
     else:
-        signal, known = read_signal(path, reading), GaugeMetadata()
+        signal, metadata = read_signal(path, reading), None
         if monitor is not None:
             raise CaseError([f"--monitor: is for results of a run, {path} is a text file"])
-    options = (("--position", position, "m"), ("--length", length, "m"), ("--density", density, "kg/m³"))
-    replaced = tuple(
-        f"{name}: {given:.5g} {unit} given, results have {there:.5g}"
-        for (name, given, unit), there in zip(options, known[:3], strict=True)
-        if differs(given, there)
-    )
-    place, long, dense = (
-        recorded if given is None else given
-        for given, recorded in zip((position, length, density), known[:3], strict=True)
-    )
-    problems = list(_problems_with_bar(place, long, dense))
-    problems += not_above_zero("--youngs-modulus", modulus, "Pa")
-    if not is_record(path):
-        problems += implausible_length(long or 0.0)
-        problems += implausible_size("--density", density, "density", "kg/m³") if not problems else []
-        problems += implausible_size("--youngs-modulus", modulus, "modulus", "Pa") if not problems else []
-        problems += implausible_signal(signal.values, may_be_clipped=may_be_clipped) if not problems else []
-    if problems:
+    problems = list(_problems_with_bar(position, length))
+    if is_record(path):
+        problems += not_above_zero("--density", density, "kg/m³")
+    else:
+        problems += implausible_size("--density", density, "density", "kg/m³")
+        problems += implausible_size("--youngs-modulus", modulus, "modulus", "Pa")
+        problems += unfit_signal(signal.values, may_be_clipped=may_be_clipped) if not problems else []
+    if problems or position is None or length is None:
         raise CaseError(problems)
-    assert place is not None
-    assert long is not None
-    noise, as_recorded = None, None
-    if not is_record(path):
-        as_recorded = signal.values
-        signal, noise = treated(signal, treatment)
-    elif treatment is not None:
-        signal, _ = treated(signal, replace(treatment, baseline=False))
-    known_bar = (place, long, dense, known.metadata)
-    notes = (*signal.notes, *replaced)
-    return Gauge(signal.time, signal.values, *known_bar, signal.unit, modulus, noise, notes, as_recorded)
-
-
-def differs(given: float | None, recorded: float | None) -> bool:
-    """Whether a given value differs from the one in the results."""
-    return given is not None and recorded is not None and abs(given - recorded) > DIFFERENT * abs(recorded)
+    if treatment is not None or not is_record(path):
+        signal = treated(signal, treatment)
+    return Gauge(signal.time, signal.values, position, length, density, metadata, signal.unit, modulus, signal.notes)
 
 
 def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
@@ -168,24 +131,7 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
         if signal.unit not in ("m/s", ""):
             raise CaseError([f"--free-end: has values in {signal.unit}, must be velocities"])
         return signal.time, signal.values
-    with open_record(path) as file:
-        histories = file.get("histories", {}).items()
-        there = {name: group for name, group in histories if is_at(file, group, bar_length(file))}
-        if free_end not in there:
-            allowed = f"which is {' or '.join(there)}" if there else "but the results have none there"
-            raise CaseError([f"--free-end: is {free_end}, must be a monitor at the end opposite the load, {allowed}"])
-        metadata = bar_metadata(file)
-        if metadata is not None and metadata.ends[1] != FREE:
-            raise CaseError([f"--free-end: is {free_end}, where the bar's end is {metadata.ends[1]}, must be free"])
-        outwards = 1.0 if loaded_end(file) == "left" else -1.0
-        time, velocity = history_of(there[free_end], "velocity")
-        return time, outwards * velocity[:, 0]
-
-
-def not_above_zero(option: str, value: float | None, unit: str) -> Iterator[str]:
-    """Message about an option's value, in its unit, if it is not a positive number."""
-    if value is not None and not 0.0 < value < np.inf:
-        yield f"{option}: is {value:g} {unit}, must be finite and above 0"
+    return recorded_free_end(path, free_end)
 
 
 def not_on_bar(option: str, place: float, length: float) -> Iterator[str]:
@@ -194,7 +140,7 @@ def not_on_bar(option: str, place: float, length: float) -> Iterator[str]:
         yield f"{option}: is {place:g} m, must be above 0 and below the length, {length:g} m"
 
 
-def _problems_with_bar(position: float | None, length: float | None, density: float | None) -> Iterator[str]:
+def _problems_with_bar(position: float | None, length: float | None) -> Iterator[str]:
     """Missing or impossible data of a gauge on a bar."""
     if position is None:
         yield "--position: is missing, must be the gauge's place (m) from the loaded end"
@@ -202,6 +148,7 @@ def _problems_with_bar(position: float | None, length: float | None, density: fl
         yield "--length: is missing, must be that of the bar (m)"
     unfit = list(not_above_zero("--length", length, "m"))
     yield from unfit
-    if position is not None and length is not None and not unfit:
+    if length is not None and LONGEST < length < np.inf:
+        yield f"--length: is {length:g} m, must be at most {LONGEST:g} m; positions and lengths are in m, not mm"
+    elif position is not None and length is not None and not unfit:
         yield from not_on_bar("--position", position, length)
-    yield from not_above_zero("--density", density, "kg/m³")

@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.gauge.estimates import near_free_end
-from dembound.gauge.findings import Findings, Strength
 from dembound.gauge.gauge_io import Gauge
+from dembound.gauge.spalling import Findings, Strength
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
 
 MPA = 1e6

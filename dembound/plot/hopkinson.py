@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dembound.gauge.hopkinson.pulses import Faces
-from dembound.gauge.hopkinson.specimen import Specimen
+from dembound.gauge.hopkinson import Faces, Specimen
 from dembound.plot.style import COLOURS, REFERENCE, new_figure, styled
 
 MPA, MICRO = 1e6, 1e-6
@@ -19,7 +18,7 @@ def plot_hopkinson(faces: Faces, found: Specimen) -> Figure:
     Parameters
     ----------
     faces, found
-        waves at the faces by `pulses.at_faces`, and the specimen by `hopkinson.specimen`.
+        waves at the faces by `hopkinson.at_faces`, and the specimen by `hopkinson.specimen`.
     """
     figure = new_figure(10.0, 7.2)
     waves, forces, rates, curve = figure.subplots(2, 2).ravel()

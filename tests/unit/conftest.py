@@ -20,7 +20,6 @@ from dembound.cli import compiling
 from dembound.disks.contacts.rows import contact_rows
 from dembound.disks.kind import Disks
 from dembound.disks.scene import DiskScene
-from dembound.gauge import noise as noise_of_gauges
 from dembound.kinds import loads, with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
@@ -287,11 +286,10 @@ def command() -> Callable[[], None]:
 
 @pytest.fixture
 def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
-    """Runs a command in an empty folder as the shell would, with small pictures and few draws of noise."""
+    """Runs a command in an empty folder as the shell would, with small pictures."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
     drawn_quickly(monkeypatch)
-    monkeypatch.setattr(noise_of_gauges, "MOST_DRAWS", 10)
     monkeypatch.setattr(compiling, "report_compiling", lambda: None)  # else what is printed depends on earlier tests
 
     def run(*arguments: object) -> Answer:

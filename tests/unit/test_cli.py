@@ -815,7 +815,7 @@ def test_the_starter_of_a_bar_tells_its_strength_and_no_speed(dembound) -> None:
 
     for options, said in (
         # the pulse is not yet back at the gauge
-        (["--estimate"], "--wave-speed: needs two tension peaks to be estimated, 0 found in the record: it ends "),
+        (["--estimate"], "--wave-speed: needs two tension peaks to be estimated, 0 found; give it\n"),
         (
             ["--free-end", "end.txt"],
             "--free-end: is end.txt, must be a monitor at the end opposite the load, which is ",

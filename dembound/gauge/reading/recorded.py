@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import h5py
 import numpy as np
@@ -11,6 +10,9 @@ from dembound.errors import CaseError
 from dembound.gauge.estimates import FEWEST
 from dembound.gauge.reading.signal import Reading
 from dembound.results.reader import history_of, open_record, text_of
+
+FREE = "free"
+"""The type of a free end."""
 
 ROUNDING = 1e-9
 """Share of a bar's length within which two positions are equal."""
@@ -22,8 +24,7 @@ class BarMetadata:
 
     speed : of waves, m/s; attenuation : 1/m; ends : types of the loaded end and of the other end; broken : time at
     which the first bond broke, s, infinite for an unbroken bar; strength : of the case at the slowest and at the
-    fastest strain rate, Pa, infinite for an unbreakable bar; first_crack : place of the first broken bond, m from the
-    loaded end. The last two are None if the record does not have them.
+    fastest strain rate, Pa, infinite for an unbreakable bar, None if the record does not have it.
     """
 
     speed: float
@@ -31,16 +32,6 @@ class BarMetadata:
     ends: tuple[str, str]
     broken: float
     strength: tuple[float, float] | None = None
-    first_crack: float | None = None
-
-
-class GaugeMetadata(NamedTuple):
-    """Data of a gauge from a record; see `Gauge`, None where it is missing."""
-
-    position: float | None = None
-    length: float | None = None
-    density: float | None = None
-    metadata: BarMetadata | None = None
 
 
 def is_record(path: Path) -> bool:
@@ -70,22 +61,37 @@ def require_for_results(
         raise CaseError(problems)
 
 
-def recorded_gauge(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, GaugeMetadata]:
-    """Time, stress and metadata of a monitor in a record."""
+def recorded_gauge(
+    path: Path, name: str | None
+) -> tuple[np.ndarray, np.ndarray, float, float, float | None, BarMetadata | None]:
+    """Time (k,) s and stress (k,) Pa of a monitor, its position and the bar's length, m, and density, kg/m³, its bar.
+
+    The last two are None where the record does not have them.
+    """
     with open_record(path) as file:
         group = _gauge(file, name)
         time, stress = history_of(group, "stress")
-        _enough(time, path)
+        if len(time) < FEWEST:
+            raise CaseError([f"{path}: contains {len(time)} samples, must contain three or more"])
         if "range" in group.attrs:
             raise CaseError([f"{path}: has a bar of several ranges, must have one without interfaces"])
-        density = file.attrs.get("density")
-        known = GaugeMetadata(
-            position=_from_loaded_end(file, group),
-            length=bar_length(file),
-            density=None if density is None else float(density),
-            metadata=bar_metadata(file),
-        )
-        return time, stress, known
+        density = None if "density" not in file.attrs else float(file.attrs["density"])
+        return time, stress, _from_loaded_end(file, group), bar_length(file), density, bar_metadata(file)
+
+
+def recorded_free_end(path: Path, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Time (k,) s and velocity (k,) m/s, positive outwards, of a monitor at the free end of a recorded bar."""
+    with open_record(path) as file:
+        histories = file.get("histories", {}).items()
+        there = {each: group for each, group in histories if is_at(file, group, bar_length(file))}
+        if name not in there:
+            allowed = f"which is {' or '.join(there)}" if there else "but the results have none there"
+            raise CaseError([f"--free-end: is {name}, must be a monitor at the end opposite the load, {allowed}"])
+        metadata = bar_metadata(file)
+        if metadata is not None and metadata.ends[1] != FREE:
+            raise CaseError([f"--free-end: is {name}, where the bar's end is {metadata.ends[1]}, must be free"])
+        time, velocity = history_of(there[name], "velocity")
+        return time, (1.0 if loaded_end(file) == "left" else -1.0) * velocity[:, 0]
 
 
 def _gauge(file: h5py.File, name: str | None) -> h5py.Group:
@@ -115,15 +121,7 @@ def bar_metadata(file: h5py.File) -> BarMetadata | None:
         ends=(left, right) if loaded_end(file) == "left" else (right, left),
         broken=float(np.min(file["cracks/time"][:], initial=np.inf)),
         strength=tuple(file.attrs["strength"].tolist()) if "strength" in file.attrs else None,
-        first_crack=_first_crack(file),
     )
-
-
-def _first_crack(file: h5py.File) -> float | None:
-    """Place of the first crack of a recorded bar, m from the loaded end; None for an unbroken one or without places."""
-    times = file["cracks/time"][:]
-    known = len(times) and "position" in file["cracks"]
-    return _measured(file, file["cracks/position"][int(times.argmin())]) if known else None
 
 
 def bar_length(file: h5py.File) -> float:
@@ -141,22 +139,11 @@ def loaded_end(file: h5py.File) -> str:
 
 
 def _from_loaded_end(file: h5py.File, group: h5py.Group) -> float:
-    """Distance of a recorded monitor from the loaded end, m."""
-    return _measured(file, group.attrs["position"])
-
-
-def _measured(file: h5py.File, position: np.ndarray) -> float:
-    """A position, whose first component is along the bar, as the distance from the loaded end, m."""
-    x = float(np.ravel(position)[0])
+    """Distance of a recorded monitor, whose first coordinate is along the bar, from the loaded end, m."""
+    x = float(np.ravel(group.attrs["position"])[0])
     return x if loaded_end(file) == "left" else bar_length(file) - x
 
 
 def is_at(file: h5py.File, group: h5py.Group, place: float) -> bool:
     """Whether a recorded monitor is at a position, m from the loaded end."""
     return abs(_from_loaded_end(file, group) - place) < ROUNDING * bar_length(file)
-
-
-def _enough(time: np.ndarray, path: Path) -> None:
-    """Raise CaseError for a history (k,) of too few samples."""
-    if len(time) < FEWEST:
-        raise CaseError([f"{path}: contains {len(time)} samples, must contain three or more"])

@@ -1,6 +1,5 @@
 """A measured signal: its columns read from a text file, at even times, in known units."""
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -88,27 +87,9 @@ def read_signal(path: Path, reading: Reading | None = None, usual: str = "Pa") -
     _require_sound(columns, time, values)
     time, values, even = evenly(path, time, values)
     values, measured, notes = _converted(values, unit, reading)
-    replaced = [*_replaced(columns, at, reading.time_unit, is_time=True), *_replaced(columns, of, reading.unit)]
     name = f"column {of + 1}" + (f", {columns.names[of]}" if columns.names[of] else "")
     read = f"{name}{f' ({unit.name})' if unit.name else ''}: {len(time)} samples, one every {_in_words(time)}"
-    return Signal(time, values, measured, (read, *replaced, *even, *notes))
-
-
-def _replaced(columns: Columns, column: int, given: str | None, *, is_time: bool = False) -> Iterator[str]:
-    """A note where a unit that is given replaces another one in the header."""
-    if given is None:
-        return
-    of: Callable[[str], object]
-    of, option = (time_unit, "--time-unit") if is_time else (_measures, "--unit")
-    known = [(text, size) for text in columns.units(column) if (size := of(text)) is not None]
-    if known and known[0][1] != of(given):
-        yield f"{option}: {given} given, the header says {known[0][0]}"
-
-
-def _measures(name: str) -> tuple[str, float] | None:
-    """Quantity and size of a unit of values; None for other texts."""
-    unit = value_unit(name)
-    return None if unit is None else (unit.of, unit.size)
+    return Signal(time, values, measured, (read, *even, *notes))
 
 
 def _chosen(columns: Columns, reading: Reading) -> tuple[int, int]:
@@ -121,16 +102,8 @@ def _chosen(columns: Columns, reading: Reading) -> tuple[int, int]:
         known = [name for name in (columns.names[index] for index in others) if name]
         allowed = ", ".join(known) if known else f"a number from 1 to {len(columns.places)}"
         has = f"{columns.path} has {len(columns.places)} columns"
-        raise CaseError([f"--column: is missing, {has}; must be {allowed}{_two_commas(columns)}"])
+        raise CaseError([f"--column: is missing, {has}; must be {allowed}"])
     return at, others[0]
-
-
-def _two_commas(columns: Columns) -> str:
-    """Advice for a file of only whole numbers, as results from splitting decimal commas; else empty."""
-    parts = columns.lines[0]
-    if len(parts) < 4 or not all(part.lstrip("+-").isdigit() for part in parts):
-        return ""
-    return "; if numbers have decimal commas, columns must be separated by semicolons or tabs"
 
 
 def _unit_of_time(columns: Columns, column: int) -> float:
@@ -166,7 +139,7 @@ def _require_sound(columns: Columns, time: np.ndarray, values: np.ndarray) -> No
             raise CaseError([f"{columns.path}: the {what} of line {line} is not finite: {said}"])
     if (np.diff(time) < 0.0).any() or time[0] == time[-1]:
         line = columns.numbers[int(np.argmax(np.diff(time) <= 0.0)) + 1]
-        where = f"that of line {line} does not follow the one before{_two_commas(columns)}"
+        where = f"that of line {line} does not follow the one before"
         raise CaseError([f"{columns.path}: must have increasing times; {where}"])
     if np.ptp(values) == 0.0:
         raise CaseError([f"{columns.path}: has no signal, all values are {values[0]:g}"])

@@ -46,9 +46,6 @@ def test_a_record_knows_its_bar_unless_given_otherwise(record, felt):
     assert (gauge.position, gauge.length, gauge.density) == (0.6, 0.99, 2620.0)
     moved = read_gauge(record, "near", position=0.5, length=1.0, density=2000.0)
     assert (moved.position, moved.length, moved.density) == (0.5, 1.0, 2000.0)
-    assert moved.notes[-1] == "--density: 2000 kg/m³ given, results have 2620"
-    assert len(moved.notes) - len(gauge.notes) == 3
-    assert read_gauge(record, "near", position=0.604).notes == gauge.notes
     with pytest.raises(CaseError, match="--monitor: is not named, must be one of far, near"):
         read_gauge(record)
     with pytest.raises(CaseError, match="--monitor: is end, must be between the bar's ends, which is far or near"):
@@ -83,6 +80,10 @@ MISSING += ["--length: is missing, must be that of the bar (m)"]
         ({"position": 0.6}, MISSING[1:]),
         (BAR | {"position": 0.99}, ["--position: is 0.99 m, must be above 0 and below the length, 0.99 m"]),
         (BAR | {"position": 0.0}, ["--position: is 0 m, must be above 0 and below the length, 0.99 m"]),
+        (
+            BAR | {"length": 990.0},
+            ["--length: is 990 m, must be at most 100 m; positions and lengths are in m, not mm"],
+        ),
         (BAR | {"length": np.inf}, ["--length: is inf m, must be finite and above 0"]),
         (BAR | {"reading": Reading(scale=0.0)}, ["--scale: is 0, must be finite and not 0"]),
         (BAR | {"reading": Reading(scale=np.nan)}, ["--scale: is nan, must be finite and not 0"]),
@@ -171,9 +172,7 @@ def test_a_record_tells_of_its_bar(record, loaded):
     with h5py.File(record, "r+") as file:
         del file["cracks/time"]
         file["cracks/time"] = [4e-4, 3e-4, 5e-4]
-        file["cracks/position"] = [[0.1, 0.0], [0.2, 0.0], [0.3, 0.0]]
-    known = read_gauge(record, "near").metadata
-    assert (known.broken, known.first_crack) == (3e-4, pytest.approx(0.2 if loaded == "left" else 0.79, rel=1e-12))
+    assert read_gauge(record, "near").metadata.broken == 3e-4
 
 
 def test_places_and_velocities_count_from_the_loaded_end(record, felt):

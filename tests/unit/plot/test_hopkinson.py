@@ -3,8 +3,7 @@
 import numpy as np
 from hopkinson_bar import SETUP, signals
 
-from dembound.gauge.hopkinson.pulses import at_faces
-from dembound.gauge.hopkinson.specimen import specimen
+from dembound.gauge.hopkinson import at_faces, specimen
 from dembound.plot.hopkinson import plot_hopkinson
 
 
