@@ -9,13 +9,18 @@ first. Then the CPU time per tie of bodies of disks, lattices and random packing
 """
 
 import argparse
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
-from timing import in_one_line, machine, median_time, show, write
+from timing import ROOT, in_one_line, machine, median_time, show, write
+
+sys.path.insert(0, str(ROOT / "cases" / "outside"))
+
+from grid_scene import GridScene, step_limit
 
 from dembound import api
 from dembound.disks.scene import build
@@ -24,7 +29,6 @@ from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import wall_forces
 from dembound.motion.simulation import Simulation
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 

@@ -177,14 +177,16 @@ MOST = {"few": 3e4, "one": 3e4}
 
 def measured(name: str, count: float, folder: Path) -> dict[str, Any]:
     """One row of the table: RAM as computed, before and after the scene is built, and as measured."""
-    from dembound.kinds import kind_of
+    from dembound.bar.ram import run_bytes
+    from dembound.casefile.bar import BarCase
+    from dembound.disks.ram import expected_bytes
     from dembound.running import plan
     from dembound.schemas import load
 
     path = Path(folder, f"{name.replace(' ', '_')}_{count:.0f}.toml")
     path.write_text(CASES[name](count))
     case = load(path)
-    before = kind_of(case).expected_memory(case)
+    before = run_bytes(case) if isinstance(case, BarCase) else expected_bytes(case)
     planned = plan(case)
     after = planned.stepped.largest_memory
     command = ["-m", "dembound", "run", path, "--output", folder]

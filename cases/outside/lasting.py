@@ -7,6 +7,7 @@ all of it beyond the particles is that of the sides.
 from typing import Any
 
 import numpy as np
+from grid_scene import GridScene, step_limit
 
 from dembound import api
 from dembound.accuracy.of_disks.exact import exact_motions
@@ -15,7 +16,6 @@ from dembound.disks.stability import choose_step
 from dembound.exact.lamb import surface_displacement
 from dembound.motion.simulation import Simulation
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 

@@ -10,7 +10,6 @@ from dembound.bar.facts import bar_facts
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
 from dembound.bar.paths import front_of_bar, sources_of_bar
-from dembound.bar.ram import run_bytes
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.storage import storage_of
@@ -51,10 +50,6 @@ class Bars(Kind[BarCase, BarScene]):
     def build(self, case: BarCase) -> BarScene:
         """The scene of a bar: its nodes and what supports them."""
         return build_bar(case)
-
-    def expected_memory(self, case: BarCase) -> float:
-        """Largest RAM (bytes) of a run, from the number of nodes and the method."""
-        return run_bytes(case)
 
     def choose_step(self, scene: BarScene) -> tuple[float, float]:
         """Time step and stability limit (s)."""

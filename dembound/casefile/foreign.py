@@ -8,7 +8,6 @@ _MORE = "; see docs: start/from_pfc"
 
 _EMOD = "write emod, Pa: the normal stiffness of a contact is k_n = emod, N/m for each metre of thickness"
 _PB_EMOD = "write pb_emod, Pa: a bond has pb_kn = pb_emod/(R1 + R2), Pa/m"
-_SPEED = "write p_wave_speed, which with density gives the moduli: ρ c_p² along the rows of a square lattice"
 _WIDTHS = "write radius, the mean one, and radius_ratio, the largest over the smallest"
 _RATIO = (
     f"there is none for disks: it follows from kratio and pb_kratio, and `dembound check` prints c_p and c_s{_MORE}"

@@ -16,7 +16,6 @@ from dembound.disks.intact import require_room
 from dembound.disks.material.constants import limits_of
 from dembound.disks.material.wave_front import front_of
 from dembound.disks.membrane import follows, in_run
-from dembound.disks.ram import expected_bytes
 from dembound.disks.reduced.reduction import reduced
 from dembound.disks.reports.contact_mesh import contact_mesh
 from dembound.disks.reports.continuum_mesh import continuum_mesh
@@ -75,10 +74,6 @@ class Disks(Kind[DiskCase, DiskScene]):
                 require_room(case, each.intact_zones, each.disk_count - each.column_count)
         _ = scene.steady_load, [layer.material_tensor for layer in scene.ground.materials]
         return scene
-
-    def expected_memory(self, case: DiskCase) -> float:
-        """Largest RAM (bytes) of a run, from the expected numbers of disks and contacts."""
-        return expected_bytes(case)
 
     def choose_step(self, scene: DiskScene) -> tuple[float, float]:
         """Time step and stability limit (s)."""

@@ -139,10 +139,6 @@ class Kind(ABC, Generic[C, S]):
         Raises CaseError and PackingError for errors that would stop a run later, before anything is written.
         """
 
-    @abstractmethod
-    def expected_memory(self, case: C) -> float:
-        """Largest RAM (bytes) of a run of a case, computed without building it."""
-
     def is_planned_quickly(self, case: C) -> bool:
         """Whether a run is planned without a long search for the stability limit; by default if a step is given."""
         return case.run.time_step != "auto"

@@ -5,9 +5,6 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import legendre
 
-ORDERS = range(3, 7)
-"""Orders of elements for which the step limit and the absorbing layer are tested."""
-
 
 class Rule:
     """The points on [−1, 1] of elements of an order p, N = p + 1 of them.

@@ -136,14 +136,6 @@ class Members(Mapping[str, "h5py.Group"]):
         return len(self._group)
 
 
-def run_of(group: h5py.Group) -> str:
-    """The digest under which the run of a choice of a chart is recorded; in earlier versions it is in a link."""
-    if "digest" in group.attrs:
-        return str(group.attrs["digest"])
-    link = group.get("run", getlink=True)
-    return str(getattr(link, "path", "")).rsplit("/", 1)[-1]
-
-
 def _search(file: h5py.File, start: str, most: int, declared: int) -> int:
     """Search a group and its contents; raises RecordError as `require_structure`.
 

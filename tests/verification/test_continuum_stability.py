@@ -8,11 +8,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from grid_scene import GridScene, step_limit
 
 from dembound.motion.simulation import Simulation
 from dembound.outside import layer
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh

@@ -6,11 +6,11 @@ Central differences change frequencies ω to (2/Δt) asin(ωΔt/2), which is 0.4
 
 import numpy as np
 import pytest
+from grid_scene import GridScene, step_limit
 
 from dembound.motion.simulation import Simulation
 from dembound.outside.body import GridBody
 from dembound.outside.gll import Rule
-from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Mesh
 

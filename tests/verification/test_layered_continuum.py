@@ -10,12 +10,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from decay import kinetic
+from grid_scene import GridScene, step_limit
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.exact.column import Column, Layer
 from dembound.motion.simulation import Simulation
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Layered, Medium
 from dembound.outside.mesh import Around, Mesh, divided

@@ -9,6 +9,7 @@ of the entries compared here.
 import numba
 import numpy as np
 import pytest
+from grid_scene import GridScene, step_limit
 
 from dembound.disks.kind import Disks
 from dembound.disks.rest.stage import settle
@@ -18,7 +19,6 @@ from dembound.kinds import with_changes
 from dembound.motion import threads
 from dembound.motion.peak import Peak, peak_rule
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Layered, Medium
 from dembound.outside.mesh import Around, Mesh
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from angles import Side, branches, reflection
 from decay import step_beside
+from grid_scene import GridScene, step_limit
 
 from dembound.motion.simulation import Simulation
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh

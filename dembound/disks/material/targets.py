@@ -38,9 +38,6 @@ SOLVES = 30
 IMAGINARY = 1e-30
 """Imaginary part by which derivatives are computed: they have no error beside rounding."""
 
-Found = tuple[float, HomogenisedMaterial]
-"""A factor of both moduli, and the continuum with it."""
-
 _FOUND: dict[bytes, tuple[float, float]] = {}
 """kratio and the factor of the moduli by the content of all that they depend on."""
 

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from grid_scene import GridScene
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.kernels.grid import move
 from dembound.kernels.tables import Body
 from dembound.motion.simulation import Simulation
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import GridScene
 from dembound.outside.layer import Profile
 from dembound.outside.mesh import Around, Mesh
 from dembound.outside.part import GridPart

@@ -111,7 +111,7 @@ contact_forces(u, scene.rows[0], result)
 """
 
 MOTION = """
-from dembound.outside.grid_scene import GridScene
+from grid_scene import GridScene
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
@@ -146,7 +146,9 @@ def elsewhere(code: str, folder: Path, **environment: str) -> np.ndarray:
     path = folder / "result.npy"
     subprocess.run(
         [sys.executable, "-W", "ignore", "-c", f"{SCENE}{code}np.save({str(path)!r}, result)"],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache")} | environment,
+        env=os.environ
+        | {"PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_CACHE_DIR": str(folder / "cache")}
+        | environment,
         check=True,
     )
     return np.load(path)

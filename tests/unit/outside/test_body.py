@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from grid_scene import step_limit
 
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import step_limit
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Layered, Medium
 from dembound.outside.mesh import Around, Mesh

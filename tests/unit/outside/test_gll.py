@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from dembound.outside.gll import ORDERS, Rule
+from dembound.outside.gll import Rule
 
-EACH = pytest.mark.parametrize("order", ORDERS)
+EACH = pytest.mark.parametrize("order", range(3, 7))
 
 
 def test_points_of_order_four_are_those_of_the_books() -> None:

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from grid_scene import GridScene, step_limit
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.outside.body import GridBody
-from dembound.outside.grid_scene import GridScene, step_limit
 from dembound.outside.medium import Layered, Medium
 from dembound.outside.mesh import Mesh
 from dembound.outside.part import GridPart, stress

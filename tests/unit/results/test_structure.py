@@ -10,7 +10,7 @@ import pytest
 
 from dembound.errors import CaseError, RecordError
 from dembound.results.reader import history_of, open_record, snapshots_of, understood
-from dembound.results.structure import MOST_ATTRIBUTES, MOST_MEMBERS, MOST_OBJECTS, run_of
+from dembound.results.structure import MOST_ATTRIBUTES, MOST_MEMBERS, MOST_OBJECTS
 from dembound.results.summary_file import read_summary
 
 
@@ -106,16 +106,6 @@ def packed(file) -> None:
 )
 def test_what_no_record_has_is_refused(record, change, why) -> None:
     assert why in refusal(record(change))
-
-
-def test_the_runs_of_earlier_charts_are_found(record) -> None:
-    def chart(file) -> None:
-        file.create_group("runs/12ab")
-        file.create_group("choices/0")["run"] = h5py.SoftLink("/runs/12ab")
-        file.create_group("choices/1").attrs["digest"] = "12ab"
-
-    with open_record(record(chart)) as file:
-        assert [run_of(group) for group in file["choices"].values()] == ["12ab", "12ab"]
 
 
 def test_summaries_that_are_none_are_refused(tmp_path) -> None:
