@@ -73,18 +73,13 @@ class Deconvolved:
         )
 
 
-def deconvolve(case: DiskCase, surface: np.ndarray, time_step: float, motion: Motion | None = None) -> Deconvolved:
-    """The incident wave at the bottom of a case that gives its free surface a velocity (n,) m/s, sampled at a step (s).
+def level_ground(case: DiskCase, motion: Motion | None = None) -> Level:
+    """The ground above the bottom of a case as waves of a kind see it.
 
-    motion : S or P; by default that of the wave of the bottom side. The record is zero beyond its ends.
+    motion : S or P; by default that of the wave of the bottom side.
 
     Raises CaseError where the ground is not level under a free surface, or no such wave enters at the bottom.
     """
-    return incident_below(level_ground(case, motion), surface, time_step)
-
-
-def level_ground(case: DiskCase, motion: Motion | None = None) -> Level:
-    """The ground above the bottom of a case as waves of a kind see it; arguments and errors as of `deconvolve`."""
     table = case.side(SIDE)
     if problems := [f"deconvolution: needs {reason}" for reason in not_level(SIDE, table, case.tables)]:
         raise CaseError(problems, case.name)
@@ -154,7 +149,7 @@ def below(
     """The incident motions at the bottom of a case whose surface moves as components of a record, in step.
 
     kinds : of wave that each component becomes; None for that of the bottom side. All motions begin at one time.
-    modulus : of damped layers. Raises CaseError as `deconvolve`.
+    modulus : of damped layers. Raises CaseError as `level_ground`.
     """
     grounds = {kind: level_ground(case, kind) for kind in dict.fromkeys(kinds)}
     ways = [grounds[kind] for kind in kinds]

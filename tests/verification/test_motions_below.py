@@ -11,7 +11,7 @@ from dembound.disks.scene import build
 from dembound.disks.within import Level
 from dembound.exact.column import Column, Layer
 from dembound.kinds import loads
-from dembound.studies.deconvolution import deconvolve
+from dembound.studies.deconvolution import incident_below, level_ground
 
 ROCK = {"density": 2400.0, "p_wave_speed": 1100.0, "s_wave_speed": 672.0}
 PULSE = {"type": "ricker", "amplitude": 1.0, "frequency": 6.0}
@@ -93,7 +93,7 @@ def test_the_deconvolved_surface_comes_back(lab, tmp_path, below: dict, half_mas
     step = 5e-4
     time = step * np.arange(1600)
     record = column({}, PULSE).wave["w"].velocity(time)
-    found = deconvolve(column(below, PULSE, half_mass=half_mass, layers=layers), record, step)
+    found = incident_below(level_ground(column(below, PULSE, half_mass=half_mass, layers=layers)), record, step)
     delayed = np.concatenate([np.zeros(round(found.early / step)), record])
     path = tmp_path / "below.txt"
     np.savetxt(path, np.column_stack([step * np.arange(len(found.velocity)), found.velocity]))

@@ -143,12 +143,10 @@ def here(code: str) -> np.ndarray:
 
 def elsewhere(code: str, folder: Path, **environment: str) -> np.ndarray:
     """The result of the code in a separate process."""
-    path = folder / "result.npy"
+    path, importable = folder / "result.npy", {"PYTHONPATH": os.pathsep.join(sys.path)}
     subprocess.run(
         [sys.executable, "-W", "ignore", "-c", f"{SCENE}{code}np.save({str(path)!r}, result)"],
-        env=os.environ
-        | {"PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_CACHE_DIR": str(folder / "cache")}
-        | environment,
+        env=os.environ | importable | {"NUMBA_CACHE_DIR": str(folder / "cache")} | environment,
         check=True,
     )
     return np.load(path)

@@ -10,7 +10,7 @@ from dembound.disks.within import Level, OfMotionWithin
 from dembound.errors import CaseError
 from dembound.exact.column import Column, Layer
 from dembound.exact.column_motion import ColumnMotion
-from dembound.studies.deconvolution import deconvolve, incident_below
+from dembound.studies.deconvolution import incident_below, level_ground
 from dembound.waves import Ricker
 from tests.small_cases import PUSHED, small
 
@@ -38,16 +38,18 @@ def test_ground_above_a_box_of_disks_counts_up_to_its_surface() -> None:
         "bottom": {"type": "outside", "wave_s": "push"},
     }
     found = [
-        deconvolve(
-            small(
-                {
-                    "ground": ground,
-                    "packing": {"pattern": "A", "size": [10.0, high], "radius": 0.25, "origin": [5.0, -15.0]},
-                    "material": {"density": 2000.0, "s_wave_speed": 200.0},
-                    "boundary": sides if high == 15.0 else {**sides, "top": {"type": "outside"}},
-                    "wave": {"push": {"type": "ricker", "amplitude": 0.1, "frequency": 6.0}},
-                    "run": {"duration": 0.8},
-                }
+        incident_below(
+            level_ground(
+                small(
+                    {
+                        "ground": ground,
+                        "packing": {"pattern": "A", "size": [10.0, high], "radius": 0.25, "origin": [5.0, -15.0]},
+                        "material": {"density": 2000.0, "s_wave_speed": 200.0},
+                        "boundary": sides if high == 15.0 else {**sides, "top": {"type": "outside"}},
+                        "wave": {"push": {"type": "ricker", "amplitude": 0.1, "frequency": 6.0}},
+                        "run": {"duration": 0.8},
+                    }
+                )
             ),
             SURFACE,
             STEP,
@@ -122,4 +124,4 @@ def test_the_motion_within_layers_gives_the_incident_wave() -> None:
 def test_ground_without_an_answer_is_refused(changes: dict, message: str) -> None:
     case = small(PUSHED, changes={"boundary.right": {"type": "free"}} | changes)
     with pytest.raises(CaseError, match=message):
-        deconvolve(case, SURFACE, STEP)
+        level_ground(case)
