@@ -23,14 +23,14 @@ sys.path.insert(0, str(ROOT / "cases" / "outside"))
 from grid_scene import GridScene, step_limit
 
 from dembound import api
+from dembound.continuum.medium import Medium
+from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.part import GridBody
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import wall_forces
 from dembound.motion.simulation import Simulation
-from dembound.outside.body import GridBody
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Around, Mesh
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
 ELEMENT = 30.0, 30.0

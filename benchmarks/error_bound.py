@@ -23,8 +23,8 @@ import tomli_w
 from error_bound_scenes import scenes
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History, Motions, loud
+from dembound.accuracy.judges import extended
 from dembound.accuracy.of_disks.options import Built, Options
 from dembound.accuracy.of_disks.search import COSTLIEST
 from dembound.accuracy.runner import measure

@@ -7,7 +7,7 @@ The exact motion is d'Alembert's, for attenuation and ranges that of finite diff
 those of the choice. Errors are those at the places of the monitors.
 
 With `--every` it prints how many errors the search computes, whether it finds the choice that all of them give, and the
-largest factor by which the rules of accuracy/of_bars/floors.py are wrong, of all pairs of choices: for finer nodes and
+largest factor by which the rules of accuracy/of_bars/search.py are wrong, of all pairs of choices: for finer nodes and
 other ends, which `MARGIN` has to cover, and for coarser ones, which only matter where no choice keeps the bound.
 """
 
@@ -24,9 +24,8 @@ from estimated_bars import SCENES, exact, recorded_of, scene
 
 from dembound.accuracy.advise import advise
 from dembound.accuracy.history import History, loud
-from dembound.accuracy.of_bars.floors import MARGIN, Floors
 from dembound.accuracy.of_bars.options import bar_options
-from dembound.accuracy.of_bars.search import Motion, affordable, cheapest, given_motion
+from dembound.accuracy.of_bars.search import MARGIN, Floors, Motion, affordable, cheapest, given_motion
 from dembound.casefile.bar import BarCase
 
 BOUNDS = (0.003, 0.01, 0.03)

@@ -34,7 +34,7 @@ from dembound.bar.stability import choose_step, unit_step
 from dembound.casefile.bar import BarCase
 from dembound.errors import DemboundError
 from dembound.kinds import with_changes
-from dembound.results.resample import at_times
+from dembound.results.compare import at_times
 
 BOUNDS = (0.1, 0.03, 0.01, 0.003)
 FINER = 10

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 from timing import show
 
-from dembound.spectra.response import response_spectrum
+from dembound.spectra import response_spectrum
 from dembound.waves import FileWave
 
 STEP, LENGTH, FINE = 0.01, 4.0, 128

@@ -115,9 +115,9 @@ def with_files(case: Any) -> Ran:
 
 def reason_without(case: Any, reduction: str) -> str:
     """Why a reduction does not apply to a case, as known before its run; empty if it may."""
-    from dembound.disks.contacts.elastic_again import never_elastic_again
-    from dembound.disks.reduced.reduction import identical_row
+    from dembound.disks.reduced import identical_row
     from dembound.disks.scene import DiskScene
+    from dembound.disks.stepping.first_law import never_elastic_again
     from dembound.kinds import kind_of
 
     if reduction == "silent":

@@ -20,11 +20,11 @@ import tomli_w
 from dembound.api import run
 from dembound.casefile.disks import DiskCase
 from dembound.disks.entry import mass_begins
+from dembound.disks.incident_wave import Level
 from dembound.disks.scene import build
-from dembound.disks.within import Level
 from dembound.exact.column import Column, Layer
 from dembound.kinds import loads
-from dembound.spectra.response import response_spectrum, slope
+from dembound.spectra import response_spectrum, slope
 
 GRAVITY = 9.81
 SOIL, ROCK = 20e3 / GRAVITY, 25e3 / GRAVITY

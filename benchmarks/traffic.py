@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.contacts import UPDATED
-from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import Bonded, LaneBonded, LaneRows, Links, NeighbourTable
 from dembound.motion.simulation import Simulation
 

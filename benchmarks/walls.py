@@ -76,9 +76,9 @@ def exact(
 
     every : of how many samples one is computed. tolerance : over the largest motion; that of a wave at all monitors.
     """
-    from dembound.disks.beyond.ground_waves import incident_in
-    from dembound.disks.beyond.mesh import medium_of
     from dembound.disks.scene import build
+    from dembound.disks.surroundings.ground_waves import incident_in
+    from dembound.disks.surroundings.mesh import medium_of
     from dembound.exact.cavity import cavity_motion
     from dembound.exact.scattering import PlaneWave, scattered_motion
     from dembound.exact.solid import Solid

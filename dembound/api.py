@@ -20,7 +20,7 @@ from dembound.accuracy.advise import advise as find_advice
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Truth
 from dembound.accuracy.estimate import estimate_if_asked, estimate_results
-from dembound.accuracy.proposal import Advice
+from dembound.accuracy.judge import Advice
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind

@@ -8,12 +8,11 @@ from dembound.casefile.messages import counted
 from dembound.errors import RunError
 from dembound.machine import memory_here
 from dembound.motion.echoes import echoes
+from dembound.motion.endings import peak_rule, silent_rule
 from dembound.motion.kind import Plan
-from dembound.motion.peak import peak_rule
-from dembound.motion.ram import has_in_words, in_words
-from dembound.motion.silence import silent_rule
+from dembound.motion.resources import has_in_words, in_words
 from dembound.motion.simulation import Simulation
-from dembound.results.estimates import split_in_words
+from dembound.results.histories import split_in_words
 from dembound.running import plan, require_ready, space_in_words, space_warnings, warnings_before
 from dembound.words import Entries, percent, with_unit
 

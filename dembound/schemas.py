@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from dembound.casefile import Case, reader, writer
+from dembound.casefile import Case, edit, reader
 from dembound.casefile.bar import SCHEMA as BAR
 from dembound.casefile.disks import SCHEMA as DISKS
 from dembound.casefile.model import K, as_kind
@@ -32,7 +32,7 @@ def with_changes(case: K, changes: Mapping[str, Any]) -> K:
 
     Also raises CaseError for changes that make it a case of another kind.
     """
-    return _of_same(case, writer.with_changes(case, changes, SCHEMAS))
+    return _of_same(case, edit.with_changes(case, changes, SCHEMAS))
 
 
 def checked(case: K) -> K:

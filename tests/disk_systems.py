@@ -4,8 +4,7 @@ import numpy as np
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.state import State
 

@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from dembound.disks.beyond.ground_waves import GroundWaves
-from dembound.outside.medium import Medium
-from dembound.outside.plane_waves import incident_wave, reflected_waves
+from dembound.continuum.medium import Medium, incident_wave, reflected_waves
+from dembound.disks.surroundings.ground_waves import GroundWaves
 
 GENERAL = Medium(2500.0, c11=2.5e9, c22=2.2e9, c12=0.4e9, c66=0.9e9, c16=0.2e9, c26=0.3e9)
 RAMP = SimpleNamespace(velocity=lambda t: np.ones_like(t), displacement=lambda t: np.array(t))

@@ -1,6 +1,6 @@
 """Meshes of a few elements for tests of several modules."""
 
-from dembound.outside.mesh import Around, Mesh
+from dembound.continuum.mesh import Around, Mesh
 
 ORDER = 4
 

@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 
-from dembound.disks.loads import forces_of
 from dembound.disks.scene import build
+from dembound.disks.supports import forces_of
 from dembound.plot.style import COLOURS, REFERENCE, new_figure, save, styled
 
 COARSE = 1.0

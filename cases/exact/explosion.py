@@ -19,9 +19,9 @@ from scipy.spatial import cKDTree
 
 import dembound
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.cut_bonds import CutBonds
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
+from dembound.disks.surroundings.cut_bonds import CutBonds
 from dembound.exact import Solid, buried_explosion
 from dembound.motion.simulation import Simulation
 from dembound.packings.cut import CutContacts, cut_contacts

@@ -34,7 +34,7 @@ from PIL import Image
 import dembound
 from dembound import shipped
 from dembound.cli import app
-from dembound.plot import chart, moving_scene, scene, style
+from dembound.plot import chart, moving, scene, style
 from dembound.words import percent
 
 HERE = Path(__file__).parent
@@ -272,6 +272,6 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    scene.DRAWING = moving_scene.DRAWING = SCENE
+    scene.DRAWING = moving.DRAWING = SCENE
     chart.PAGE = CHART
     main(sys.argv[1:])

@@ -23,7 +23,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.kinds import loads
 from dembound.laws import Stiffness
 from dembound.laws.law import touching
-from dembound.results.loading_curve import GAUGE
+from dembound.results.recording import GAUGE
 
 
 def solve(scene: DiskScene, sense: float) -> dict[str, float]:

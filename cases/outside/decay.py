@@ -7,13 +7,13 @@ import numpy as np
 from grid_scene import GridScene, step_limit
 
 from dembound import api
+from dembound.continuum.layer import Absorption
+from dembound.continuum.medium import Medium
+from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.part import GridBody
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
-from dembound.outside.body import GridBody
-from dembound.outside.layer import Absorption
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Around, Mesh
 
 MEAN = 50
 """Steps over which kinetic energies are averaged."""

@@ -10,12 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.disks.beyond.surroundings import Surroundings
+from dembound.continuum.layer import Profile
+from dembound.continuum.mesh import Mesh
+from dembound.continuum.part import GridBody
 from dembound.disks.scene import DiskScene
+from dembound.disks.surroundings.continuum import Surroundings
 from dembound.kernels.wall import tie_forces
-from dembound.outside.body import GridBody
-from dembound.outside.layer import Profile
-from dembound.outside.mesh import Mesh
 
 ROWS = 3
 """Rows of elements along the side; the middle one is used."""

@@ -8,15 +8,13 @@ import numpy as np
 
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.casefile import Case
-from dembound.casefile.run import Run
-from dembound.motion.eigenvalue import largest_eigenvalue
-from dembound.motion.layout import Layout
+from dembound.casefile.tables import Run
+from dembound.continuum.part import GridBody, GridPart
 from dembound.motion.part import System
-from dembound.motion.ram import motion_bytes
+from dembound.motion.resources import motion_bytes, thread_count_for
 from dembound.motion.scene import Scene
-from dembound.motion.threads import thread_count_for
-from dembound.outside.body import GridBody
-from dembound.outside.part import GridPart
+from dembound.motion.stability import largest_eigenvalue
+from dembound.motion.state import Layout
 
 
 class GridScene(Scene):

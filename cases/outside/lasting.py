@@ -11,13 +11,13 @@ from grid_scene import GridScene, step_limit
 
 from dembound import api
 from dembound.accuracy.of_disks.exact import exact_motions
+from dembound.continuum.medium import Medium
+from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.part import GridBody
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.exact.lamb import surface_displacement
 from dembound.motion.simulation import Simulation
-from dembound.outside.body import GridBody
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Around, Mesh
 
 RADIUS, SPEED = 0.25, 300.0
 """Radius (m) and wave speed (m/s) of Z's problem, section 3.2. The lattice is isotropic, ν = 0."""

@@ -19,13 +19,13 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from dembound.casefile import Case
-from dembound.disks.beyond import surroundings, wall
+from dembound.continuum.interpolation import interpolation
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
+from dembound.disks.surroundings import continuum, wall
 from dembound.kinds import loads
 from dembound.motion.simulation import Simulation
-from dembound.outside.interpolation import interpolation
 from dembound.plot.style import COLOURS
 
 BRICK, BODY, ALONE = 25.0, (2, 1), (34, 17)
@@ -126,9 +126,9 @@ def beside(scene: DiskScene, reference: Reference, step: float) -> np.ndarray:
 
 def without(part: str) -> ExitStack:
     """A context in which scenes are built without a part."""
-    medium, middle = surroundings.medium_of, wall._middle
+    medium, middle = continuum.medium_of, wall._middle
     replaced = {
-        "C16, C26": (surroundings, "medium_of", lambda ground: replace(medium(ground), c16=0.0, c26=0.0)),
+        "C16, C26": (continuum, "medium_of", lambda ground: replace(medium(ground), c16=0.0, c26=0.0)),
         "correctors": (wall, "_middle", lambda *given: 0.0 * middle(*given)),
         "skin": (PackedMaterial, "skin", lambda ground, side: 0.0),
     }

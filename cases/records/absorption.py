@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import dembound
 from dembound.disks.reflection import Reflections, compare_types
-from dembound.spectra.fourier import fourier_spectrum, smoothed
+from dembound.spectra import fourier_spectrum, smoothed
 
 HERE = Path(__file__).parent
 FREQUENCIES, COMPUTED = np.geomspace(0.1, 25.0, 49), np.geomspace(0.08, 31.0, 61)

@@ -6,7 +6,7 @@ import numpy as np
 from scenes import ROCK_DENSITY, ROCK_SPEED, STRENGTH, bar, triangle
 
 from dembound.bar.fracture import spalls
-from dembound.bar.lattice import carrying_lattices
+from dembound.bar.linear_steps import carrying_lattices
 from dembound.bar.part import BarPart
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scenes import ROCK_SPEED, bar
 
-from dembound.bar.layer_echo import returned
+from dembound.bar.echoes import returned
 from dembound.bar.scene import BarScene, build_bar
 from dembound.motion.simulation import Simulation
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from dembound.accuracy.cause import Truth
-from dembound.accuracy.differences import value_at
+from dembound.accuracy.choice import value_at
+from dembound.accuracy.judge import Advice, Proposal, Receiver
 from dembound.accuracy.judges import judge_of
-from dembound.accuracy.proposal import Advice, Proposal, Receiver
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.motion.clock import Clock

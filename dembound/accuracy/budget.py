@@ -13,7 +13,7 @@ import numpy as np
 from dembound.accuracy.cause import QUANTITIES, SIDES, TITLES, Cause, Causes, Truth, share_of
 from dembound.accuracy.history import Motions, loud
 from dembound.accuracy.repeat import Repeat
-from dembound.results.estimates import in_words, split_in_words
+from dembound.results.histories import in_words, split_in_words
 from dembound.words import percent
 
 SHOWN = 8
@@ -22,7 +22,7 @@ SHOWN = 8
 
 @dataclass(frozen=True)
 class Share:
-    """An error, RMS over RMS, see `dembound.results.relative_error`.
+    """An error, RMS over RMS, see `dembound.results.compare`.
 
     value : expected error; upper : error with 95 % factors of causes and with causes of which only a bound is known.
     at_least : whether a cause is unknown.

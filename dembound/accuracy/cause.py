@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from dembound.accuracy.history import History, Motions
-from dembound.results.relative_error import relative_error
+from dembound.results.compare import relative_error
 
 SIDES, GRID, STEP, CONTINUUM, ENTRY, WALLS, NEAR = (
     *("sides", "grid", "time step", "continuum", "entry of the wave", "walls of holes", "near loads"),

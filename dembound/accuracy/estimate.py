@@ -23,13 +23,11 @@ from dembound.files import require_writable
 from dembound.motion.clock import Clock
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
-from dembound.results.estimates import FILE, KEY
-from dembound.results.histories import FREE_FIELD
-from dembound.results.json_files import write_json
-from dembound.results.named import Named
+from dembound.results.histories import FILE, FREE_FIELD, KEY, Named
 from dembound.results.reader import history_of, open_record, require_run
-from dembound.results.summary_file import FILE as SUMMARY
-from dembound.results.summary_file import read_summary
+from dembound.results.summary import FILE as SUMMARY
+from dembound.results.summary import read_summary
+from dembound.results.text_files import write_json
 from dembound.running.recorded import recorded_case
 
 UNITS = {"velocity": "m/s", "displacement": "m", "stress": "Pa"}

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.results.relative_error import largest_component
-from dembound.results.resample import at_times
+from dembound.results.compare import at_times, largest_component
 
 LEAST = {"velocity": 0.01, "displacement": 0.01, "stress": 0.1}
 """By quantity, the share of the largest peak of all monitors below which that of a monitor is next to nothing.

@@ -1,22 +1,78 @@
-"""The interface by which every kind of body gives the errors of its cases."""
+"""The interface by which every kind of body gives the errors of its cases, and the choices advised for one."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
+from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, Named
 from dembound.accuracy.history import Motions
 from dembound.accuracy.moved_sides import Extended
-from dembound.accuracy.proposal import Advice, Receiver
 from dembound.accuracy.reference import Exact, FinerRun
 from dembound.accuracy.runner import Run
-from dembound.casefile import Case
+from dembound.casefile.model import Case
 from dembound.errors import CaseError
 from dembound.motion.scene import Scene
 from dembound.results.histories import Quantity
+
+
+@dataclass(frozen=True, repr=False)
+class Proposal:
+    """A choice for a case; without changes it is the case itself.
+
+    cost : predicted CPU time of its steps, s. budget : its errors, relative to the requested truth.
+    """
+
+    choice: Choice
+    cost: float
+    budget: Budget
+
+    def __repr__(self) -> str:
+        return f"<{self.choice.name}, {self.cost:.2g} s of CPU time: {self.budget.worst()}>"
+
+    @property
+    def case(self) -> Case:
+        """The case of the choice."""
+        return self.choice.case
+
+    def holds(self, bound: float) -> bool:
+        """Whether its upper error is within a bound at all monitors."""
+        share = self.budget.worst().share
+        return share.upper <= bound and not share.at_least
+
+
+class Receiver:
+    """Receives proposals as soon as they are known; the default ignores them."""
+
+    def given(self, proposal: Proposal) -> None:
+        """The errors of the case itself are known."""
+
+    def best(self, bound: float, proposal: Proposal) -> None:
+        """The best choice for an error bound is known; bounds come from the largest to the smallest."""
+
+
+@dataclass(frozen=True, repr=False)
+class Advice:
+    """Choices advised for a case.
+
+    given : the case as it is. best : by error bound the cheapest choice that keeps it, or else the choice with the
+    smallest error. Each is a proposal with ``case``, ``cost`` (CPU seconds of its steps) and ``budget``. tried : number
+    of choices whose error was computed. cpu_seconds : CPU time of the search, s.
+    """
+
+    given: Proposal
+    best: Mapping[float, Proposal]
+    tried: int
+    cpu_seconds: float = 0.0
+
+    def __repr__(self) -> str:
+        best = (f"\n  {bound:g}: {proposal}" for bound, proposal in self.best.items())
+        return f"<Advice, given: {self.given}{''.join(best)}>"
+
 
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from dembound.boundaries import SIDES
 from dembound.casefile import Case
-from dembound.casefile.run import Run
+from dembound.casefile.tables import Run
 from dembound.errors import CaseError
 from dembound.table import Box
 

@@ -14,10 +14,9 @@ from dembound.accuracy.history import LEAST, History, Motions, earlier, loud_of
 from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
-from dembound.results.compare import distance, on_common_clock
+from dembound.results.compare import distance, largest_component, on_common_clock, peak_error, relative_error
 from dembound.results.histories import Quantity
 from dembound.results.reader import COMPONENTS
-from dembound.results.relative_error import largest_component, peak_error, relative_error
 
 Component = Literal["x", "y"]
 

@@ -18,12 +18,10 @@ from dembound.accuracy.runner import STEP_AND_END
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
-from dembound.motion.cracks import MANY
-from dembound.results.compare import on_common_clock
-from dembound.results.estimates import in_words
-from dembound.results.histories import FREE_FIELD, Quantity, read_histories
+from dembound.motion.part import MANY
+from dembound.results.compare import largest_component, on_common_clock, relative_error
+from dembound.results.histories import FREE_FIELD, Quantity, in_words, read_histories
 from dembound.results.reader import energy_of, is_line, open_record, text_of
-from dembound.results.relative_error import largest_component, relative_error
 from dembound.running import run_case
 
 SHORTER = 0.98
@@ -32,7 +30,7 @@ SHORTER = 0.98
 MOST = 0.95
 """Share of the cracks within the radius of their zone; the few that are farther out differ from draw to draw."""
 
-NEAR = 1.05
+SAME_PLACE = 1.05
 """Distance over a diameter within which two cracks are at the same place: bonds side by side in a lattice are one apart
 before they move."""
 
@@ -88,7 +86,7 @@ class Cracked:
     @property
     def reach(self) -> float:
         """Distance (m) within which cracks of two runs count as being at the same place."""
-        return NEAR * self.size
+        return SAME_PLACE * self.size
 
     def one_draw(self) -> Iterator[str]:
         """A line saying that a run of disks with so many cracks is one draw of many; none if cracks are few.

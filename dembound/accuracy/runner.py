@@ -17,7 +17,7 @@ from dembound.accuracy.choice import AnyCase, digest
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.watch import current
 from dembound.casefile import Case
-from dembound.casefile.run import ENDING
+from dembound.casefile.tables import ENDING
 from dembound.motion.clock import Clock
 from dembound.motion.kind import Finding, Plan
 from dembound.motion.simulation import Simulation

@@ -12,7 +12,7 @@ from dembound.accuracy.budget import Budget, Share
 from dembound.accuracy.cause import TITLES, Cause, Causes
 from dembound.accuracy.history import Motions
 from dembound.casefile.messages import counted
-from dembound.results.estimates import LEAST, in_words
+from dembound.results.histories import LEAST, in_words
 from dembound.words import columns, percent
 
 WIDTH, HEAD = 80, 9

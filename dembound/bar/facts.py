@@ -4,15 +4,14 @@ import math
 
 import numpy as np
 
-from dembound.bar.end_echo import ROUNDING, returned_of_waves
-from dembound.bar.lattice import carrying_lattices
+from dembound.bar.echoes import ROUNDING, returned_of_waves
+from dembound.bar.linear_steps import carrying_lattices
 from dembound.bar.scene import BarScene
 from dembound.bar.stability import unit_step
 from dembound.bar.summary import describe_bar, describe_end
-from dembound.boundaries.words import side_in_words
+from dembound.boundaries.description import side_in_words
 from dembound.casefile.bar import BarCase
-from dembound.casefile.bar.bar import COARSEST, Bar
-from dembound.casefile.bar.range import BarRange
+from dembound.casefile.bar.bar import COARSEST, Bar, BarRange
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted, show
 from dembound.exact.dispersion import cells_per_wavelength

@@ -6,26 +6,22 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from dembound.bar.cost import storage_of
 from dembound.bar.facts import bar_facts
+from dembound.bar.linear_steps import front_of_bar, sources_of_bar
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
-from dembound.bar.outcome import bar_outcome
-from dembound.bar.paths import front_of_bar, sources_of_bar
 from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.stability import choose_step
-from dembound.bar.storage import storage_of
-from dembound.bar.summary import part_of, spalls_of, summarise_bar
-from dembound.bar.trials import trials_of_bar
+from dembound.bar.stability import choose_step, trials_of_bar
+from dembound.bar.summary import bar_outcome, part_of, spalls_of, summarise_bar
 from dembound.bar.warnings import bar_warnings
 from dembound.bar.warnings_after import warnings_after_bar
 from dembound.casefile.bar import SCHEMA, BarCase
-from dembound.motion.kind import Beginning, Finding, Kind, OnLook
-from dembound.motion.moving_picture import MovingPicture
+from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Stages
 from dembound.motion.paths import Front, Source
-from dembound.motion.stages import Stages
+from dembound.motion.resources import Storage
+from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
-from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
-from dembound.motion.trial import Trial
 from dembound.results.reader import has_monitors
 from dembound.table import Box
 from dembound.words import Entries
@@ -135,6 +131,6 @@ class Bars(Kind[BarCase, BarScene]):
 
     def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
         """Fields along the bar, by default stress and damage."""
-        from dembound.plot.moving_bar import MovingBar
+        from dembound.plot.moving import MovingBar
 
         return MovingBar(record, ("stress", "damage") if field is None else (field,), exaggerate)

@@ -29,7 +29,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.boundaries.layer import Layer
+from dembound.boundaries.boundary import Layer
 from dembound.casefile.bar import BarCase
 from dembound.kernels import bar_layer  # noqa: F401  # it registers its tie
 from dembound.kernels.tables import BarLayers

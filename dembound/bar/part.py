@@ -9,8 +9,7 @@ from dembound.kernels import bar
 from dembound.kernels.common import TRIGGERED
 from dembound.kernels.tables import BarBonds
 from dembound.methods.bonds import Bonds
-from dembound.motion.cracks import Cracks
-from dembound.motion.part import Part
+from dembound.motion.part import Cracks, Part
 from dembound.motion.state import Arrays, State
 
 SWING = 1e-6

@@ -1,29 +1,27 @@
-"""The time step of a bar and its limit.
+"""The time step of a bar and its limit, the time of a step, and bars at rest in which noise is stepped."""
 
-At the limit itself, ω_max Δt = 2, the amplitude q of the highest mode follows q'' + 2q' + q = 0 from step to step, so
-that q = (−1)ⁿ(a + bn): stable, but not bounded. Its sum s = q + q' of two steps keeps the size |b|. With local springs,
-half masses at ends and interfaces, and cΔt = Δx in all ranges this mode has the sign (−1)^i at node i. Nodes with an
-even and with an odd sum of node and step are decoupled: two samples of d'Alembert's solution between free, held,
-absorbing and bonded ends. Both get the same momentum from waves longer than some steps, so s = 0. A contact, however,
-opens within a step: of a force F that turns into a pull one sample, up to F/2, is cut off. The bodies of both samples
-then drift apart, those of a piece of N cells by 1/N of the velocity F/ρcA in every step. Where bonds or Δx/c differ,
-fronts themselves drive s.
-
-Of forces F_n on nodes the mode gets f = (−1)^i F_n, and Mq'' + 2Mq' + Mq = f Δt², M the mass of the whole bar. So
-S_k = Σ(−1)ⁿ f up to step k remains in s, and springs of cells of the mass m swing by 2(m/M) ΣS_k about the force of
-waves. A force that jumps between two steps has S = F, 0, F … and swings by F after one way through the bar, by as much
-more after each further way, and so has one with corners at an odd distance. One that jumps at a step, where it has its
-mean, has S = F/2, −F/2, … and stays bounded. Held, absorbing and elastic ends have no such mode.
-
-At the share r of the limit the drift is the beat of a mode with cos(ωΔt/2) = √(1 − r²) in place of 0: it ends at
-F/ρcA/(2N √(1 − r²)), and no energy of the ledger exceeds 1/(1 − r²) of what was supplied.
-"""
+from __future__ import annotations
 
 import numpy as np
 
 from dembound.bar.banded import ROUNDING
-from dembound.bar.scene import BarScene
+from dembound.bar.scene import BarScene, build_bar
+from dembound.casefile.bar.model import BarCase
 from dembound.errors import CaseError
+from dembound.motion.part import System
+from dembound.motion.stability import Trial, at_rest, left_out
+
+STEP, BOND, LAYER_BOND = 250.0, 0.45, 6.0
+"""Nanoseconds of a step in any case, of a spring or bond (benchmarks/bar_rate.py), and of a bond in a layer: 0.3 µs for
+40 nodes (docs/evidence/bar_ends.md).
+"""
+
+
+def time_per_step(scene: BarScene) -> float:
+    """Nanoseconds of a step of a bar with its first bonds."""
+    layers = sum(len(each.inner) * each.count for each in scene.layers.values())
+    return STEP + BOND * scene.case.method.begin(scene.rod).alive + LAYER_BOND * layers
+
 
 BELOW = 0.99
 """Largest share of the limit where its highest mode would grow: an opening contact leaves 3.5/N of a front's velocity.
@@ -123,3 +121,23 @@ def choose_step(scene: BarScene) -> tuple[float, float]:
 def unit_step(scene: BarScene) -> float:
     """The time step (s) at a Courant number of 1, in the range where this is shortest."""
     return min(part.spacing / part.speed for part in scene.rod.ranges)
+
+
+def trials_of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
+    """For every stage of its method a bar with its bonds, and a sentence on how it differs from the case.
+
+    Raises the errors of building a scene.
+    """
+    scene = build_bar(at_rest(case))
+    step, cost = own_step(scene, scene.step_limit()), time_per_step(scene)
+    stages = case.method.stages(scene.rod)
+    found = []
+    for index, bonds in enumerate(stages):
+
+        def system(time_step: float, index: int = index) -> System:
+            return scene.system(time_step, case.method.stages(scene.rod)[index])
+
+        name = case.method.name if len(stages) == 1 else f"{case.method.type}, stage {index + 1}"
+        found.append(Trial(name, scene, scene.stable_step(bonds), step, system, is_linear=True, step_cost=cost))
+    stays = ["the method stays at each stage"] if len(stages) > 1 else []
+    return found, [f"{scene.count:,} nodes, the whole bar", *left_out(case), *stays]

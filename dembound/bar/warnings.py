@@ -6,14 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.bar.entering import MOMENTS, entering_pressure, moments
 from dembound.bar.facts import PERCENT, cells_of_waves
-from dembound.bar.lattice import carrying_lattices
+from dembound.bar.linear_steps import carrying_lattices
 from dembound.bar.range_warnings import monitors_between_sections, monitors_in_gaps, range_warnings
-from dembound.bar.scene import BarScene, bar_medium, end_supports
+from dembound.bar.scene import MOMENTS, BarScene, bar_medium, end_supports, entering_pressure, moments
 from dembound.bar.stability import shortened_in_words
 from dembound.boundaries import OPPOSITE, normal_axis
-from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
+from dembound.boundaries.description import TOO_MUCH, poor_factor, reflected
 from dembound.casefile.bar import BarCase
 from dembound.casefile.magnitudes import (
     grip_stress,

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.bar.banded import ROUNDING
-from dembound.bar.entering import MOMENTS, entering_pressure
 from dembound.bar.range_warnings import never_closing
-from dembound.bar.scene import BarScene
+from dembound.bar.scene import MOMENTS, BarScene, entering_pressure
 from dembound.bar.warnings import ends_too_soon, stress_beside_strength
 from dembound.boundaries import normal_axis
 from dembound.casefile.bar import BarCase

@@ -4,6 +4,7 @@ A new type is one file and its class's name in `TYPES`; another package register
 """
 
 from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.edge import OPPOSITE, SIDES, Motion, axis_of_motion, is_far, normal_axis, plane_of
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.free import Free
 from dembound.boundaries.free_field import FreeField
@@ -12,7 +13,6 @@ from dembound.boundaries.outside import Outside
 from dembound.boundaries.periodic import Periodic
 from dembound.boundaries.platen import beside_disks, driven_components
 from dembound.boundaries.roller import Roller
-from dembound.boundaries.sides import OPPOSITE, SIDES, Motion, axis_of_motion, is_far, normal_axis, plane_of
 from dembound.boundaries.symmetry import Symmetry
 from dembound.boundaries.velocity import Velocity
 from dembound.boundaries.viscoelastic import Viscoelastic, ViscoelasticInput

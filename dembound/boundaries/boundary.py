@@ -1,13 +1,40 @@
-"""The base of all boundary types: the properties of a side that cases, scenes and studies use."""
+"""The base of all boundary types, and of those that are driven by waves."""
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-from dembound.boundaries.layer import Layer
-from dembound.boundaries.sides import Factor, Motion
-from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
-from dembound.table import Box, Table
+import numpy as np
+from pydantic import model_validator
+
+from dembound.boundaries.edge import BoundaryMedium, Edge, Factor, Motion, axis_of_motion
+from dembound.boundaries.signals import Waves
+from dembound.boundaries.support import SupportBuilder
+from dembound.table import Box, Table, quantity
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Nodes beyond an end that absorb.
+
+    nodes : their number N; power : p of the profile; reflection : R0, the theoretical reflection from the layer's outer
+    end.
+    """
+
+    nodes: int
+    power: float
+    reflection: float
+
+    def rates(self, depth: np.ndarray, spacing: float, speed: float) -> np.ndarray:
+        """Rates of decay d (1/s), of any shape, at depths below the end in spacings (m), for waves of a speed (m/s).
+
+        d = (p + 1) c ln(1/R0)/(2L) (x/L)^p, L = NΔx: with it a wave decays by √R0 on the way to the outer end.
+        """
+        length = self.nodes * spacing
+        largest = (self.power + 1.0) * speed * math.log(1.0 / self.reflection) / (2.0 * length)
+        return largest * (np.maximum(depth, 0.0) / self.nodes) ** self.power
+
 
 BoundaryType = type["Boundary"]
 """A type of sides."""
@@ -199,3 +226,37 @@ class Boundary(Table):
             | {f"beta_{motion}": factor for motion, factor in self.factors_at(edge, medium).items()}
             | {f"matched_{motion}": None if math.isnan(matched[motion]) else matched[motion] for motion in self.factors}
         )
+
+
+class Drivable(Boundary):
+    """A side that may name waves by type: P moves along the side's normal, S across it.
+
+    Positive velocities point along +x and +y on every side. Both waves may be given together.
+    """
+
+    wave_p: str | None = quantity(None, unit="1", help="name of the wave that moves along the side's normal")
+    wave_s: str | None = quantity(None, unit="1", help="name of the wave that moves across the side's normal")
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Waves along a direction in which nothing can move."""
+        yield from super().problems(side, tables)
+        held = tables["motion"].held if tables.get("motion") else ()
+        for motion in self.waves:
+            if (direction := "xy"[axis_of_motion(side, motion)]) in held:
+                yield f"boundary.{side}.wave_{motion}: drives {direction}, which motion.held holds for every particle"
+
+    @property
+    def waves(self) -> Mapping[Motion, str]:
+        """The waves that are given."""
+        named: dict[Motion, str | None] = {"p": self.wave_p, "s": self.wave_s}
+        return {motion: name for motion, name in named.items() if name is not None}
+
+
+class Driven(Drivable):
+    """A side that needs at least one wave."""
+
+    @model_validator(mode="after")
+    def _names_a_wave(self) -> "Driven":
+        if self.wave_p is None and self.wave_s is None:
+            raise ValueError("names no wave; give wave_p (along the normal), wave_s (across it) or both")
+        return self

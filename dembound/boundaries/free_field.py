@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from dembound.boundaries.sides import normal_axis
+from dembound.boundaries.edge import normal_axis
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import Dashpots, Viscous
 

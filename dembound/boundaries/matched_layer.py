@@ -10,8 +10,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from dembound.boundaries.driven import Drivable
-from dembound.boundaries.layer import Layer
+from dembound.boundaries.boundary import Drivable, Layer
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import quantity
 

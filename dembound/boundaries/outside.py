@@ -1,13 +1,12 @@
-"""A side beyond which the ground is a continuum, tied to the bonds that it cuts (disks/beyond/surroundings.py)."""
+"""A side beyond which the ground is a continuum, tied to the bonds that it cuts (disks/surroundings/continuum.py)."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
-from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.driven import Drivable
+from dembound.boundaries.boundary import Boundary, Drivable
+from dembound.boundaries.edge import OPPOSITE, SIDES
 from dembound.boundaries.free import Free
 from dembound.boundaries.intact import Keeping
-from dembound.boundaries.sides import OPPOSITE, SIDES
 
 
 class Outside(Keeping, Drivable):
@@ -15,7 +14,8 @@ class Outside(Keeping, Drivable):
 
     Notes
     -----
-    Through the bottom of a body that is periodic sideways plane waves may enter from below (disks/beyond/incident.py).
+    Through the bottom of a body that is periodic sideways plane waves may enter from below
+    (disks/surroundings/incident.py).
     """
 
     is_outside: ClassVar[bool] = True

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
 from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.sides import OPPOSITE, normal_axis
+from dembound.boundaries.edge import OPPOSITE, normal_axis
 
 
 class Periodic(Boundary):

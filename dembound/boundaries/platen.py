@@ -6,10 +6,9 @@ from typing import Any, Literal, Self
 from pydantic import field_validator
 
 from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.edge import Edge
+from dembound.boundaries.edge import Edge, axis_of_motion, normal_axis
 from dembound.boundaries.intact import Keeping
-from dembound.boundaries.sides import axis_of_motion, normal_axis
-from dembound.edges import is_in_range
+from dembound.places import is_in_range
 from dembound.table import Box, quantity
 
 

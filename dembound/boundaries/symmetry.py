@@ -12,7 +12,7 @@ class Symmetry(Boundary):
     Notes
     -----
     The mirror plane is half a disk diameter outside the disk's centre, or half the distance of equal disks of the
-    packing straight across the side (disks/material/mirrored.py). The image of (u_n, u_s, θ) is (−u_n, u_s, −θ):
+    packing straight across the side (disks/material/constants.py). The image of (u_n, u_s, θ) is (−u_n, u_s, −θ):
     the elongation between the two is 2u_n, their bond bends by 2θ, and as both rotate by opposite angles the contact
     does not shear. With k_n and k_b the normal and bending stiffness of contact and bond, the force of the image is
     −2k_n·u_n and its moment −2k_b·θ. This is exact where the edge disks form one row, as in pattern A; elsewhere each

@@ -5,12 +5,11 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.driven import Driven
+from dembound.boundaries.boundary import Boundary, Driven
+from dembound.boundaries.edge import Motion
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.platen import Holding
 from dembound.boundaries.roller import Roller
-from dembound.boundaries.sides import Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import quantity
 

@@ -11,12 +11,10 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from dembound.boundaries.boundary import Boundary, Place
-from dembound.boundaries.driven import Driven
-from dembound.boundaries.rock import Rock
-from dembound.boundaries.sides import normal_axis, plane_of
+from dembound.boundaries.boundary import Boundary, Driven, Place
+from dembound.boundaries.edge import normal_axis, plane_of
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
-from dembound.boundaries.viscous import Dashpots, Viscous, ViscousInput
+from dembound.boundaries.viscous import Dashpots, Rock, Viscous, ViscousInput
 from dembound.errors import CaseError
 from dembound.table import Box, quantity
 

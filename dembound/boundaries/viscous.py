@@ -1,9 +1,4 @@
-"""Viscous (Lysmer) boundaries for disks: absorbing, and absorbing with an incident wave.
-
-Z eqs 3-6. A dashpot of constant βρcD per edge particle of diameter D represents the medium beyond: c = c_p with β_P
-along the normal, c = c_s with β_S across it. β corrects for ΣD, which differs from the length of the side if the disks
-are uneven, and for the packing's own wave speeds, see `BoundaryMedium.matched`; `dembound calibrate` refines it.
-"""
+"""Viscous (Lysmer) boundaries for disks: absorbing, and absorbing with a wave that enters; rock beyond them."""
 
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
@@ -11,13 +6,39 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.driven import Driven
+from dembound.boundaries.boundary import Boundary, Driven
+from dembound.boundaries.edge import BoundaryMedium, Edge, Factor, Motion
 from dembound.boundaries.intact import Keeping
-from dembound.boundaries.rock import Rock
-from dembound.boundaries.sides import Factor, Motion
-from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
+from dembound.boundaries.signals import Waves
+from dembound.boundaries.support import SupportBuilder
 from dembound.table import Table, quantity
+
+
+class Rock(Table):
+    """The rock of a half-space, whose dashpots ρ_r c_r replace those of the ground; right at normal incidence."""
+
+    density: float = quantity(..., unit="kg/m³", help="density ρ of the rock", gt=0.0)
+    p_wave_speed: float = quantity(..., unit="m/s", means="wave speed", help="speed of its P waves", gt=0.0)
+    s_wave_speed: float = quantity(..., unit="m/s", means="wave speed", help="speed of its S waves", gt=0.0)
+
+    @model_validator(mode="after")
+    def _is_stable(self) -> "Rock":
+        if not self.s_wave_speed < self.p_wave_speed:
+            raise ValueError("s_wave_speed: must be below p_wave_speed, as in every elastic solid")
+        return self
+
+    def factors(self, edge: Edge, medium: BoundaryMedium) -> dict[Motion, float]:
+        """β = ρ_r c_r/(ρc)·H/ΣD of an edge, with ρ and c of the medium; 1 where it has no such waves."""
+        pairs = ((self.p_wave_speed, medium.p_wave_speed), (self.s_wave_speed, medium.s_wave_speed))
+        times = self.density / medium.density / edge.diameter_sum_ratio
+        p, s = (times * own / given if given > 0.0 else 1.0 for own, given in pairs)
+        return {"p": p, "s": s}
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = ρc_s² in Pa."""
+        return self.density * self.s_wave_speed**2
+
 
 Given = Annotated[float, Field(ge=0.0)] | Literal["matched"]
 """A factor β in a case file."""

@@ -13,7 +13,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from dembound.casefile.schema import WAVE, Schema
+from dembound.casefile.model import WAVE, Schema
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 IDENTIFIER = "urn:dembound:case-file"

@@ -1,20 +1,23 @@
-"""The case: those tables of a file that all kinds of bodies have."""
+"""The case: the tables of a file, checks between them, and the list of tables of each kind of body."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 import tomli_w
+from pydantic import TypeAdapter
 
-from dembound.boundaries import Boundary, Free, Motion
-from dembound.casefile.chart import Chart
-from dembound.casefile.output import Output
-from dembound.casefile.run import Run
-from dembound.casefile.sweep import Sweep
+from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.edge import SIDES, Motion
+from dembound.boundaries.free import Free
+from dembound.boundaries.platen import driven_components
+from dembound.casefile.messages import choices, show
+from dembound.casefile.tables import Chart, Output, Run, Sweep
+from dembound.casefile.types import WaveTable
 from dembound.errors import CaseError
 from dembound.table import as_toml, every_key
-from dembound.waves import Wave
+from dembound.waves.wave import Wave
 
 MOST_LINES = 10
 """Largest number of lines in which Python shows a case."""
@@ -161,3 +164,114 @@ def _plain(value: Any) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_plain, value))}]"
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+MOST_MONITORS = 1000
+"""Largest number of monitors: their records are checked for damage within seconds, see `results.structure`."""
+
+
+def unknown_waves(named: Iterable[tuple[str, str]], waves: Mapping[str, object]) -> Iterator[str]:
+    """Keys that name a wave the case does not define; named : key -> name of the wave."""
+    for place, name in named:
+        if name not in waves:
+            defined = f"defined: {choices(name, waves)}" if waves else "none is defined"
+            yield f"{place}: {show(name)} is not a wave of this case; {defined}"
+
+
+def driving_waves(sides: Mapping[str, Boundary | None]) -> Iterator[tuple[str, str]]:
+    """Keys of sides that name a wave -> its name."""
+    for side, table in sides.items():
+        for motion, name in table.waves.items() if table else ():
+            yield f"boundary.{side}.wave_{motion}", name
+
+
+def repeated_names(key: str, tables: Sequence[Any]) -> Iterator[str]:
+    """Holes, loads or monitors whose results would overwrite one another."""
+    first: dict[str, int] = {}
+    for number, table in enumerate(tables, start=1):
+        if table and first.setdefault(table.name, number) != number:
+            yield f"{key}[{number}].name: {show(table.name)} is taken by {key}[{first[table.name]}]"
+
+
+def too_many(monitors: Sequence[Any]) -> Iterator[str]:
+    """Too many monitors."""
+    if len(monitors) > MOST_MONITORS:
+        yield f"monitor: there are {len(monitors):,}, must be {MOST_MONITORS:,} or less; snapshots have all places"
+
+
+def never_past_peak(run: Run, sides: Mapping[str, Boundary | None]) -> Iterator[str]:
+    """A run that ends after the peak of the forces on driven sides, without such a side, or shorter than the fall."""
+    if run.until == "peak" and None not in sides.values() and not any(True for _ in driven_components(sides)):
+        yield 'run.until: is "peak", but no side prescribes the motion of a wave; give one type = "velocity"'
+    if run.peak_for is not None and run.peak_for > run.duration:
+        yield f"run.peak_for: is {run.peak_for:g}, must be at most run.duration, {run.duration:g} (s)"
+
+
+def never_silent(run: Run, monitors: Sequence[Any]) -> Iterator[str]:
+    """A run that ends with its monitors at rest, but has no monitors or is shorter than the time at rest."""
+    if run.until == "silent" and not monitors:
+        yield f'run.until: is "{run.until}", but the case has no monitor; give a [[monitor]]'
+    if run.silent_for is not None and run.silent_for > run.duration:
+        yield f"run.silent_for: is {run.silent_for:g}, must be at most run.duration, {run.duration:g} (s)"
+
+
+def never_estimated(output: Output, monitors: Sequence[Any]) -> Iterator[str]:
+    """A request for errors at monitors in a case without monitors."""
+    if output.estimate and not monitors:
+        yield "output.estimate: is true, but the case has no monitor whose error could be estimated; give a [[monitor]]"
+
+
+def steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
+    """Time step and intervals that are longer than the run."""
+    if run.time_step != "auto" and run.time_step > run.duration:
+        yield f"run.time_step: is {run.time_step:g}, must be at most run.duration, {run.duration:g} (s)"
+    for key in ("history_interval", "side_interval", "energy_interval"):
+        if output and (interval := getattr(output, key)) > run.duration:
+            yield f"output.{key}: is {interval:g}, must be at most run.duration, {run.duration:g} (s)"
+
+
+Tables = Mapping[str, Any]
+"""The tables of a case by name; one that is invalid is None."""
+
+WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)
+
+
+@dataclass(frozen=True)
+class Schema:
+    """The tables of one kind of case, by the names of its fields.
+
+    Attributes
+    ----------
+    case : the class of such cases.
+    noun : "disks" or the like, for messages.
+    new : the command that writes such a case.
+    marks : tables of which a file of this kind has at least one, and a file of a kind named later has none.
+    tables : those that occur once.
+    side : type of [boundary.SIDE]; sides : the names of the sides.
+    lists : those that may occur any number of times.
+    problems : finds mistakes between tables, from the tables and the file's data. optional : those that may be absent.
+    staged : those that may be absent and have their own sides: the table, and the type of its boundary.SIDE.
+    completed : the tables of a file with keys that follow from other tables, and what these lack for that. completing :
+    by table, the list from whose entries they follow where each gives them.
+    """
+
+    case: type[Case]
+    noun: str
+    new: str
+    marks: tuple[str, ...]
+    tables: Mapping[str, TypeAdapter[Any]]
+    side: TypeAdapter[Any]
+    lists: Mapping[str, TypeAdapter[Any]]
+    problems: Callable[[Tables, Mapping[str, Any]], Iterator[str]]
+    sides: tuple[str, ...] = SIDES
+    optional: Mapping[str, TypeAdapter[Any]] = field(default_factory=dict)
+    staged: Mapping[str, tuple[TypeAdapter[Any], TypeAdapter[Any]]] = field(default_factory=dict)
+    completed: Callable[[Tables], tuple[Tables, list[str]]] = lambda data: (data, [])
+    completing: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def keys(self) -> list[str]:
+        """All keys allowed at the top level of a file, in the order of messages."""
+        last = ("run", "output", "chart", "sweep")
+        first = [key for key in self.tables if key not in last]
+        return ["title", *first, "boundary", *self.staged, *self.optional, "wave", *self.lists, *last]

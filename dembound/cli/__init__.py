@@ -3,13 +3,12 @@
 Each command imports what it calls when it is called, so that help and completion appear at once.
 """
 
-from dembound.cli import (  # each registers its commands with the application
+from dembound.cli import (
     advise,
     boundary,
     calibration,
     cases,
     chart,
-    dispersion,
     estimate,
     exact,
     gauge,
@@ -17,10 +16,8 @@ from dembound.cli import (  # each registers its commands with the application
     laboratory,
     library,
     material,
-    packing,
     results,
     showing,
-    signals,
     stability,
     starting,
     sweep,

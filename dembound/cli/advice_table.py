@@ -3,7 +3,7 @@
 import textwrap
 from collections.abc import Sequence
 
-from dembound.accuracy.proposal import Proposal, Receiver
+from dembound.accuracy.judge import Proposal, Receiver
 from dembound.accuracy.table import WIDTH, lines_of
 from dembound.casefile import Case
 from dembound.cli.console import out

@@ -16,7 +16,7 @@ from dembound.errors import CaseError, NotAccurateError
 from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
-    from dembound.accuracy.proposal import Advice, Proposal
+    from dembound.accuracy.judge import Advice, Proposal
     from dembound.casefile import Case
 
 
@@ -188,7 +188,7 @@ def _print(line: str) -> None:
 
 def _lines(best: Proposal) -> list[str]:
     """The choice in words, with its error and cost."""
-    from dembound.results.estimates import split_in_words
+    from dembound.results.histories import split_in_words
 
     worst = best.budget.worst()
     return [

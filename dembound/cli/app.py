@@ -271,7 +271,7 @@ def _setting(text: str) -> tuple[str, Any]:
     key, equals, value = text.partition("=")
     if not equals or not key.strip():
         raise CaseError([f"--set: is {text}, must be KEY=VALUE, e.g. boundary.right.beta_p=0.8"])
-    from dembound.casefile.toml import value_of
+    from dembound.casefile.reader import value_of
 
     return key.strip(), value_of(value, f"--set {key.strip()}")
 

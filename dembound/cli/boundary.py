@@ -138,7 +138,7 @@ def boundary(
 
 def _table(text: str) -> dict[str, Any]:
     """The table of ``--type``: TOML, or the word of a type."""
-    from dembound.casefile.toml import value_of
+    from dembound.casefile.reader import value_of
 
     value = value_of(text, "--type")
     return value if isinstance(value, dict) and "type" in value else {"type": text}
@@ -146,8 +146,7 @@ def _table(text: str) -> dict[str, Any]:
 
 def _compared(found: dict[str, Reflections], arrivals: list[Arrival], title: str) -> Figure:
     """Print what types of a side return by waves and angle, and draw it against frequency."""
-    from dembound.disks.reflection.arrivals import over_spectrum
-    from dembound.disks.reflection.compared import amplitudes, returned_range, signal_for
+    from dembound.disks.reflection.arrivals import amplitudes, over_spectrum, returned_range, signal_for
     from dembound.plot.reflection import plot_types
 
     any_of = next(iter(found.values()))

@@ -193,9 +193,9 @@ def _leave_summary(
 ) -> None:
     """Write the summary and a picture of the passes; records : one of each."""
     from dembound.files import remove
-    from dembound.plot.convergence import plot_convergence
+    from dembound.plot.stability import plot_convergence
     from dembound.plot.style import save
-    from dembound.results.json_files import write_json
+    from dembound.results.text_files import write_json
 
     write_json(folder / "summary.json", summary)
     out.print(f"wrote {folder / 'summary.json'}")
@@ -207,7 +207,7 @@ def _leave_summary(
 
 
 def _print_pass(found: Calibration, of: str = "") -> None:
-    from dembound.boundaries.words import FACTORS
+    from dembound.boundaries.description import FACTORS
 
     number = len(found.beta)
     out.print(
@@ -237,7 +237,7 @@ def _print_table(found: Sequence[Calibration]) -> None:
 
 
 def _print_result(found: Calibration) -> None:
-    from dembound.boundaries.words import FACTORS
+    from dembound.boundaries.description import FACTORS
 
     out.print(f"{found.case.name}, {found.side} ({found.kind}): {FACTORS[found.factor]} = {found.result:g}")
     if found.method == "homogenised":

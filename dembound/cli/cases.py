@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import gc
+import shlex
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -30,11 +31,57 @@ from dembound.cli.estimate import print_estimate
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN
+from dembound.words import columns, in_one_unit
 
 if TYPE_CHECKING:
-    from dembound.casefile import Case
+    from dembound.casefile.model import Case
     from dembound.results.folder import Folder
-    from dembound.running import Progress
+    from dembound.running.job import Progress
+
+MOST_MONITORS = 10
+"""Largest number of monitors whose peaks are printed."""
+
+FILES = ("run.h5", "summary.json", "histories.png", "histories_stress.png", "scene.png", "paraview")
+"""Results in the folder of a run in the order of the list, without files for continuing it."""
+
+
+def ending(folder: Path, summary: Mapping[str, Any], *, estimated: bool = False) -> Iterator[str]:
+    """The lines after a run with results in a folder; scripts may read the lines that begin with its name.
+
+    estimated : whether its errors will be estimated, so that the command for it is not printed.
+    """
+    from dembound.kinds import kind_of_record
+    from dembound.results.summary import end_in_words
+
+    name = summary["name"]
+    for fact in (*end_in_words(summary), *kind_of_record(folder / "run.h5").outcome(summary)):
+        yield f"{name}: {fact}"
+    yield from (f"  {line}" for line in peaks(summary["monitors"]))
+    yield f"{name}: results in {folder}"
+    there = [f"{file}/" if (folder / file).is_dir() else file for file in FILES if (folder / file).exists()]
+    yield f"  {', '.join(there)}"
+    path = shlex.quote(str(folder))
+    yield f"  next: dembound report {path}"
+    if summary["monitors"] and not estimated:
+        yield f"        dembound estimate {path}"
+
+
+def peaks(monitors: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """A table of the largest component of velocity at each monitor but twins in a free field: its size and its time."""
+    from dembound.casefile.disks.load import FREE_FIELD
+
+    own = [name for name in monitors if not name.endswith(FREE_FIELD)]
+    shown = {name: monitors[name] for name in own[:MOST_MONITORS]}
+    if not shown:
+        return []
+    sizes, speed = in_one_unit([abs(each["peak_velocity"]) for each in shown.values()], "m/s")
+    times, second = in_one_unit([each["peak_time"] or 0.0 for each in shown.values()], "s")
+    rows: list[Sequence[str]] = [("monitor", "component", f"peak ({speed})", f"at ({second})")]
+    for (name, each), size, at in zip(shown.items(), sizes, times, strict=True):
+        moves = each["peak_time"] is not None
+        rows.append((name, f"v_{each['component']}" if moves else "-", size, at if moves else "-"))
+    more = len(own) - len(shown)
+    return [*columns(rows), *([f"… and {more} more in summary.json"] if more else [])]
 
 
 @app.command("check")
@@ -79,7 +126,7 @@ def run(
     Its results are then in NAME_1pct, for an error of 0.3 % in NAME_0_3pct, unless --name is given.
     """
     from dembound.results.folder import Folder
-    from dembound.running import preflight
+    from dembound.running.planning import preflight
     from dembound.running.recorded import require_replaceable
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
@@ -128,7 +175,7 @@ def resume(
     A complete run is continued to a later time; histories, ledger and snapshots keep their intervals.
     """
     from dembound.results.folder import Folder
-    from dembound.running import resume_case
+    from dembound.running.job import resume_case
     from dembound.running.recorded import recorded_case
     from dembound.running.unfinished import changes_since
 
@@ -184,7 +231,7 @@ def _require_another_folder(record: Path, output: Path, name: str) -> None:
 def _print_replaced(case: Case, output: Path) -> None:
     """Print the results that a run of the case will replace."""
     from dembound.results.folder import Folder
-    from dembound.running import replaced_in_words
+    from dembound.running.unfinished import replaced_in_words
 
     for line in replaced_in_words(Folder(output, case.name), case):
         err.print(f"{case.name}: {line}")
@@ -203,7 +250,7 @@ def _run(
     estimated : whether to estimate its errors even if the case does not request it.
     """
     from dembound.results.folder import Folder
-    from dembound.running import run_case
+    from dembound.running.job import run_case
 
     folder = Folder(output, case.name)
     done = _watched(folder, partial(run_case, case, output, seconds=spent, begun_for=begun_for))
@@ -230,8 +277,7 @@ def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:
 
 def _print_results(folder: Path, *, estimated: bool) -> None:
     """Print the outcome of a run, the peaks at its monitors, its files, and the next command; estimate its errors."""
-    from dembound.cli.ending import ending
-    from dembound.results.summary_file import read_summary
+    from dembound.results.summary import read_summary
 
     for line in ending(folder, read_summary(folder), estimated=estimated):
         out.print(line)

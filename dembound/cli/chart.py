@@ -88,13 +88,13 @@ def chart(
     """
     from dembound.accuracy.chart.study import Options
     from dembound.accuracy.chart.study import chart as make
-    from dembound.accuracy.choice import combinations, parsed
+    from dembound.accuracy.choice import combinations, parsed_options
     from dembound.accuracy.reference import Requested
 
     prepare_computing(threads)
     loaded = load_case(case, changes, name)
     options = Options(
-        named=combinations(loaded, parsed(vary)) if vary else None,
+        named=combinations(loaded, parsed_options(vary)) if vary else None,
         repeats=repeats,
         reference=reference.value if reference else None,
         of=of.value if of else None,

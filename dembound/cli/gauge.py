@@ -11,7 +11,7 @@ from rich.table import Table
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app
 from dembound.cli.console import compact_table, err, out
-from dembound.cli.option_tables import with_tables
+from dembound.cli.options import with_tables
 from dembound.cli.results import results_file
 from dembound.cli.signal_options import FILE, SignalOptions
 

@@ -1,28 +1,90 @@
-"""The command test."""
+"""The command test: laboratory tests of samples."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.cli.app import Name, Output, Settings, app, few, load_disks
+from dembound.cli.app import Name, Output, Scheduler, Settings, app, few, load_disks, require_one_place
 from dembound.cli.console import err, out, print_rows
-from dembound.cli.loading_options import LoadingOptions
-from dembound.cli.option_tables import with_tables
+from dembound.cli.options import with_tables
 from dembound.cli.sweep import FAILED, print_warnings, shown
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
 from dembound.words import in_one_unit, percent, with_unit
 
 if TYPE_CHECKING:
+    from dembound.casefile.disks.model import DiskCase
     from dembound.studies.laboratory.sample import Sample
     from dembound.studies.laboratory.study import Tested
     from dembound.studies.laboratory.tables import Ratio
-    from dembound.studies.sweep.statistics import Statistic
-    from dembound.studies.sweep.study import Standing
+    from dembound.studies.sweep.study import Options, Standing
+    from dembound.studies.sweep.tables import Statistic
+
+SAMPLES = "Samples and loading"
+"""Panel of the help."""
+
+
+class EndsKind(StrEnum):
+    """How platens hold the ends."""
+
+    smooth = "smooth"
+    grips = "grips"
+
+
+@dataclass(frozen=True)
+class LoadingOptions:
+    """Samples, how they are loaded, and where they run."""
+
+    width: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Width of the sample (m); by default the case's.", rich_help_panel=SAMPLES),
+    ] = None
+    height: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Height (m); twice a given width by default.", rich_help_panel=SAMPLES),
+    ] = None
+    ends: Annotated[
+        EndsKind, typer.Option(help="Platens hold the normal motion only, or all.", rich_help_panel=SAMPLES)
+    ] = EndsKind.smooth
+    damp: Annotated[
+        float, typer.Option(min=0.0, help="Local damping; strengths depend on it.", rich_help_panel=SAMPLES)
+    ] = 0.7
+    rate: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Strain rate (1/s); by default quasi-static.", rich_help_panel=SAMPLES),
+    ] = None
+    processes: Annotated[
+        int | None, typer.Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
+    ] = None
+    scheduler: Scheduler = None
+
+    def sample(self, case: DiskCase, test: str) -> Sample:
+        """The sample of a test of the material of a case; raises CaseError as `sample_of`."""
+        from dembound.studies.laboratory.sample import sample_of
+
+        size = self.width, self.height
+        return sample_of(case, test, *size, ends=self.ends.value, damp=self.damp, rate=self.rate)
+
+    def options(self, *, anew: bool = False) -> Options:
+        """Options of the sweep over seeds; raises CaseError for processes beside a scheduler."""
+        from dembound.studies.sweep.study import Options
+
+        require_one_place(self.scheduler, self.processes)
+        return Options(processes=self.processes, scheduler=self.scheduler, anew=anew)
+
+    @property
+    def given(self) -> Iterator[str]:
+        """Names of the options that differ from their defaults."""
+        for field in fields(self):
+            if getattr(self, field.name) != field.default:
+                yield f"--{field.name}"
+
 
 PRINTED = {
     "strength": "strength",

@@ -10,7 +10,7 @@ import typer
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, Side, app, writable
 from dembound.cli.console import out, print_rows
-from dembound.cli.plotted import (
+from dembound.cli.options import (
     CALIBRATIONS,
     ComponentOfMotion,
     Monitors,

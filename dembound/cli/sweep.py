@@ -29,9 +29,8 @@ from dembound.interrupts import exit_code_of
 from dembound.words import in_one_unit
 
 if TYPE_CHECKING:
-    from dembound.studies.sweep.statistics import Statistic
     from dembound.studies.sweep.study import Report, Standing
-    from dembound.studies.sweep.tables import Swept
+    from dembound.studies.sweep.tables import Statistic, Swept
 
 FAILED = 3
 """Exit code of a sweep with members that failed."""
@@ -90,8 +89,8 @@ def sweep(
 
     Complete members are not repeated: the same command continues a sweep, and more values add members to it.
     """
-    from dembound.accuracy.choice import parsed
-    from dembound.studies.sweep.members import changes_of, members_of
+    from dembound.accuracy.choice import parsed_options
+    from dembound.studies.sweep.members import members_of, variations
     from dembound.studies.sweep.study import Options
     from dembound.studies.sweep.study import sweep as sweep_all
 
@@ -107,7 +106,7 @@ def sweep(
     )
     if method and options.action != "calibrate":
         raise CaseError(["--method: is for --action calibrate"])
-    varied = changes_of(parsed(vary) if vary else table.vary, table.together if together is None else together)
+    varied = variations(parsed_options(vary) if vary else table.vary, table.together if together is None else together)
     members, left_out = members_of(loaded, varied, options.action, options.method)
     for line in left_out:
         err.print(f"{loaded.name}: {line}")
@@ -175,7 +174,7 @@ def _duration(seconds: float) -> str:
 
 def _print(swept: Swept) -> bool:
     """Print failed members, warnings, and means of the shown quantities; returns whether any has failed."""
-    from dembound.studies.sweep.statistics import statistics
+    from dembound.studies.sweep.tables import statistics
 
     failed = [(m.name, state) for m, state in zip(swept.members, swept.states, strict=True) if state != "done"]
     for member, state in failed:
@@ -204,8 +203,8 @@ def print_warnings(name: str, warnings: Mapping[str, int], count: int, members: 
 
 def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
     """A head, and a row for each group of members and quantity, with three digits; all digits are in the files."""
-    from dembound.accuracy.labels import in_words, short_keys
-    from dembound.studies.sweep.values import unit_of
+    from dembound.accuracy.choice import in_words, short_keys
+    from dembound.studies.sweep.members import unit_of
 
     yield "members", "quantity", "n", "mean", "spread", "95 % ±", "unit"
     for each in statistics:

@@ -16,7 +16,7 @@ from rich.text import Text
 
 from dembound.cli.app import MORE, app, png, writable
 from dembound.cli.console import compact_table, err, out
-from dembound.cli.option_tables import with_tables
+from dembound.cli.options import with_tables
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
@@ -201,8 +201,7 @@ def wave(
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
     from dembound.records.formats import read_record
-    from dembound.records.processing import processed
-    from dembound.records.wave_file import write_wave
+    from dembound.records.processing import processed, write_wave
 
     record = read_record(file, reading.given())
     channels = _chosen(record, component)

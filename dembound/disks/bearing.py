@@ -1,11 +1,15 @@
-"""The springs of a bottom of dashpots on its motion relative to the ground beyond, as arrays."""
+"""The springs of a bottom of dashpots on its motion relative to the ground beyond."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from dembound.boundaries.support import BoundaryMedium, Edge
+from dembound.boundaries.edge import BoundaryMedium, Edge
 from dembound.boundaries.viscous import Bearing, BearingDashpots
+from dembound.kernels import follower  # noqa: F401  # it registers its tie
+from dembound.kernels.tables.motion import Bearings
+from dembound.motion.part import Tie
+from dembound.motion.state import Layout
 
 
 class Springs(NamedTuple):
@@ -29,3 +33,50 @@ def bearing_springs(
     order = np.argsort(edge.nodes, kind="stable")
     node, weight = edge.nodes[order], edge.widths[order] / edge.widths.sum()
     return Springs(node, np.full(len(node), -1) if twin is None else twin[node], weight, stiffness[order])
+
+
+class BearingTie(Tie):
+    """The springs as a tie.
+
+    Parameters
+    ----------
+    springs : of the scene. layout : the slots of its nodes.
+    """
+
+    name = "bearing"
+
+    def __init__(self, springs: Springs, layout: Layout) -> None:
+        self._springs, self._layout = springs, layout
+        self._rest = np.zeros((len(springs.node), 2))
+        self._force = np.zeros((0, 3))
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Nodes (k,) that it acts on, ascending."""
+        return self._springs.node
+
+    def rest_at(self, datum: np.ndarray) -> None:
+        """Have no force at displacements (3, n)."""
+        node, twin, weight, _ = self._springs
+        moved = datum[:2, node].T
+        self._rest[...] = moved - np.where(twin[:, None] >= 0, datum[:2, twin].T, weight @ moved)
+
+    def force_on(self, supported: np.ndarray) -> np.ndarray:
+        """The last forces (s, 3) on all nodes of the support table (s,), filled by the kernel."""
+        if len(self._force) != len(supported):
+            self._force = np.zeros((len(supported), 3))
+        return self._force
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """The arrays for the kernels; supported (s,) are all nodes of the support table, ascending."""
+        node, twin, weight, stiffness = self._springs
+        slot = self._layout.slot
+        return Bearings(
+            node=slot[node],
+            twin=np.where(twin >= 0, slot[twin], -1),
+            line=np.searchsorted(supported, node),
+            weight=weight,
+            stiffness=stiffness,
+            rest=self._rest,
+            force=self.force_on(supported),
+        )

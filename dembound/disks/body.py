@@ -1,30 +1,65 @@
 """The arrays of a body of disks. Only this file defines their names, shapes and units."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from dembound.boundaries.half_mass import mass_factor
-from dembound.boundaries.support import Edge, Supports
-from dembound.casefile.disks import DiskCase
+from dembound.boundaries.edge import Edge
+from dembound.boundaries.half_mass import half_contacts, mass_factor
+from dembound.boundaries.support import Supports
+from dembound.casefile.disks.model import DiskCase
 from dembound.disks.bearing import Springs
-from dembound.disks.beyond.layered_waves import Undisturbed
-from dembound.disks.beyond.recorded import RecordedContinuum
-from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.contacts.layout import Rows
 from dembound.disks.intact import intact_disks, intact_zones
 from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.motion.between import Between
-from dembound.motion.layout import Layout
+from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.surroundings.layered_waves import Undisturbed
+from dembound.disks.surroundings.recorded import RecordedContinuum
+from dembound.motion.recorded_nodes import Between
+from dembound.motion.resources import thread_count_for
 from dembound.motion.scene import Scene
-from dembound.motion.threads import thread_count_for
+from dembound.motion.state import Layout
+from dembound.packings.brick import Brick
 from dembound.packings.column import Seam
 from dembound.packings.tiling import Assembly
+
+
+def with_half_contacts(
+    case: DiskCase, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
+) -> tuple[Assembly, Seam | None]:
+    """Replace contacts along sides of half cells, also across a seam, by types with half the stiffness."""
+    vectors, whole = brick.vectors, len(brick.pairs)
+
+    def halved(contact_type: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        plain = contact_type % whole
+        half = half_contacts(first, second, vectors[plain], edges, case.boundary)
+        return plain + whole * half.astype(contact_type.dtype)
+
+    assembly = replace(assembly, contact_type=halved(assembly.contact_type, *assembly.pairs.T))
+    if seam is not None:
+        owner = np.repeat(seam.twin[seam.node], seam.contact_counts)
+        seam = replace(seam, contact_type=halved(seam.contact_type, owner, seam.neighbour))
+    return assembly, seam
+
+
+def with_layers(ground: PackedMaterial, assembly: Assembly, seam: Seam | None) -> tuple[Assembly, Seam | None]:
+    """Replace the contacts of a layered ground, also across a seam, by types with the springs of their zones."""
+    if not ground.is_layered:
+        return assembly, seam
+    up, types = assembly.positions[:, 1], 2 * len(ground.brick.pairs)
+    pairing = ground.pairing_of(*up[assembly.pairs].T)
+    assembly = replace(assembly, contact_type=(assembly.contact_type + types * pairing).astype(np.int32))
+    if seam is not None:
+        owner = up[np.repeat(seam.twin[seam.node], seam.contact_counts)]
+        other = up[seam.neighbour]
+        pairing = ground.pairing_of(*np.where(seam.twin_is_second, [other, owner], [owner, other]))
+        seam = replace(seam, contact_type=seam.contact_type + types * pairing)
+    return assembly, seam
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.material.homogenise import Network
 from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.scene import DiskScene
-from dembound.disks.side_media import ground_at
+from dembound.disks.sides import ground_at
 
 APART = 8.0
 """Diameters, at least, of each third of the strip in which s is found: at the side, where displacements are read,

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from dembound.boundaries.edge import Edge
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.edge import SIDES, Edge
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick

@@ -8,42 +8,36 @@ from typing import TYPE_CHECKING, Any, cast
 
 from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
-from dembound.disks.contacts.breaks import first_break
+from dembound.disks.contacts.pairs import first_break
 from dembound.disks.entry import all_late_by
-from dembound.disks.far import FarDisks
-from dembound.disks.following import Membranes
+from dembound.disks.incident_wave import with_incident_waves
 from dembound.disks.intact import require_room
 from dembound.disks.material.constants import limits_of
-from dembound.disks.material.wave_front import front_of
-from dembound.disks.membrane import follows, in_run
-from dembound.disks.reduced.reduction import reduced
-from dembound.disks.reports.contact_mesh import contact_mesh
-from dembound.disks.reports.continuum_mesh import continuum_mesh
+from dembound.disks.material.packing_waves import front_of
+from dembound.disks.pressure import follows, in_run
+from dembound.disks.reduced import reduced
 from dembound.disks.reports.facts import disk_facts
-from dembound.disks.reports.mesh import VIEW_SCRIPT, disk_mesh
-from dembound.disks.reports.outcome import disk_outcome
-from dembound.disks.reports.storage import storage_of
-from dembound.disks.reports.summary import asked_stress, describe_static, summarise_disks
+from dembound.disks.reports.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh
+from dembound.disks.reports.summary import asked_stress, describe_static, disk_outcome, summarise_disks
 from dembound.disks.reports.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.rest.settled import Settled, settling_keys
 from dembound.disks.rest.stage import require_stages, settle, stage_names
+from dembound.disks.rotating_pressure import Membranes
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
+from dembound.disks.step_cost import storage_of
 from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.trials import trials_of_disks
-from dembound.disks.turns import Turns
-from dembound.disks.within import with_incident_waves
+from dembound.disks.watches import FarDisks, Turns
 from dembound.kernels.contacts import UPDATED
-from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
-from dembound.motion.moving_picture import MovingPicture
+from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Stage, Stages
 from dembound.motion.paths import Front, Source
-from dembound.motion.stages import Stages
+from dembound.motion.resources import Storage
+from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
-from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run, Tracker
-from dembound.motion.trial import Trial
 from dembound.table import Box
 from dembound.words import Entries
 
@@ -211,7 +205,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
         """The scene with disks coloured by a field, by default velocity."""
-        from dembound.plot.moving_scene import MovingScene
+        from dembound.plot.moving import MovingScene
 
         return MovingScene(record, field or "velocity", exaggerate)
 

@@ -7,10 +7,10 @@ import numpy as np
 
 from dembound.boundaries import Motion, axis_of_motion
 from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.description import reflected
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
-from dembound.boundaries.words import reflected
 from dembound.disks.scene import DiskScene
-from dembound.disks.side_media import media_of
+from dembound.disks.sides import media_of
 from dembound.errors import CaseError
 
 

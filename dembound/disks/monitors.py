@@ -18,19 +18,18 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import reach
-from dembound.casefile.disks.monitor import FREE_FIELD
-from dembound.disks.beyond.layered_waves import Undisturbed
-from dembound.disks.beyond.surroundings import Surroundings
+from dembound.casefile.disks.load import FREE_FIELD
+from dembound.continuum.interpolation import interpolation, slopes
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.material.wave_front import INDEX
-from dembound.edges import is_within
+from dembound.disks.material.packing_waves import INDEX
+from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.surroundings.layered_waves import Undisturbed
 from dembound.errors import CaseError
-from dembound.motion.between import Between
-from dembound.nearest import nearest
-from dembound.outside.interpolation import interpolation, slopes
+from dembound.motion.recorded_nodes import Between
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, nearest_in_column
 from dembound.packings.tiling import Assembly, disks_around
+from dembound.places import is_within, nearest
 
 Monitors = tuple[dict[str, int], dict[str, Between]]
 """Name -> node, and name -> place of the monitors in a continuum."""

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dembound.boundaries.sides import normal_axis
-from dembound.disks.material import bragg
+from dembound.boundaries.edge import normal_axis
+from dembound.continuum import sizing
+from dembound.continuum.sizing import Signal
+from dembound.disks.material import packing_waves
 from dembound.disks.scene import DiskScene
-from dembound.outside import sizing
-from dembound.outside.sizing import Signal
 from dembound.words import Entries, percent, with_unit
 
 LEAST_SHOWN = 1e-5
@@ -41,10 +41,12 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
     case, ground = scene.case, scene.ground
     if case.packing.is_lattice:
         return ""
-    if len(ground.brick.radii) > bragg.MOST_DISKS:
-        return f"send back short waves, which is not computed for bricks of more than {bragg.MOST_DISKS:,} disks"
+    if len(ground.brick.radii) > packing_waves.MOST_DISKS:
+        return (
+            f"send back short waves, which is not computed for bricks of more than {packing_waves.MOST_DISKS:,} disks"
+        )
     axes = sorted({normal_axis(side) for side in case.driving})
-    found = bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
+    found = packing_waves.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
     share, accuracy = found.share, case.outside.accuracy
     beyond = f"waves above {with_unit(found.highest, 'Hz')}, which have {percent(found.above)} of the energy"
     if share < LEAST_SHOWN:

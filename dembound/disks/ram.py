@@ -14,18 +14,18 @@ from dataclasses import dataclass
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
-from dembound.disks.beyond.settings import expected_tops, mesh_of, settings_of, signals_of
-from dembound.disks.contacts.forces import PIECE
+from dembound.continuum.medium import Medium
+from dembound.continuum.sizing import GridSizes, body_bytes, header_bytes, snapshot_bytes
 from dembound.disks.contacts.layout import LEAST_FILL
+from dembound.disks.contacts.pairs import PIECE
 from dembound.disks.contacts.row_plan import columns_of
 from dembound.disks.material.packed_material import nominal_moduli
-from dembound.edges import is_within
-from dembound.kernels.lanes import LANES
-from dembound.motion.ram import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
-from dembound.outside.medium import Medium
-from dembound.outside.ram import GridSizes, body_bytes, header_bytes, snapshot_bytes
+from dembound.disks.surroundings.settings import expected_tops, mesh_of, settings_of, signals_of
+from dembound.kernels.compiler.lanes import LANES
+from dembound.motion.resources import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
+from dembound.places import is_within
 
-NEAR = 1.08
+PAIRS_PER_CONTACT = 1.08
 """Listed pairs over contacts: those with a gap below `contacts.SKIN` are listed, too. In random bricks 1.07 to 1.08."""
 
 
@@ -266,7 +266,7 @@ def _settling_bytes(case: DiskCase, z: SceneSizes) -> float:
 
 def _pairs(z: SceneSizes) -> tuple[float, float]:
     """Numbers of listed pairs and of places for them."""
-    pairs = NEAR * z.contacts
+    pairs = PAIRS_PER_CONTACT * z.contacts
     return pairs, pairs * z.slots / z.disks
 
 

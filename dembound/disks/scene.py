@@ -11,33 +11,29 @@ from dembound.boundaries.half_mass import half_edges, mass_factor, with_shares
 from dembound.boundaries.support import Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import BearingDashpots
 from dembound.casefile.disks import DiskCase
+from dembound.continuum.sizing import GridSizes
 from dembound.disks.bearing import Springs, bearing_springs
-from dembound.disks.beyond.edges import edges_beside_column, find_edges, require_held
-from dembound.disks.beyond.hollowed import hollowed
-from dembound.disks.beyond.layered_waves import undisturbed
-from dembound.disks.beyond.mechanisms import mechanisms_of
-from dembound.disks.beyond.mesh import NO_FLOORS, Outline
-from dembound.disks.beyond.surroundings import Surroundings, surroundings_of
-from dembound.disks.body import DiskBody, differs_by_level, parts_of
-from dembound.disks.body_sides import sides_of, tied_of
-from dembound.disks.contact_types import with_half_contacts, with_layers
-from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.body import DiskBody, differs_by_level, parts_of, with_half_contacts, with_layers
 from dembound.disks.contacts.layout import lay_out
-from dembound.disks.loads import steady
+from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.material.layered import layered
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
-from dembound.disks.membrane import in_run
 from dembound.disks.monitors import monitors_of
+from dembound.disks.pressure import in_run
 from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
-from dembound.disks.side_media import boundary_medium, medium_of_side
-from dembound.disks.stepping.stress import particle_stress
+from dembound.disks.sides import boundary_medium, medium_of_side, sides_of, tied_of
+from dembound.disks.stepping.fields import particle_stress
 from dembound.disks.stepping.system import DiskSystem
-from dembound.disks.support_rows import supports_of
+from dembound.disks.supports import steady, supports_of
+from dembound.disks.surroundings.continuum import Surroundings, surroundings_of
+from dembound.disks.surroundings.edges import edges_beside_column, find_edges, hollowed, require_held
+from dembound.disks.surroundings.frequencies import mechanisms_of
+from dembound.disks.surroundings.layered_waves import undisturbed
+from dembound.disks.surroundings.mesh import NO_FLOORS, Outline
 from dembound.holes.floor import Floor
 from dembound.kernels.contacts import REFERENCE
-from dembound.motion.layout import Layout
-from dembound.outside.ram import GridSizes
+from dembound.motion.state import Layout
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.boundaries.edge import SIDES, normal_axis
 from dembound.boundaries.support import Edge
-from dembound.disks.beyond.cut_bonds import CutBonds
 from dembound.disks.body import DiskBody
-from dembound.disks.contacts.forces import PIECE, Piece
+from dembound.disks.contacts.pairs import PIECE, Piece
 from dembound.disks.material.at_rest import StressAtRest, gradients_of_stresses, rest_forces
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.surroundings.cut_bonds import CutBonds
 from dembound.packings.cut import CutContacts, cut_contacts
 from dembound.packings.tiling import Assembly
 

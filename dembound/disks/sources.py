@@ -7,12 +7,12 @@ import numpy as np
 from dembound.boundaries import axis_of_motion, normal_axis, plane_of
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.disks.beyond.ground_waves import incident_in
-from dembound.disks.beyond.mesh import medium_of
+from dembound.continuum.medium import layered
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.material.wave_front import front_of, slowest_speed
+from dembound.disks.material.packing_waves import front_of, slowest_speed
+from dembound.disks.surroundings.ground_waves import incident_in
+from dembound.disks.surroundings.mesh import medium_of
 from dembound.motion.paths import Source
-from dembound.outside.medium import layered
 from dembound.table import EVERYWHERE, Box
 
 

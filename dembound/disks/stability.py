@@ -6,18 +6,18 @@ from functools import partial
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.surroundings import Surroundings
 from dembound.disks.contacts.dashpots import brick_dashpots, viscosity
-from dembound.disks.contacts.rows import contact_rows
+from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.damped_ground import growing_by_lag
+from dembound.disks.surroundings.continuum import Surroundings
 from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces
-from dembound.motion.eigenvalue import largest_eigenvalue
-from dembound.motion.layout import Layout
+from dembound.motion.stability import largest_eigenvalue
+from dembound.motion.state import Layout
 
 OPENING = 0.75 / CLOSING
 """Largest ω² over 4/Δt² where contacts open and close: sin²(π/3), for first pushes multiplied by CLOSING.

@@ -1,4 +1,4 @@
-"""Bodies of disks at rest, under the linear law and their own, in which noise is stepped; see motion/trial.py."""
+"""Bodies of disks at rest, under the linear law and their own, in which noise is stepped; see motion/stability.py."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.types import LAWS, linear_law
 from dembound.disks import stability, step_cost
 from dembound.disks.scene import DiskScene, build, ground_of
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.part import System
-from dembound.motion.trial import NOISE, Trial, at_rest, left_out
+from dembound.motion.stability import NOISE, Trial, at_rest, left_out
 
 PARTICLES = 2500
 """Approximate number of particles of a reduced copy; one brick may have more."""
@@ -73,7 +72,7 @@ def _under(scene: DiskScene, name: str) -> Trial:
         return DiskSystem(scene, time_step, start, load=nothing)
 
     linear = scene.ground.law.is_linear
-    step, cost = stability.own_step(scene.case, limit), sum(step_cost.of_scene(scene).values())
+    step, cost = stability.own_step(scene.case, limit), sum(step_cost.times_of_scene(scene).values())
     return Trial(name, scene, limit, step, system, is_linear=linear, step_cost=cost)
 
 

@@ -1,22 +1,4 @@
-"""A pressure pulse in a bar, and where the bar spalls at its far end: d'Alembert's solution (L section 3.2).
-
-Both ends reflect a wave, so the effect at x of a pulse p(t) on the end x = 0 is a sum over its passages there, the k-th
-after a path of length w_k = kL + x or kL + L − x for even and odd k, of which only the first remains if the far end
-absorbs. A wave to the right has the stress −p and the velocity p/(ρc), one to the left −p and −p/(ρc). A free end
-reflects pressure as tension, a fixed one as pressure. Apart from its load the end x = 0 is free.
-
-The place where a triangular pulse first reaches the strength σ_t = s p_m: behind the reflected crest, at a distance d
-from the free end, the incident pulse has fallen by p_m·2d/(c t_f), which is the tension there. So a pulse whose fall is
-not shorter than its rise, t_f ≥ t_r, breaks the bar when its crest is at
-
-    d = ½ c t_f s,    t = t_r + (L + d)/c .
-
-A pulse that falls faster gives more tension ahead of the reflected crest than behind it. At a time τ after its front,
-once the tail of the incident pulse has passed, the tension is p_m τ/t_r. It first reaches the strength at τ = s t_r
-behind the front, where
-
-    d = ½ c (t_r + t_f − s t_r),    t = s t_r + (L + d)/c .
-"""
+"""A pressure pulse in a bar, where the bar spalls, and the first longitudinal mode of a round bar."""
 
 from collections.abc import Callable, Iterator
 from typing import Literal

@@ -1,20 +1,4 @@
-"""P or S waves at normal incidence in a stack of layers on a half-space, after Thomson and Haskell.
-
-With e^{+iωt}, z downwards from the top of a layer, and complex wave number k = ω√(ρ/M) the displacement of layer m is
-u = A_m e^{ikz} + B_m e^{−ikz}, A running up and B down, and R_m = B_m/A_m. The free surface makes R_1 = 1; displacement
-and traction are continuous at the interface of layers m and m + 1, with α = √(ρ_m M_m)/√(ρ_{m+1} M_{m+1}):
-
-    A_m e^{ikh} = 2 A_{m+1}/N ,  R_{m+1} = [1 − α + (1 + α) R']/N ,  N = 1 + α + (1 − α) R' ,  R' = R_m e^{−2ikh} .
-
-(Haskell, The dispersion of surface waves on multilayered media, BSSA 43, 1953; Kramer, Geotechnical Earthquake
-Engineering, 1996, section 7.2.1.) A is the incident wave of the half-space; 2A moves its outcrop, A + B its top.
-
-Moduli M with ρc² of the speed c and the quality Q of a layer:
-
-    elastic       ρc²
-    hysteretic    ρc² (1 + i/Q)
-    constant_q    ρc² cos²(πγ/2) (iω/ω₀)^{2γ},  γ = arctan(1/Q)/π: phase speed c at ω₀  (Kjartansson, JGR 84, 1979)
-"""
+"""P or S waves at normal incidence in layers on a half-space, by frequency and in time."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -23,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.exact.histories import DECAY, PADDED
+from dembound.exact.histories import DECAY, PADDED, Histories
 
 Damping = Literal["elastic", "hysteretic", "constant_q"]
 """How the quality of layers enters their moduli."""
@@ -162,3 +146,66 @@ class Column:
         spectrum = np.fft.rfft(motion * decay, count) * self.transfer(frequencies, depth, over)
         found: np.ndarray = np.fft.irfft(spectrum, count)[: len(motion)] / decay
         return found
+
+
+Quantity = Literal["displacement", "velocity", "gradient", "rate", "traction", "impulse", "relaxed", "relaxed_rate"]
+"""u m, v m/s, ∂u/∂y, ∂v/∂y 1/s, with y upwards, and on planes facing up the traction, Pa, and its integral, Pa·s.
+
+relaxed, relaxed_rate : u and v under which the unrelaxed springs of a layer have the forces of the damped ones."""
+
+QUANTITIES: dict[Quantity, tuple[int, int]] = {
+    "displacement": (0, 0),
+    "velocity": (0, 1),
+    "gradient": (1, 0),
+    "rate": (1, 1),
+    "traction": (2, 0),
+    "impulse": (2, -1),
+    "relaxed": (0, 0),
+    "relaxed_rate": (0, 1),
+}
+"""Row of `Column.motion`, and number of derivatives in time."""
+
+
+class ColumnMotion:
+    """The motion of a column.
+
+    Parameters
+    ----------
+    column : its layers. velocity : m/s at times in s, of the incident wave alone at a depth, m, in its half-space or
+    continued from there; or if `within` of the column at this depth. begin : time (s) before which it is zero. until :
+    last time (s); later ones double the window.
+    """
+
+    def __init__(
+        self,
+        column: Column,
+        velocity: Callable[[np.ndarray], np.ndarray],
+        depth: float,
+        begin: float,
+        until: float,
+        within: bool = False,
+    ) -> None:
+        self._column, self._depth, self._within = column, depth, within
+        self._histories = Histories(velocity, begin, until)
+
+    def at(self, of: Quantity, times: np.ndarray, depths: tuple[float, ...], number: int | None = None) -> np.ndarray:
+        """A quantity (k, d) at times (k,) s and depths (d,) m; number : of the layer, see `Column.motion`."""
+        self._histories.reach(times)
+        samples = self._histories.kept((of, depths, number), lambda: self._sampled(of, depths, number))
+        return self._histories.between(samples, times)
+
+    def _sampled(self, of: Quantity, depths: tuple[float, ...], number: int | None) -> np.ndarray:
+        """A quantity (n, d) at all samples."""
+        window, (row, derivatives) = self._histories.window, QUANTITIES[of]
+        incident = window.derived(derivatives)
+        if self._within:
+            incident = incident / self._column.motion(window.frequencies, [self._depth])[0, 0]
+        else:
+            incident = incident / self._column.rising(window.frequencies, self._depth)
+        found = []
+        for depth in depths:
+            own = self._column.motion(window.frequencies, [depth], number)[row, 0]
+            if of in ("relaxed", "relaxed_rate") and number is not None:
+                own = own * self._column.layers[number].relaxation(window.frequencies)
+            found.append(window.sampled(incident * own))
+        return np.stack(found, axis=1)

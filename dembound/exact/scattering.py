@@ -29,9 +29,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from dembound.exact.bessel import decaying_ratios, from_ratios, growing_ratios
 from dembound.exact.solid import Solid
-from dembound.exact.transform import Signal, respond
+from dembound.exact.transform import Signal, decaying_ratios, from_ratios, growing_ratios, respond
 
 MOST = 2**16
 """Largest number of samples in time; orders are as many as the highest frequency needs."""

@@ -6,8 +6,8 @@ from typing import Literal, Self
 
 import numpy as np
 
-from dembound.edges import includes
 from dembound.holes.outline import Outline
+from dembound.places import includes
 from dembound.table import Box, FileName, Table, quantity
 
 Apart = Callable[[int, float], float]

@@ -12,10 +12,9 @@ loop reads contiguous numbers, without lists of families. Runs of nodes that hav
 import numpy as np
 from numba import njit, types
 
-from dembound.kernels.apart import apart
-from dembound.kernels.bar_contacts import close_contacts, note_approach, note_impacts
-from dembound.kernels.bar_cracks import soften
+from dembound.kernels.bar_cracks import close_contacts, note_approach, note_impacts, soften
 from dembound.kernels.common import DONE, FAST, FASTMATH, REST, TRIGGERED, U
+from dembound.kernels.compiler.separate import apart
 from dembound.kernels.law import is_law
 from dembound.kernels.tables import BarBonds
 

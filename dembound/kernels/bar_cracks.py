@@ -1,22 +1,51 @@
-"""Bonds of a bar whose force falls as they open, so that a crack takes its fracture energy.
-
-The traction of a crack of opening w is σ_t(1 − w/w_c) with w_c = 2G_f/σ_t. Every bond that crosses the crack has its
-share of it: with stiffness k and limit e_0 its force falls along a line from ke_0 at the elongation e_0 to zero at w_c.
-All bonds end at the same elongation w_c, whatever their length: if the bar beside the crack is strained by σ/E, a bond
-of length ξ has e = w + ξσ/E and bears σ/σ_t of its largest force, so their sum is the traction above, at every w, and
-∫f de over all of them is ½w_c Σke_0 = ½w_cσ_tA = G_fA. Unloading is a line to the origin; in compression a bond has its
-whole stiffness.
-
-A change of stiffness by Δk between two steps, with elongations e⁻ and e, takes −½Δk e e⁻ from the energy that central
-differences conserve. Stiffness is lowered only while e and e⁻ have the same sign, and raised only when the sign
-changes: then no change adds energy, and cracks that open and close never make a run unstable.
-"""
+"""Contacts between the ranges of a bar, and bonds whose force falls as they open, so that a crack takes its energy."""
 
 import numpy as np
 from numba import njit, types
 
-from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST
+from dembound.kernels.compiler.separate import apart
+
+
+@njit(**FAST)
+def note_approach(v, contacts):
+    """Keep the speeds (c,) m/s at which both nodes of each contact approach before the step."""
+    for c in range(contacts.left.size):
+        i = contacts.left[c]
+        contacts.before[c] = v[i] - v[i + 1]
+
+
+@njit(**FAST)
+def close_contacts(u_next, v, mobility, mean, step, contacts):
+    """Push apart the nodes of contacts that overlap at their new displacements u_next (n,) m."""
+    for c in range(contacts.left.size):
+        i = contacts.left[c]
+        overlap = u_next[i] - u_next[i + 1] - contacts.gap[c]
+        contacts.push[c] = 0.0
+        if overlap > 0.0:
+            contacts.closed[c] = True
+            push = overlap / (step * (mobility[i] + mobility[i + 1]))
+            contacts.push[c] = push
+            for k, force in ((i, -push), (i + 1, push)):
+                gained = mobility[k] * force
+                v[k] += gained
+                mean[k] += 0.5 * gained
+                u_next[k] += step * gained
+
+
+@njit(**FAST)
+def note_impacts(v, step, contacts, work):
+    """Add the energy (J) that impulses took in this step to the ledger; v (n,) m/s after it."""
+    whole = 0.0
+    half = 0.0
+    for c in range(contacts.left.size):
+        i = contacts.left[c]
+        taken = 0.5 * step * contacts.push[c]
+        half += taken * contacts.before[c]
+        whole += taken * (contacts.before[c] + v[i] - v[i + 1])
+    work[1, 2] = work[0, 2] + half
+    work[0, 2] += whole
+
 
 WHOLE, OPENING = -1, -2
 """Marks of an unbroken bond: intact, or with a force that falls. Broken ones are marked with the step of the break."""

@@ -3,12 +3,12 @@
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
-from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS, DONE, FAST, LIST_ENDS, U, column_sum, largest
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_pairs
 from dembound.kernels.law import is_law, is_tie
+from dembound.kernels.near import approach
 from dembound.kernels.step import move_particle, note_damping
 from dembound.kernels.tables import Bonded, SeamEnds
 

@@ -8,8 +8,9 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels import bonded as law
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import FAST, U
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, load, splat
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_others
 from dembound.kernels.lane_step import (
@@ -23,7 +24,6 @@ from dembound.kernels.lane_step import (
     next_place,
     place_of,
 )
-from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, splat
 from dembound.kernels.law import is_law
 from dembound.kernels.pair_lanes import push_rows
 from dembound.kernels.tables import LaneBonded

@@ -11,9 +11,9 @@ from numba import config, njit, types
 from numba.extending import overload
 
 from dembound.kernels import tables
-from dembound.kernels.apart import compiled
-from dembound.kernels.bundles import At, Role, Written, caller, kind_of, kinds_of_parts, reader
 from dembound.kernels.common import FAST
+from dembound.kernels.compiler.bundles import At, Role, Written, caller, kind_of, kinds_of_parts, reader
+from dembound.kernels.compiler.separate import compiled
 from dembound.kernels.law import across, begin, check, finish, move, note, push, turn, turning_work
 
 Bundles = tuple[Any, ...]

@@ -3,11 +3,11 @@
 import numpy as np
 from numba import njit, types
 
-from dembound.kernels.apart import apart, in_chunks
-from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum, largest
+from dembound.kernels.compiler.limits import factor_of, limit_of
+from dembound.kernels.compiler.separate import apart, in_chunks
+from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
-from dembound.kernels.limits import factor_of, limit_of
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
 
 TURN = 0.01

@@ -17,10 +17,10 @@ Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import apart, in_chunks
-from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
-from dembound.kernels.limits import factor_of, limit_of
+from dembound.kernels.compiler.limits import factor_of, limit_of
+from dembound.kernels.compiler.separate import apart, in_chunks
+from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3

@@ -1,4 +1,4 @@
-"""The elastic law with damping: the forces on every disk pass through memories, see dembound/damping/quality.py.
+"""The elastic law with damping: the forces on every disk pass through memories, see dembound/damping.py.
 
 Of a force f, less that at rest, each mechanism takes r = p + g f and remembers p ← e r + g f. The forces on eight disks
 are filtered at once, right after they have been computed.
@@ -7,8 +7,9 @@ are filtered at once, right after they have been computed.
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import CHUNKS, FAST, U
+from dembound.kernels.compiler.lanes import LANES, at_most, choose, lane, load, splat, store, where_equal
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.drag import (
     changed_power,
     note_velocities,
@@ -21,7 +22,6 @@ from dembound.kernels.drag import (
 from dembound.kernels.elastic import row_force
 from dembound.kernels.elastic_lanes import gathered
 from dembound.kernels.lane_step import INLINED, blocks_of, go_on, kick, next_place, place_of, stray_forces
-from dembound.kernels.lanes import LANES, at_most, choose, lane, load, splat, store, where_equal
 from dembound.kernels.law import answer, generic, is_law, is_tie
 from dembound.kernels.step import note_damping
 from dembound.kernels.tables import DampedLinks, LaneRows, NeighbourTable, TieMemories

@@ -1,18 +1,18 @@
 """The law of a grid of spectral elements with damping: forces of elements on their points pass through memories.
 
-Each element filters its own forces, see dembound/damping/quality.py, so that neighbours may be damped unlike; those of
+Each element filters its own forces, see dembound/damping.py, so that neighbours may be damped unlike; those of
 an element that absorbs after its convolution variables. The work done on all elements counts as taken by damping, and
 the strain energy of those that do not absorb is subtracted when the ledger is written.
 """
 
 from numba import get_thread_id, njit
 
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
+from dembound.kernels.compiler.lanes import LANES, load, splat, store
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.damped import FADED
 from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, shape_of
 from dembound.kernels.grid import move_core, move_node, store_rim, sum_at, sum_of
-from dembound.kernels.lanes import LANES, load, splat, store
 from dembound.kernels.law import is_law
 from dembound.kernels.tables import DampedGrid
 

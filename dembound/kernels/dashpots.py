@@ -7,8 +7,8 @@ PFC's linear model. Velocities are those half a step before the displacements (`
 
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import CHUNKS, FAST, U
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
 from dembound.kernels.law import begin as begin_law
 from dembound.kernels.law import check as check_law

@@ -16,11 +16,11 @@ so that N = √k_n n·Δu, S = √k_s (t·Δu − l_iθ_i − l_jθ_j), and the 
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
-from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, U, largest
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.law import answer, generic, is_law, is_tie
+from dembound.kernels.near import approach
 from dembound.kernels.step import move_particle, note_damping
 from dembound.kernels.tables import Links, NeighbourTable, Seam, WatchedLinks
 

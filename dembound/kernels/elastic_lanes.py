@@ -14,8 +14,9 @@ only some copies have also has a mask of these. Contacts that no row shares, str
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import FAST, U
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, load, magnitude, splat, store
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.elastic import fill_forces, move_rows
 from dembound.kernels.held_lanes import move_pair, moving_pair
 from dembound.kernels.lane_step import (
@@ -29,7 +30,6 @@ from dembound.kernels.lane_step import (
     place_of,
     stray_forces,
 )
-from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, magnitude, splat, store
 from dembound.kernels.law import answer
 from dembound.kernels.tables import LaneRows
 

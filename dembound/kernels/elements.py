@@ -4,7 +4,7 @@ A block has six fields of N × N points in a work space: U and V are displacemen
 B = ∂_x u_y, C = ∂_y u_x and D = ∂_y u_y, of which A, B and D become the stresses σ_xx, σ_xy and σ_yy times the weights
 of the quadrature. Nodal forces replace U and V (Komatitsch & Tromp 1999, Geophys. J. Int. 139, 806–822).
 
-In absorbing elements, derivatives along x and y have their own convolution variables (outside/layer.py), and so have
+In absorbing elements, derivatives along x and y have their own convolution variables (continuum/layer.py), and so have
 the nodal forces that belong to derivatives of the test functions along x and y. All elements at a node have the same
 coefficients there, so the variable of a nodal force is the sum over its elements.
 """
@@ -14,8 +14,8 @@ from typing import Any
 from numba import njit
 
 from dembound.kernels.common import FAST, U
+from dembound.kernels.compiler.lanes import LANES, combine, combine_more, load, store
 from dembound.kernels.lane_step import larger
-from dembound.kernels.lanes import LANES, combine, combine_more, load, store
 from dembound.kernels.tables import ALONG, Shape
 
 WITHIN: dict[str, Any] = FAST | {"forceinline": True}

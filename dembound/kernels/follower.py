@@ -1,20 +1,35 @@
-"""Forces that rotate with their side, by the mean rotation of this side and the opposite one.
-
-So forces on opposite sides remain opposite, and a body that bends, whose ends rotate in opposite directions, is not
-pushed away.
-
-The forces that balance the stress of a settled body at its sides are part of that stress, so they rotate with the body.
-With fixed directions, a body under pressure p that is not held would be unstable: forces ±pH on the two ends of a body
-of width W give a moment pHW·θ for a rotation θ, which grows at the rate √(12|σ_xx + σ_yy|/(ρ(W² + H²))).
-"""
+"""Forces that depend on motion: springs to the ground beyond, and forces that rotate with their side."""
 
 import numpy as np
 from numba import njit, types
 
-from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST, MAKES, U
-from dembound.kernels.law import is_turning
-from dembound.kernels.tables import Followers
+from dembound.kernels.compiler.separate import apart
+from dembound.kernels.law import is_tie, is_turning
+from dembound.kernels.tables.motion import Bearings, Followers
+
+
+@njit(**FAST)
+def bearing_forces(bearing, u, v, force):
+    """Add to force (k, 3) of the supported nodes −K(u − u_g − rest), and store it; u : (3, n) m, v is without effect.
+
+    u_g is the displacement of the node's twin, or the weighted mean of all nodes that have none.
+    """
+    node, twin, line, weight = bearing.node, bearing.twin, bearing.line, bearing.weight
+    stiffness, rest, own = bearing.stiffness, bearing.rest, bearing.force
+    for c in range(2):
+        mean = 0.0
+        for q in range(node.size):
+            mean += weight[q] * u[c, U(node[q])]
+        for q in range(node.size):
+            beyond = u[c, U(twin[q])] if twin[q] >= 0 else mean
+            f = -stiffness[q, c] * (u[c, U(node[q])] - beyond - rest[q, c])
+            force[line[q], c] += f
+            own[line[q], c] = f
+
+
+is_tie(Bearings, across=bearing_forces)
+
 
 GONE = -2
 """Value in `twin` for a member that has broken off its side."""

@@ -11,10 +11,10 @@ energy of the other elements is conserved as by central differences.
 from numba import get_thread_id, njit
 
 from dembound.kernels import lane_step
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
+from dembound.kernels.compiler.lanes import LANES, at_most, choose, lane, load, splat, store
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, gather, shape_of
-from dembound.kernels.lanes import LANES, at_most, choose, lane, load, splat, store
 from dembound.kernels.law import is_law
 from dembound.kernels.step import kick
 from dembound.kernels.tables import Grid

@@ -10,10 +10,10 @@ With p a translation and q the other component that moves, and w = q_j, less q_i
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import FAST, U
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, load, splat, store
+from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.lane_step import INLINED, blocks_of, kick, next_place, place_of, stray_forces
-from dembound.kernels.lanes import LANES, at_most, bits, choose, load, splat, store
 
 _ALL = np.uint8(2**LANES - 1)
 

@@ -7,8 +7,8 @@ scaled copies of vectors are needed. Sums are added chunk by chunk: they are the
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U
+from dembound.kernels.compiler.separate import in_chunks
 
 
 @njit(**FAST)

@@ -3,10 +3,10 @@
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
-from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, U
-from dembound.kernels.limits import factor_of
+from dembound.kernels.compiler.limits import factor_of
+from dembound.kernels.compiler.separate import in_chunks
+from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.pair_strain import pair, reference_strain
 
 BONDS = 3

@@ -7,12 +7,8 @@ and, where intact bonds keep the geometry of the start, from then on.
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
-from dembound.kernels.began import began_with
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum
-from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, push_pair
-from dembound.kernels.lane_step import INLINED, larger, next_place, place_of
-from dembound.kernels.lanes import (
+from dembound.kernels.compiler.lanes import (
     LANES,
     at_most,
     bits,
@@ -27,7 +23,11 @@ from dembound.kernels.lanes import (
     where_equal,
     with_sign,
 )
-from dembound.kernels.limits import factors_of, limit_of
+from dembound.kernels.compiler.limits import factors_of, limit_of
+from dembound.kernels.compiler.separate import in_chunks
+from dembound.kernels.compiler.start_strain import began_with
+from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, push_pair
+from dembound.kernels.lane_step import INLINED, larger, next_place, place_of
 
 _ALL = np.uint8(2**LANES - 1)
 _INTACT = np.uint8(INTACT)

@@ -3,8 +3,8 @@
 import numpy as np
 from numba import njit
 
-from dembound.kernels.began import began_with
 from dembound.kernels.common import FAST, U
+from dembound.kernels.compiler.start_strain import began_with
 
 
 @njit(**FAST, inline="always")

@@ -9,9 +9,9 @@ from typing import Any
 
 from numba import njit
 
-from dembound.kernels.apart import apart
 from dembound.kernels.calls import given_at, motion_at
 from dembound.kernels.common import FAST, FASTMATH, U
+from dembound.kernels.compiler.separate import apart
 
 _REORDERED: Any = FAST | {"fastmath": FASTMATH | {"reassoc"}}
 """Compiler options of sums whose order of terms depends only on their number."""

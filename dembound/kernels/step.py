@@ -3,8 +3,8 @@
 import numpy as np
 from numba import njit
 
-from dembound.kernels.apart import in_chunks
 from dembound.kernels.common import CHUNKS, FAST, REST, U, column_sum
+from dembound.kernels.compiler.separate import in_chunks
 
 
 @njit(**FAST, inline="always")

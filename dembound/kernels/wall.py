@@ -18,9 +18,9 @@ from typing import Any
 
 from numba import njit, types
 
-from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST, U
-from dembound.kernels.lanes import LANES, load, splat, store
+from dembound.kernels.compiler.lanes import LANES, load, splat, store
+from dembound.kernels.compiler.separate import apart
 from dembound.kernels.law import is_tie
 from dembound.kernels.tables import Repeats, WallTies
 

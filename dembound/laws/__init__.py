@@ -4,9 +4,8 @@ A new law is one file and its class's name in `TYPES`; another package registers
 """
 
 from dembound.laws.elastic import Elastic
-from dembound.laws.law import Law, Moduli, Springs, Stiffness
+from dembound.laws.law import Law, Moduli, Springs, Stiffness, lattice_moduli
 from dembound.laws.linearpbond import LinearPBond
-from dembound.laws.moduli import lattice_moduli
 
 TYPES: tuple[type[Law], ...] = (Elastic, LinearPBond)
 """All laws."""

@@ -1,10 +1,21 @@
-"""The base of all bond laws of disks: stiffnesses and constants of pairs, from the springs of their contacts."""
+"""The base of all bond laws of disks: stiffnesses and constants of pairs."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
+
+
+def lattice_moduli(
+    density: float, p_wave_speed: float, contact_share: float, bond_radius_factor: float
+) -> tuple[float, float]:
+    """Contact modulus E_c and bond modulus Ē_c (Pa) for a P-wave speed along the rows of a square lattice.
+
+    Z eq. 11: E_c = α_c ρ c_p² and Ē_c = (1 − α_c) ρ c_p² / η, with η the bond's radius factor (pb_rmul).
+    """
+    modulus = density * p_wave_speed**2
+    return contact_share * modulus, (1.0 - contact_share) * modulus / bond_radius_factor
 
 
 @dataclass(frozen=True)
@@ -104,7 +115,7 @@ class Law(ABC):
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 15) of pairs, in the columns explained in kernels/contacts.py and, last, kernels/began.py.
+        """Constants (b, 15) of pairs, in columns: see kernels/contacts.py and, last, kernels/compiler/start_strain.py.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The base of all methods for bars."""
+"""The base of all methods for bars, and of those that change when something is about to break."""
 
 from abc import ABC, abstractmethod
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Rod
-from dembound.table import Table
+from dembound.table import Table, quantity
 
 WIDEST = 1000
 """Largest horizon in spacings: the time to compute the step limit grows with its square, to minutes."""
@@ -51,3 +51,19 @@ class Method(Table, ABC):
 
         Returns the name of the method from now on, for reports.
         """
+
+
+class Triggered(Method):
+    """Local springs until a stretch reaches `trigger` of the critical one, peridynamics of some kind from then on."""
+
+    horizon: int = quantity(
+        ..., unit="1", means="count", help="horizon m in spacings, at most half of those in the bar", ge=1, le=WIDEST
+    )
+    trigger: float = quantity(
+        0.9, unit="1", means="share", help="share of the critical stretch at which peridynamics begins", gt=0.0, le=1.0
+    )
+
+    @property
+    def largest_horizon(self) -> int:
+        """The horizon m."""
+        return self.horizon

@@ -5,9 +5,8 @@ from typing import Literal
 import numpy as np
 
 from dembound.methods.bonds import Bonds
-from dembound.methods.method import WIDEST
+from dembound.methods.method import WIDEST, Triggered
 from dembound.methods.rod import Rod
-from dembound.methods.triggered import Triggered
 from dembound.table import quantity
 
 

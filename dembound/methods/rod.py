@@ -12,7 +12,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.laws.peridynamic import families, micromodulus
 from dembound.methods.fracture import AT_ONCE, Fracture
-from dembound.nearest import nearest_number
+from dembound.places import nearest_number
 
 
 @dataclass(frozen=True)

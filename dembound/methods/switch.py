@@ -5,8 +5,8 @@ from typing import Literal
 import numpy as np
 
 from dembound.methods.bonds import Bonds
+from dembound.methods.method import Triggered
 from dembound.methods.rod import Rod
-from dembound.methods.triggered import Triggered
 from dembound.table import quantity
 
 

@@ -1,4 +1,4 @@
-"""The time of the parts of a run."""
+"""The time of the parts of a run, compilation among them."""
 
 import time
 from collections import defaultdict
@@ -7,7 +7,22 @@ from contextlib import contextmanager
 
 from numba.core import event
 
-from dembound.motion import compiling as compiling  # kernels are not compiled without a clock, nor without looking
+from dembound.interrupts import look
+
+
+class _Looks(event.Listener):
+    """Checks before a kernel is compiled or loaded, and before every pass of the compiler."""
+
+    def on_start(self, event: event.Event) -> None:
+        """Look."""
+        look()
+
+    def on_end(self, event: event.Event) -> None:
+        """Do nothing: the next pass or kernel checks."""
+
+
+for _kind in ("numba:compiler_lock", "numba:run_pass"):
+    event.register(_kind, _Looks())
 
 
 class Clock:

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from dembound.boundaries import SIDES, normal_axis
+from dembound.motion.endings import monitored
 from dembound.motion.kind import Plan
-from dembound.motion.silence import monitored
 from dembound.words import Entries
 
 

@@ -1,4 +1,4 @@
-"""The interface of a kind of body to runs, checks and reports; kinds.py names all kinds."""
+"""The interface of a kind of body to runs, checks and reports; kinds.py lists the kinds."""
 
 from __future__ import annotations
 
@@ -6,29 +6,64 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from dembound.casefile import Case
-from dembound.casefile.schema import Schema
+from dembound.casefile.model import Case, Schema
 from dembound.errors import RunError
-from dembound.motion.cracks import Cracks
-from dembound.motion.moving_picture import MovingPicture
-from dembound.motion.part import System
+from dembound.motion.part import Cracks, System
 from dembound.motion.paths import Front, Source
+from dembound.motion.resources import Storage
 from dembound.motion.scene import Scene
-from dembound.motion.stages import Stages
+from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
-from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run, Tracker
-from dembound.motion.trial import Trial
 from dembound.table import Box
 from dembound.words import Entries
 
 if TYPE_CHECKING:
     import meshio
     from matplotlib.figure import Figure
+
+    from dembound.motion.simulation import Simulation
+
+
+class MovingPicture(Protocol):
+    """A body at the snapshots of its record, all with the same axes and colours.
+
+    Attributes
+    ----------
+    times : (k,) of the snapshots, s.
+    width, height : of each frame in inches.
+    words : description of the drawn field.
+    """
+
+    times: np.ndarray
+    width: float
+    height: float
+    words: str
+
+    def caption(self, index: int) -> str:
+        """The time of a frame, and events until then, in words."""
+
+    def frame(self, index: int, pixels: int) -> np.ndarray:
+        """One frame as a picture (rows, pixels, 3) of red, green and blue from 0 to 255."""
+
+
+class Stages:
+    """Receives the stages of a run. This class keeps nothing, so all stages are computed."""
+
+    def finished(self, name: str) -> Arrays | None:
+        """The arrays that `finish` has received for a stage, maybe in another run; None if it has to be computed."""
+        return None
+
+    def begin(self, name: str, simulation: Simulation) -> None:
+        """Called before the first step of a stage; may set the simulation to a state reached before."""
+
+    def finish(self, name: str, arrays: Arrays) -> None:
+        """Receives the results of a completed stage."""
+
 
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)

@@ -2,13 +2,50 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from dembound.kernels.tables import Followers
-from dembound.motion.cracks import Cracks, joined
-from dembound.motion.state import Arrays, State, within
+from dembound.kernels.tables.motion import Followers
+from dembound.motion.state import Arrays, State, arrays_of_owner
+
+MANY = 10
+"""Largest number of broken bonds of a run without a note that it is one draw of many."""
+
+
+@dataclass(frozen=True)
+class Cracks:
+    """Bonds that broke, k of them, in the order in which they broke.
+
+    step (k,) int64; pair (k, 2) int64 nodes; position (k, 2) m, the middle of the pair in that step; shear (k,) bool,
+    True for shear, False for tension.
+    """
+
+    step: np.ndarray
+    pair: np.ndarray
+    position: np.ndarray
+    shear: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.step)
+
+    def among(self, kept: np.ndarray) -> "Cracks":
+        """The cracks between two of the nodes kept (m,), ascending, with the numbering of these nodes."""
+        inside = np.isin(self.pair, kept).all(axis=1)
+        pair = np.searchsorted(kept, self.pair[inside])
+        return Cracks(self.step[inside], pair, self.position[inside], self.shear[inside])
+
+
+NO_CRACKS = Cracks(np.zeros(0, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 2)), np.zeros(0, np.bool_))
+"""An empty list."""
+
+
+def joined(lists: Sequence[Cracks]) -> Cracks:
+    """Several lists of cracks as one, in the order of their steps."""
+    columns = [np.concatenate([getattr(part, field.name) for part in [NO_CRACKS, *lists]]) for field in fields(Cracks)]
+    order = np.argsort(columns[0], kind="stable")
+    return Cracks(*(column[order] for column in columns))
 
 
 class Part(ABC):
@@ -228,4 +265,4 @@ class System:
         self.load, self.steady = saved["load"].copy(), saved["steady"].copy()
         self.work_before = float(saved["before"])
         for each in self._remembering:
-            each.restore(within(saved, each.name))
+            each.restore(arrays_of_owner(saved, each.name))

@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries.sides import plane_of
+from dembound.boundaries.edge import plane_of
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile import Case
-from dembound.motion.beside import Beside
-from dembound.motion.between import Between
-from dembound.motion.layout import Layout
 from dembound.motion.part import System
+from dembound.motion.recorded_nodes import Beside, Between
+from dembound.motion.state import Layout
 
 RUNAWAY = 1e4
 """Factor by which the speed of a node may exceed that of all waves together: resonance gives factors of ten."""

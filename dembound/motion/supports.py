@@ -4,7 +4,7 @@ import numpy as np
 
 from dembound.boundaries.support import Supports
 from dembound.kernels import tables
-from dembound.kernels.sums import add_driven
+from dembound.kernels.common import add_driven
 from dembound.motion.part import Tie
 from dembound.motion.scene import Scene
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from dembound.errors import PackingError
 from dembound.interrupts import look
-from dembound.packings.brick import contact_stress, contact_vectors
-from dembound.packings.contacts import listed, near_pairs, wrap
+from dembound.packings.brick import contact_stress, contact_vectors, listed, near_pairs, wrap
 
 SKIN = 0.5  # largest gap in neighbour lists over the mean radius
 AT_ONCE = 50_000_000  # disks and pairs times steps between two looks for a request to end, some 0.2 s

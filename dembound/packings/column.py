@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.errors import PackingError
-from dembound.nearest import nearest
 from dembound.packings.brick import Brick
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, Column, tile
+from dembound.places import nearest
 
 TYPED = 1e-9
 """Part of a height by which places may be beyond its ends."""

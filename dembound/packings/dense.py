@@ -8,8 +8,7 @@ import numpy as np
 
 from dembound.errors import PackingError
 from dembound.packings.bed import Bed
-from dembound.packings.brick import Brick, contact_stress, contact_vectors
-from dembound.packings.contacts import listed, strip_order
+from dembound.packings.brick import Brick, contact_stress, contact_vectors, listed, strip_order
 
 LOGGER = logging.getLogger(__name__)
 

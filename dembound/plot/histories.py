@@ -1,4 +1,4 @@
-"""Motion and stress of the monitors against time (Z figs 3, 7, 8, 14, 16; L figs 6, 7)."""
+"""Motion and stress of the monitors against time, record sections and hodographs."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,11 +8,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from dembound.casefile.disks.load import FREE_FIELD
 from dembound.errors import CaseError
 from dembound.plot.style import line_style, measured_once, new_figure, outside_legend, stacked_height, styled, time_unit
-from dembound.results.estimates import Band, read_bands
-from dembound.results.histories import FREE_FIELD, SCALES, UNITS, MonitorRecord, Quantity, read_histories
-from dembound.results.reader import COMPONENTS, record_names
+from dembound.results.histories import SCALES, UNITS, Band, MonitorRecord, Quantity, read_bands, read_histories
+from dembound.results.reader import COMPONENTS, open_record, record_names
 
 Component = Literal["x", "y", "both", "rotation"]
 
@@ -193,3 +193,103 @@ def draw_band(
     if band.corrected is not None:
         corrected = band.corrected[:, column] / units[1]
         panel.plot(at, corrected, label=f"{label}, without the error of its sides", **CORRECTED)
+
+
+SPREAD = 0.9
+"""Height of the largest value over the mean distance between neighbours."""
+
+
+@styled
+def plot_section(
+    runs: Sequence[Path],
+    component: Component | None = None,
+    quantity: Quantity = "velocity",
+    monitors: Sequence[str] | None = None,
+) -> Figure:
+    """Histories of monitors, each drawn at its distance from the first one, with the same scale, which is printed.
+
+    The names of the monitors stand beside their histories on the right, at the distances in the first run. Distances
+    are those of the true positions of their particles. Parameters as of `plot_histories`; the order of the monitors is
+    free, distances begin at the first of them.
+
+    Raises CaseError as `plot_histories`, with fewer than two monitors, and for both components.
+    """
+    if component == "both":
+        raise CaseError(["--component: is both; a section shows one"])
+    histories = [read_histories(path, quantity) for path in runs]
+    shown = chosen_monitors(runs, histories, monitors)
+    common = [name for name in shown if all(name in run for run in histories)]
+    if len(common) < 2:
+        raise CaseError([f"--monitor: a section needs two monitors that all runs have, here are {len(common)}"])
+    those = [{name: run[name] for name in common} for run in histories]
+    (column,) = [0] if quantity == "stress" else shown_columns(those, component)
+    unit = time_unit(max(history.time.max(initial=0.0) for run in those for history in run.values()))
+    distances = [_distances(path, common) for path in runs]
+    largest = max(float(np.abs(h.values[:, column]).max(initial=0.0)) for run in those for h in run.values())
+    gap = max(float(np.ptp(each)) for each in distances) / (len(common) - 1) or 1.0
+    scale = SPREAD * gap / (largest or 1.0)
+    figure = new_figure(8.0, 3.5 + 0.4 * len(common))
+    panel = figure.subplots()
+    for index, (run_name, run, along) in enumerate(zip(record_names(runs), those, distances, strict=True)):
+        style: dict[str, Any] = line_style(index)
+        for (name, history), distance in zip(run.items(), along, strict=True):
+            raised = distance + scale * history.values[:, column]
+            panel.plot(history.time / unit.seconds, raised, label=run_name, gid=name, linewidth=0.9, **style)
+    for name, distance in zip(common, distances[0], strict=True):
+        beside = (1.0, distance), (4.0, 0.0), ("axes fraction", "data"), "offset points"
+        panel.annotate(name, *beside, va="center", fontsize=8)
+    panel.set_xlabel(unit.label)
+    where = "" if quantity == "stress" else f" {direction(column)}"
+    panel.set_ylabel(f"distance from {common[0]} (m), {quantity}{where} upwards", fontsize=9)
+    size = f"{gap:.3g} m upwards is {gap / scale:.3g} {UNITS[quantity][column]}"
+    panel.set_title(size, loc="left", fontsize=9)
+    figure.suptitle(f"Section of the {quantity} at the monitors", fontsize=11)
+    outside_legend(figure, [panel], columns=3)
+    return figure
+
+
+def _distances(path: Path, names: Sequence[str]) -> np.ndarray:
+    """Distances (k,) in m of monitors from the first of them."""
+    with open_record(path) as file:
+        places = np.array([file[f"histories/{name}"].attrs["position"] for name in names])
+    distances: np.ndarray = np.hypot(*(places - places[0]).T)
+    return distances
+
+
+ACROSS = 3
+"""Number of panels side by side."""
+
+
+@styled
+def plot_hodograph(
+    runs: Sequence[Path], quantity: Quantity = "velocity", monitors: Sequence[str] | None = None
+) -> Figure:
+    """Motion along y against motion along x, a panel for each monitor with equal scales; a dot marks the end.
+
+    Parameters and errors as of `plot_histories`; also raises CaseError for stresses.
+    """
+    if quantity == "stress":
+        raise CaseError(["--quantity: is stress; a hodograph is of a motion"])
+    histories = [read_histories(path, quantity) for path in runs]
+    shown = chosen_monitors(runs, histories, monitors)
+    across = min(ACROSS, len(shown))
+    down = -(-len(shown) // across)
+    figure = new_figure(1.0 + 3.4 * across, 1.0 + 3.2 * down)
+    panels = figure.subplots(down, across, squeeze=False)
+    for panel in panels.flat[len(shown) :]:
+        panel.set_visible(False)
+    unit = UNITS[quantity][0]
+    for name, panel in zip(shown, panels.flat, strict=False):
+        for index, (run_name, run) in enumerate(zip(record_names(runs), histories, strict=True)):
+            if name in run:
+                x, y = run[name].values[:, :2].T
+                style = line_style(index)
+                panel.plot(x, y, label=run_name, gid=name, linewidth=0.9, **style)
+                panel.plot(x[-1:], y[-1:], "o", color=style["color"])
+        panel.set_aspect("equal", adjustable="datalim")
+        panel.set_title(monitor_title(name, [run[name] for run in histories if name in run]), loc="left", fontsize=8)
+        panel.set_xlabel(f"{quantity} along x ({unit})", fontsize=8)
+        panel.set_ylabel(f"{quantity} along y ({unit})", fontsize=8)
+    figure.suptitle(f"Paths of the {quantity} at the monitors, dots at their ends", fontsize=11)
+    outside_legend(figure, list(np.ravel(panels)), columns=3)
+    return figure

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from dembound.plot.field import Field, read_disks
 from dembound.plot.scene import draw_panel
 from dembound.plot.style import COLOURS, Powers, new_figure, outside_legend, styled
-from dembound.results.loading_curve import LoadingCurve, TestName
 from dembound.results.reader import cracks_until, open_record, snapshots_of
+from dembound.results.recording import LoadingCurve, TestName
 
 MEGA = 1e6
 

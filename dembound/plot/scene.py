@@ -13,9 +13,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.plot.continuum import draw_continuum
-from dembound.plot.disks import Window, draw_field
+from dembound.plot.disks import Window, draw_field, draw_outlines
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
-from dembound.plot.outlines import draw_outlines
 from dembound.plot.style import FEWEST_NUMBERS, Powers, measured_once, new_figure, outside_legend, styled
 from dembound.results.reader import open_record
 

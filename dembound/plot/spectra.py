@@ -25,9 +25,16 @@ from dembound.plot.histories import (
 from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, styled
 from dembound.results.histories import UNITS, MonitorRecord, Quantity, read_histories
 from dembound.results.reader import record_names
-from dembound.spectra.fourier import fourier_spectrum, shown_frequencies, smoothed
-from dembound.spectra.response import SAMPLES_PER_PERIOD, response_spectrum, slope, usual_periods
-from dembound.spectra.transfer import transfer_function
+from dembound.spectra import (
+    SAMPLES_PER_PERIOD,
+    fourier_spectrum,
+    response_spectrum,
+    shown_frequencies,
+    slope,
+    smoothed,
+    transfer_function,
+    usual_periods,
+)
 from dembound.words import with_unit
 
 DECADES = 1e-4

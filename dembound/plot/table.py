@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from dembound.results.csv_files import write_csv
+from dembound.results.text_files import write_csv
 
 Column = tuple[str, np.ndarray]
 """A head with its unit, and the values (k,) below it."""

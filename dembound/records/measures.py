@@ -6,7 +6,7 @@ import numpy as np
 
 from dembound.records.channel import Channel
 from dembound.records.processing import Motion, Processing, before_motion, windowed
-from dembound.spectra.fourier import fourier_spectrum, shown_frequencies, smoothed
+from dembound.spectra import fourier_spectrum, shown_frequencies, smoothed
 from dembound.waves.unit_names import STANDARD_GRAVITY
 
 DURATION = (0.05, 0.95)

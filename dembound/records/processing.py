@@ -1,16 +1,14 @@
-"""From a measured channel to a motion that a case takes: baseline, tapers, filters, integration, scale.
+"""From a measured channel to a motion that a case takes, and to the file of a wave."""
 
-Each step is one function, and `processed` lists in words what it has done. Between samples a motion is the band-limited
-function through them, so that integrals and derivatives are those of its Fourier series.
-"""
-
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.files import replacing
 from dembound.gauge.baseline import FEWEST_QUIET, quiet_samples
 from dembound.gauge.filters import Filters
 from dembound.records.channel import Channel
@@ -244,3 +242,21 @@ def _factor(acceleration: np.ndarray, settings: Processing) -> tuple[float, list
     if peak == 0.0:
         raise CaseError(["--pga: the record has no motion to scale"])
     return settings.peak / peak, [f"scale: by {settings.peak / peak:.6g}, to a PGA of {settings.peak:g} m/s²"]
+
+
+HEAD = "time (s),velocity (m/s)"
+"""Line above the numbers."""
+
+
+def write_wave(path: Path, motion: Motion, origin: Sequence[str]) -> None:
+    """Write the velocity of a motion as CSV, completely or not at all, times counted from its first sample.
+
+    origin : lines on where it is from; they and what was done are comments at the top. Raises FileNotFoundError if the
+    folder of the path does not exist.
+    """
+    lines = [*origin, *motion.steps, f"times: from the first sample, {motion.time[0]:g} s of the record"]
+    head = "".join(f"# {line}\n" for line in lines) + HEAD
+    times = motion.time_step * np.arange(len(motion.time))
+    columns = np.column_stack([times, motion.velocity + 0.0])
+    with replacing(path) as file:
+        np.savetxt(file, columns, "%.9g", ",", header=head, comments="", encoding="utf-8")

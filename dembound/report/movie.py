@@ -14,9 +14,9 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.files import new_folder, replacing, require_folder
 from dembound.kinds import kind_of_record
-from dembound.motion.moving_picture import MovingPicture
+from dembound.motion.kind import MovingPicture
+from dembound.plot.moving import TimeLine
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
-from dembound.plot.time_line import TimeLine
 from dembound.results.histories import monitor_names
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from dembound.files import require_folder, write_text
 from dembound.plot.energy import plot_energy
 from dembound.plot.field import evenly_chosen
 from dembound.plot.histories import largest_values, plot_histories
-from dembound.plot.linear_spectra import plot_spectra
+from dembound.plot.record import plot_spectra
 from dembound.report import tables
 from dembound.report.pictures import Picture, picture_of, uri_of
 from dembound.report.runs import ReportedRun, read_runs

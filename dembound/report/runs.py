@@ -12,7 +12,7 @@ from dembound.kinds import kind_of_record
 from dembound.motion.kind import Kind
 from dembound.results.reader import record_names, understood
 from dembound.results.results import Results
-from dembound.results.summary_file import read_summary
+from dembound.results.summary import read_summary
 
 
 @dataclass(frozen=True)

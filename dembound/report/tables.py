@@ -9,7 +9,7 @@ from typing import Any
 from dembound.plot.continuum import GROUP
 from dembound.plot.energy import BAR_COLUMNS, COLUMNS, PREFIXES, power_of_unit
 from dembound.report.runs import ReportedRun
-from dembound.results.estimates import KEY, entries
+from dembound.results.histories import KEY, entries
 from dembound.results.reader import laws_in_words, open_record
 from dembound.results.summary import end_in_words
 from dembound.words import Entries, percent
@@ -27,7 +27,7 @@ class Table:
     rows: Sequence[Sequence[str]]
 
 
-def beside(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedRun], Entries]) -> Table:
+def side_by_side(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedRun], Entries]) -> Table:
     """A table with a column for each run, and a row for each entry that any of them has."""
     found = [dict(entries(run)) for run in runs]
     names = dict.fromkeys(name for each in found for name in each)
@@ -37,7 +37,7 @@ def beside(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedR
 
 def overview(runs: Sequence[ReportedRun]) -> Table:
     """Table of the runs: case, contents, and how each run ended."""
-    return beside("Runs", runs, _overview)
+    return side_by_side("Runs", runs, _overview)
 
 
 def _overview(run: ReportedRun) -> Entries:
@@ -182,7 +182,7 @@ FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
 
 def energies(runs: Sequence[ReportedRun]) -> Table | None:
     """The last entries of the energy ledgers; None without summaries."""
-    return _or_none(beside("Energy at the end", runs, _energies))
+    return _or_none(side_by_side("Energy at the end", runs, _energies))
 
 
 def _energies(run: ReportedRun) -> Entries:
@@ -207,7 +207,7 @@ def _joules(energy: float, run: ReportedRun) -> str:
 
 def time_split(runs: Sequence[ReportedRun]) -> Table | None:
     """Seconds by part of each run, rate and RAM; None without summaries."""
-    return _or_none(beside("Where the time went", runs, _time))
+    return _or_none(side_by_side("Where the time went", runs, _time))
 
 
 def _time(run: ReportedRun) -> Entries:
@@ -224,7 +224,7 @@ def _time(run: ReportedRun) -> Entries:
 
 def versions(runs: Sequence[ReportedRun]) -> Table:
     """The version and the seed of each run, and from where it was resumed."""
-    return beside("Versions", runs, _version)
+    return side_by_side("Versions", runs, _version)
 
 
 def _version(run: ReportedRun) -> Entries:
@@ -237,7 +237,7 @@ def _version(run: ReportedRun) -> Entries:
 
 def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
     """Estimated errors, RMS over RMS, of the runs that have them; None without any."""
-    return _or_none(beside("Estimated errors", runs, _estimated))
+    return _or_none(side_by_side("Estimated errors", runs, _estimated))
 
 
 def _estimated(run: ReportedRun) -> Entries:

@@ -61,8 +61,8 @@ from dembound.motion.kind import Stage
 from dembound.motion.scene import Scene
 from dembound.motion.trackers import Run
 from dembound.results.datasets import describe, make, write
+from dembound.results.folder import source_of
 from dembound.results.reader import finite, snapshots_of
-from dembound.results.source import source_of
 from dembound.version import __version__
 
 if TYPE_CHECKING:

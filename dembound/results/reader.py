@@ -13,8 +13,14 @@ from dembound.errors import CaseError, DemboundError, NumberMissingError, Record
 from dembound.interrupts import look
 from dembound.machine import address_limit
 from dembound.results.committed import CommittedFile, log_of
-from dembound.results.damage import damage_in_words, is_of_checksum, require_finite, require_places, require_readable
-from dembound.results.datasets import datasets_of
+from dembound.results.datasets import (
+    damage_in_words,
+    datasets_of,
+    is_of_checksum,
+    require_finite,
+    require_places,
+    require_readable,
+)
 from dembound.results.structure import Members, require_structure
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.motion.cracks import Cracks, joined
 from dembound.motion.energy import Entry, Ledger, SideEntry
 from dembound.motion.kind import Stage, StalledError
+from dembound.motion.part import Cracks, joined
 from dembound.motion.trackers import Run
 from dembound.results.committed import FORMAT, CommittedFile
 from dembound.results.datasets import datasets_of, describe, extend, text, write

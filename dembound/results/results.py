@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from dembound.errors import RecordError
-from dembound.results.named import Named, missing
+from dembound.results.histories import Named, missing
 from dembound.results.reader import (
     Snapshots,
     datasets_in,
@@ -22,7 +22,7 @@ from dembound.results.reader import (
     state_of,
     text_of,
 )
-from dembound.results.summary_file import Entries, read_summary
+from dembound.results.summary import Entries, read_summary
 
 
 class _Record:

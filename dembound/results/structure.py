@@ -14,10 +14,10 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from dembound.casefile.output import MOST_SNAPSHOTS
+from dembound.casefile.tables import MOST_SNAPSHOTS
 from dembound.errors import RecordError
 from dembound.interrupts import look
-from dembound.results.source import DIGEST, PLACE
+from dembound.results.folder import DIGEST, PLACE
 
 if TYPE_CHECKING:
     import h5py

@@ -102,7 +102,7 @@ def _why_moving(scene: Scene) -> str:
     )
 
 
-def of_supplied(energy: float, supplied: float) -> str:
+def share_of_supplied(energy: float, supplied: float) -> str:
     """An energy in words, as a share of the supplied energy, which may be 0; both in one unit."""
     return f"{percent(energy / supplied)} of the supplied energy" if supplied > 0.0 else "energy though none came in"
 
@@ -123,7 +123,7 @@ def energy_warnings(scene: Scene, energy: Mapping[str, float], file: h5py.File) 
         key = "safety" if scene.case.run.time_step == "auto" else "time_step"
         yield (
             f"run.{key}: contacts that open and close within a step have {'taken' if closing > 0.0 else 'added'} "
-            f"{of_supplied(abs(closing), supplied)}; shorter steps change it less"
+            f"{share_of_supplied(abs(closing), supplied)}; shorter steps change it less"
         )
     if (error := energy["relative_error"]) > UNEXPLAINED:
         yield f"energy.error: {percent(error)} of the supplied energy is unaccounted for; take shorter steps"

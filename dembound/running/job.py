@@ -8,32 +8,69 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from dembound.casefile import Case
+import numpy as np
+
+from dembound.casefile.model import Case
 from dembound.errors import CaseError, RecordError, RunError
 from dembound.interrupts import Interrupts, put_off
 from dembound.kinds import kind_of
 from dembound.motion.clock import Clock
 from dembound.motion.kind import Beginning, Kind, Plan, StalledError
 from dembound.motion.simulation import Simulation
-from dembound.motion.trackers import Run
+from dembound.motion.trackers import Run, Tracker
 from dembound.results.checkpoint import FILE as CHECKPOINT
-from dembound.results.checkpoint import Checkpoints, facts_of
+from dembound.results.checkpoint import FOLDER as STAGES
+from dembound.results.checkpoint import Checkpoints, KeptStages, facts_of
 from dembound.results.folder import Folder
-from dembound.results.json_files import write_json
-from dembound.results.kept_stages import FOLDER as STAGES
-from dembound.results.kept_stages import KeptStages
 from dembound.results.reader import open_record, trust, understood
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
+from dembound.results.text_files import write_json
 from dembound.results.vtk import write_paraview
 from dembound.results.warnings import never_past_peak, never_silent
-from dembound.running.disk_space import bytes_left, space_in_words, space_warnings
-from dembound.running.planning import about, plan, require_ready, simulation_of, warnings_before
-from dembound.running.progress import Progress, Reports
-from dembound.running.recorded import require_replaceable
-from dembound.running.shared import Shared
+from dembound.running.planning import (
+    about,
+    bytes_left,
+    plan,
+    require_ready,
+    simulation_of,
+    space_in_words,
+    space_warnings,
+    warnings_before,
+)
+from dembound.running.recorded import Shared, require_replaceable
 from dembound.running.unfinished import Unfinished, find_unfinished
+
+
+class Progress:
+    """Receives progress and warnings of a run; the default ignores them."""
+
+    def warned(self, message: str) -> None:
+        """A warning about a probable mistake, issued before the first step or when the record is complete."""
+
+    def settling(self, steps: int, ratio: float, stage: str) -> None:
+        """A static stage of this name has done this many steps and has reached this force ratio."""
+
+    def running(self, run: Run, steps: int) -> None:
+        """A block of steps is done; steps: the number in the whole run."""
+
+
+class Reports(Tracker):
+    """Reports to the progress after every block of steps; steps : the number in the whole run."""
+
+    name = "reports"
+
+    def __init__(self, progress: Progress, steps: int) -> None:
+        self._progress, self._steps = progress, steps
+
+    def handle(self, run: Run) -> None:
+        """Do nothing: reports are never due at a step."""
+
+    def observe(self, run: Run, record: np.ndarray) -> None:
+        """Report."""
+        self._progress.running(run, self._steps)
+
 
 SECTIONS = ("import", "compile", "build", "settle", "step", "record", "export", "pictures")
 """The parts of a run whose time is measured, in the order of the summary."""

@@ -1,26 +1,30 @@
-"""A case before its run: its scene, the time step, the simulation in its first state."""
+"""A case before its run: its scene, the time step, the first state, the size of its results."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from dembound.casefile import Case
 from dembound.casefile.magnitudes import waves_used
+from dembound.casefile.model import Case
 from dembound.casefile.unlikely import unlikely
 from dembound.errors import CaseError, DemboundError
-from dembound.kinds import checked, kind_of
+from dembound.kinds import kind_of
+from dembound.machine import disk_free
 from dembound.motion.clock import Clock
-from dembound.motion.energy import Ledger
+from dembound.motion.endings import Peak, Silence, monitored, peak_rule, silent_rule
+from dembound.motion.energy import Entry, Ledger, SideEntry
 from dembound.motion.kind import Beginning, Kind, Plan
 from dembound.motion.paths import first_arrivals
-from dembound.motion.peak import Peak, peak_rule
+from dembound.motion.resources import in_words
 from dembound.motion.scene import Scene
-from dembound.motion.silence import Silence, monitored, silent_rule
 from dembound.motion.simulation import Simulation
-from dembound.results.kept_stages import FOLDER as STAGES
-from dembound.results.kept_stages import settled_state
+from dembound.results.checkpoint import FOLDER as STAGES
+from dembound.results.checkpoint import settled_state
+from dembound.schemas import checked
 
 MOST_STEPS = 1e11
 """Largest number of steps. Even a few nodes would take more than a day: probably a mistake in a time."""
@@ -206,3 +210,69 @@ def steps_between_entries(planned: Plan) -> int:
     """Steps from one entry of the energy ledger to the next."""
     interval = planned.scene.case.output.energy_interval
     return max(1, round(interval / planned.time_step) if interval > 0.0 else planned.regular_steps // ENTRIES)
+
+
+ALWAYS = 1e6
+"""Bytes of pictures, the summary, and the first chunks of datasets that grow."""
+
+MOTION = 8 + 24 + 24
+"""Bytes of a sample of a monitor: time, displacement and velocity; a side has a force in place of the velocity."""
+
+
+def results_bytes(planned: Plan) -> dict[str, float]:
+    """Estimated bytes of the results of a run, by the key of the case that determines them.
+
+    While a checkpoint is written, there are two of them; they contain the ledger. A run that is continued to a later
+    time keeps the interval of its snapshots.
+    """
+    kind, scene, case = planned.kind, planned.scene, planned.scene.case
+    whole, stepped = kind.storage(scene), kind.storage(planned.stepped)
+    samples = planned.steps / max(1, round(case.output.history_interval / planned.time_step))
+    row = len(scene.monitors) * (MOTION + 8 * (scene.record_width > 6))
+    entry = 8 * (len(fields(Entry)) + len(SideEntry._fields) * len(scene.edges))
+    snapshots = min(case.output.snapshots, planned.regular_steps) * planned.steps / planned.regular_steps
+    snapshots += bool(snapshots and kind.stage_names(scene))
+    copies = 2 if case.run.checkpoint > 0.0 else 0
+    settled = len(kind.stage_names(scene)) if copies and kind.stages_from(case) is None else 0
+    return {
+        "output.snapshots": snapshots * whole.snapshot,
+        "output.history_interval": samples * row,
+        "output.side_interval": planned.steps / steps_between_samples(planned) * len(scene.edges) * (MOTION - 8),
+        "output.energy_interval": planned.steps / steps_between_entries(planned) * entry * (1 + copies),
+        "run.checkpoint": (copies + settled) * stepped.checkpoint,
+        "": ALWAYS + whole.header,
+    }
+
+
+def bytes_left(planned: Plan, written: float = 0.0) -> dict[str, float]:
+    """Bytes still to be written by a run, given the written bytes; all keys have an equal share."""
+    sizes = results_bytes(planned)
+    share = max(0.0, 1.0 - written / sum(sizes.values()))
+    return {key: share * size for key, size in sizes.items()}
+
+
+def space_in_words(planned: Plan, results: Path, written: float = 0.0) -> str:
+    """The size of the results of a run as text, less the bytes already written, and the free space for them."""
+    size = in_words(sum(bytes_left(planned, written).values()))
+    return f"about {size}{_more(written)} of results{_free(results)}"
+
+
+def _more(written: float) -> str:
+    return " more" if written > 0.0 else ""
+
+
+def _free(results: Path) -> str:
+    free = disk_free(results)
+    return "" if free is None else f"; the disk has {in_words(free)} free"
+
+
+def space_warnings(planned: Plan, results: Path, written: float = 0.0) -> Iterator[str]:
+    """A warning about results whose remaining bytes exceed the free space of their disk."""
+    sizes, free = bytes_left(planned, written), disk_free(results)
+    need = sum(sizes.values())
+    if free is not None and need > free:
+        key = max(filter(None, sizes), key=lambda name: sizes[name])
+        yield (
+            f"{key}: the results take about {in_words(need)}{_more(written)}, "
+            f"{in_words(sizes[key])} of them by this key; the disk has {in_words(free)} free"
+        )

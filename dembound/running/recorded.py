@@ -1,22 +1,73 @@
-"""The case of a record: everything that is needed to run it again."""
+"""The case of a record, and results shared by the runs of a batch."""
 
-from collections.abc import Mapping
-from dataclasses import replace
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tomli_w
+from filelock import Timeout
 
-from dembound.casefile import Case
-from dembound.casefile.toml import parsed
+from dembound.casefile.model import Case
+from dembound.casefile.reader import parsed
 from dembound.errors import CaseError, DemboundError, RecordError
-from dembound.kinds import kind_of, loads
-from dembound.results.folder import Folder, problem_of
+from dembound.files import lock_of, make_folder
+from dembound.interrupts import look
+from dembound.kinds import kind_of
+from dembound.results.folder import DIGEST, PLACE, Folder, file_of, problem_of, recorded_source
 from dembound.results.reader import open_record, text_of
-from dembound.results.source import DIGEST, PLACE, file_of, recorded_source
+from dembound.schemas import loads
 
 if TYPE_CHECKING:
     import h5py
+
+LOOK = 0.5
+"""Seconds between two checks for a request to end, while another run computes a stage."""
+
+
+@dataclass(frozen=True)
+class Shared:
+    """Results that a run shares with others; by default none.
+
+    Attributes
+    ----------
+    settled : folder of the stages before the runs, in a folder for each set of keys on which they depend. The first run
+    that needs a stage computes it, others wait for it.
+    """
+
+    settled: Path | None = None
+
+    def stages(self, keys: Mapping[str, Any]) -> Path | None:
+        """The folder of the stages that depend on these keys; None if they are not shared, or there are none."""
+        if self.settled is None or not keys:
+            return None
+        text = json.dumps(keys, sort_keys=True)
+        return self.settled / hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    @contextmanager
+    def settling(self, keys: Mapping[str, Any]) -> Iterator[None]:
+        """Inside, no other run computes the stages that depend on these keys.
+
+        Raises Stopped if this run is requested to end.
+        """
+        folder = self.stages(keys)
+        if folder is None:
+            yield
+            return
+        make_folder(folder.parent)
+        lock = lock_of(folder.with_suffix(".lock"))
+        while not lock.is_locked:
+            look()
+            with suppress(Timeout):
+                lock.acquire(timeout=LOOK)
+        try:
+            yield
+        finally:
+            lock.release()
+
 
 RECORDED = ("origin", "kind", PLACE, DIGEST)
 """Attributes of a record that identify its case."""

@@ -1,4 +1,4 @@
-"""Runs that can be continued: from a folder of results to its case and its last checkpoint."""
+"""Runs that can be continued, and results that a run replaces: from a folder to its case and its last checkpoint."""
 
 import json
 import tomllib
@@ -10,22 +10,22 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import ConfigDict, Field
 
-from dembound.casefile import Case
-from dembound.casefile.run import ENDING
+from dembound.casefile.model import Case
+from dembound.casefile.tables import ENDING
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.files import copy, make_folder, require_plain
-from dembound.kinds import load, loads
 from dembound.motion.scene import Scene
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
-from dembound.results.damage import require_readable
-from dembound.results.folder import PARTIAL, Folder, with_name
-from dembound.results.json_files import checked
-from dembound.results.kept_stages import FOLDER as STAGES
+from dembound.results.checkpoint import FILE as CHECKPOINT
+from dembound.results.checkpoint import FOLDER as STAGES
+from dembound.results.datasets import require_readable
+from dembound.results.folder import DIGEST, PARTIAL, PLACE, Folder, recorded_source, with_name
 from dembound.results.new_record import require_laid_out
 from dembound.results.reader import increasing, open_record, text_of, understood
-from dembound.results.source import DIGEST, PLACE, recorded_source
+from dembound.results.text_files import checked
 from dembound.running.recorded import case_of, inputs_of, silent_of
+from dembound.schemas import load, loads
 from dembound.waves.file_wave import read_text
 
 MOST_KEYS = 5
@@ -264,3 +264,23 @@ def _lasting(case: Case, until: float) -> Case:
     data = tomllib.loads(case.text)
     data["run"] = {key: value for key, value in data["run"].items() if key not in ENDING} | {"duration": until}
     return loads(tomli_w.dumps(data), case.folder, case.name, case.files)
+
+
+def replaced_in_words(folder: Folder, case: Case) -> Iterator[str]:
+    """A line for complete results that a run of the case will replace, and one for a stopped run that it discards."""
+    if (folder.final / "run.h5").is_file():
+        others = _other_keys(folder.final / "run.h5", case)
+        yield f"replaces {folder.final}{others} when it is complete; to keep both, stop it and give --name or --output"
+    if (folder.partial / CHECKPOINT).is_file():
+        yield f"begins anew, without the stopped run in {folder.partial}, which dembound resume would have continued"
+
+
+def _other_keys(record: Path, case: Case) -> str:
+    """The keys in which the case of a record differs, in brackets; empty if it cannot be read."""
+    try:
+        with open_record(record) as file:
+            there = json.loads(text_of(file.attrs["keys"]))
+    except DemboundError:
+        return ""
+    changed = [line.partition(":")[0] for line in differences(there, json.loads(json.dumps(case.keys)))]
+    return f" (with another {listed(changed)})" if changed else " (of the same case)"

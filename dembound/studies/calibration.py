@@ -28,14 +28,13 @@ import numpy as np
 from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import factors_in, homogenised_beta, require_dashpots_alone
-from dembound.disks.reduced.reduction import reduced
+from dembound.disks.reduced import reduced
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
-from dembound.studies.returned import returned
 from dembound.studies.strip import (
     AFTER,
     calibration_pulse,
@@ -43,6 +42,7 @@ from dembound.studies.strip import (
     in_one_layer,
     in_strip,
     linear_medium,
+    returned,
     short_strip,
 )
 from dembound.version import __version__

@@ -1,8 +1,8 @@
 """Deconvolution: the incident wave below the ground of a case that moves its surface as a record.
 
 What runs up below the free surface is half of its motion, early by the way up; from what runs up at the plane where the
-wave enters, the incident wave follows as in disks/within.py: in the same ground, or in the rock of the side. Undamped
-ground only delays and adds, so that this is computed for all frequencies of the record. Waves that damped ground
+wave enters, the incident wave follows as in disks/incident_wave.py: in the same ground, or in the rock of the side.
+Undamped ground only delays and adds, so that this is computed for all frequencies of the record. Waves that damped ground
 weakens on their way up must be larger below, the more so the higher their frequency: beyond the band of the record,
 where it has little but noise, they are not magnified further than within it.
 """
@@ -17,16 +17,16 @@ import tomli_w
 
 from dembound.boundaries import Motion
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.motions_of_waves import not_level
+from dembound.casefile.disks.incident import not_level
 from dembound.casefile.model import as_kind
-from dembound.casefile.toml import parsed
+from dembound.casefile.reader import parsed
+from dembound.disks.incident_wave import Level, Modulus
 from dembound.disks.scene import build
-from dembound.disks.within import Level, Modulus
 from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.records.processing import Motion as Recorded
 from dembound.records.processing import integrated
-from dembound.waves.spectrum import FADED, amplitude_spectrum, faded_frequency
+from dembound.waves.wave import FADED, amplitude_spectrum, faded_frequency
 
 SIDE = "bottom"
 """The side at which the wave enters."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from dembound.bar.lattice import even_lattices
+from dembound.bar.linear_steps import even_lattices
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step
 from dembound.casefile import Case
@@ -23,7 +23,7 @@ from dembound.methods.bonds import Bonds
 from dembound.methods.method import WIDEST
 from dembound.methods.rod import Rod
 from dembound.motion.simulation import Simulation
-from dembound.results.csv_files import write_csv
+from dembound.results.text_files import write_csv
 
 COLUMNS = (
     "horizon",

@@ -22,8 +22,8 @@ from dembound.errors import RunError
 from dembound.motion.energy import Ledger
 from dembound.motion.part import Part
 from dembound.motion.simulation import Simulation
+from dembound.motion.stability import Trial
 from dembound.motion.trackers import Every, Run, Tracker
-from dembound.motion.trial import Trial
 
 RESOLUTION = 1e-3
 """Width of the bracket in which the largest stable step is found, over the computed limit: ε is half of it."""

@@ -15,7 +15,7 @@ import numpy as np
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.kinds import kind_of
-from dembound.motion.trial import Trial
+from dembound.motion.stability import Trial
 from dembound.studies.noise import COARSE, RESOLUTION, SAMPLES, Course, LongRun, long_run, short_run
 
 FACTORS = 1.0 + 0.5 * RESOLUTION, 1.0 + COARSE, 2.0

@@ -6,8 +6,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from dembound.table import quantity
-from dembound.waves.spectrum import HANN_FADE
-from dembound.waves.wave import Shape
+from dembound.waves.wave import HANN_FADE, Shape
 
 ROUNDING = 1e-12
 """Share of the start by which times of steps may differ from it by rounding."""

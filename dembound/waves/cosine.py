@@ -6,8 +6,7 @@ from typing import Literal
 import numpy as np
 
 from dembound.table import quantity
-from dembound.waves.spectrum import HANN_FADE
-from dembound.waves.wave import Shape
+from dembound.waves.wave import HANN_FADE, Shape
 
 
 class Cosine(Shape):

@@ -9,13 +9,10 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import PrivateAttr, ValidationInfo, model_validator
 
-from dembound.spectra.band_limited import band_limited
+from dembound.spectra import band_limited
 from dembound.table import LARGEST, SMALLEST, quantity
-from dembound.waves.polyline import Polyline
-from dembound.waves.record_doubts import doubts_of_header, doubts_of_samples
-from dembound.waves.sampling import FEWEST, is_even, is_record, usual_step
-from dembound.waves.spectrum import amplitude_spectrum, faded_frequency
-from dembound.waves.wave import NonZero, Wave
+from dembound.waves.record_doubts import FEWEST, doubts_of_header, doubts_of_samples, is_even, is_record, usual_step
+from dembound.waves.wave import NonZero, Polyline, Wave, amplitude_spectrum, faded_frequency
 from dembound.words import percent, with_unit
 
 NO_COLUMNS = "is not two columns of numbers, separated by blanks or semicolons, in a .csv file by commas"

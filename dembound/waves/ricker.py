@@ -7,8 +7,7 @@ import numpy as np
 
 from dembound.roots import root
 from dembound.table import quantity
-from dembound.waves.spectrum import FADED
-from dembound.waves.wave import Shape
+from dembound.waves.wave import FADED, Shape
 
 DELAY = 1.5
 """Periods from the start to the crest, and from the crest to the end.

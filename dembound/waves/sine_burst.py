@@ -7,8 +7,7 @@ import numpy as np
 
 from dembound.roots import root
 from dembound.table import quantity
-from dembound.waves.spectrum import FADED, HANN_FADE
-from dembound.waves.wave import Shape
+from dembound.waves.wave import FADED, HANN_FADE, Shape
 
 MOST_CYCLES = 1_000_000
 """Largest number of cycles: more is a mistake, and rounding would shift the last ones."""

@@ -6,8 +6,7 @@ import numpy as np
 
 from dembound.roots import root
 from dembound.table import quantity
-from dembound.waves.spectrum import FADED
-from dembound.waves.wave import Shape
+from dembound.waves.wave import FADED, Shape
 
 AREA = 3.0 / 8.0
 """Integral of the spline of unit height and unit length."""

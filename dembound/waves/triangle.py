@@ -7,8 +7,7 @@ import numpy as np
 
 from dembound.roots import root
 from dembound.table import quantity
-from dembound.waves.spectrum import FADED
-from dembound.waves.wave import Shape
+from dembound.waves.wave import FADED, Shape
 
 FADED_AT_LATEST = 2.0 / (math.pi * FADED)
 """Frequency times length above which the spectrum of any triangle is below 1 %, as both sinc terms are at most 1."""

@@ -1,15 +1,76 @@
-"""The base of all waves, and of those given by a formula."""
+"""The base of all waves, of those given by a formula, and of those of straight lines between points."""
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import AfterValidator, model_validator
 
+from dembound.spectra import PADDING, fourier_spectrum
 from dembound.table import Table, quantity
+
+FADED = 0.01
+"""Share of its largest value below which an amplitude spectrum is treated as faded."""
+
+HANN_FADE = 2.0 / math.sqrt(3.0) * math.cosh(math.acosh(1.5 * math.sqrt(3.0) / (math.pi * FADED)) / 3.0)
+"""Frequency times length at which the spectrum of one Hann lobe, ½(1 − cos 2πt/T) on 0…T, has faded: 3.274.
+
+The spectrum is T/2 · sin(πx)/[πx(1 − x²)], x = fT. Its envelope has faded where x³ − x = 1/(π · FADED), which
+Cardano's formula solves.
+"""
+
+
+def amplitude_spectrum(velocities: np.ndarray, time_step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies (m,), Hz, and amplitudes (m,), m, of velocities (n,), m/s, sampled every `time_step` s."""
+    frequencies, spectrum = fourier_spectrum(velocities, time_step, PADDING * len(velocities))
+    return frequencies, np.abs(spectrum)
+
+
+def faded_frequency(frequencies: np.ndarray, amplitudes: np.ndarray) -> float:
+    """First frequency, Hz, from which all amplitudes are faded; the last one if they never are."""
+    last_alive = int(np.flatnonzero(amplitudes >= FADED * amplitudes.max())[-1])
+    return float(frequencies[min(last_alive + 1, len(frequencies) - 1)])
+
+
+@dataclass(frozen=True, eq=False)
+class Polyline:
+    """Values (k,) at increasing times (k,), s, joined by straight lines and zero outside."""
+
+    times: np.ndarray
+    values: np.ndarray
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, Polyline)
+            and np.array_equal(self.times, other.times)
+            and np.array_equal(self.values, other.values)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def at(self, t: np.ndarray) -> np.ndarray:
+        """Values at the times t, s; same shape as t."""
+        return np.interp(t, self.times, self.values, left=0.0, right=0.0)
+
+    def integral(self, t: np.ndarray) -> np.ndarray:
+        """Exact integral from −∞ to the times t, s; same shape as t, unit of the values times s."""
+        times, values = self.times, self.values
+        inside = np.clip(t, times[0], times[-1])
+        left = np.clip(np.searchsorted(times, inside, side="right") - 1, 0, len(times) - 2)
+        mean = 0.5 * (values[left] + np.interp(inside, times, values))
+        whole: np.ndarray = self._integral_at_points[left] + mean * (inside - times[left])
+        return whole
+
+    @cached_property
+    def _integral_at_points(self) -> np.ndarray:
+        areas = 0.5 * (self.values[1:] + self.values[:-1]) * np.diff(self.times)
+        return np.concatenate([[0.0], np.cumsum(areas)])
+
 
 LATEST = 1e12
 """Largest time over the scale on which a wave varies: doubles then keep its times to 2e-4 of that scale."""

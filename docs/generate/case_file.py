@@ -11,27 +11,19 @@ from paragraphs import GENERATED, joined
 
 from dembound import boundaries, holes, methods, packings, waves
 from dembound.boundaries import Boundary
-from dembound.casefile.bar.bar import Bar
-from dembound.casefile.bar.load import BarLoad
-from dembound.casefile.bar.monitor import BarMonitor
-from dembound.casefile.bar.range import BarRange
-from dembound.casefile.bar.run import BarRun
-from dembound.casefile.chart import Chart, ChartChoice
+from dembound.casefile.bar.bar import Bar, BarRange
+from dembound.casefile.bar.model import BarLoad, BarMonitor, BarRun
 from dembound.casefile.disks.damping import Damping
 from dembound.casefile.disks.ground import Ground
-from dembound.casefile.disks.incident import IncidentWave
+from dembound.casefile.disks.incident import IncidentWave, Motion
 from dembound.casefile.disks.layer import Layer
-from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
-from dembound.casefile.disks.monitor import Monitor
-from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.model import DiskRun, Reduce
 from dembound.casefile.disks.outside import OutsideTable
-from dembound.casefile.disks.reduce import Reduce
-from dembound.casefile.disks.run import DiskRun
-from dembound.casefile.disks.scatter import Scatter
 from dembound.casefile.disks.static import Static
-from dembound.casefile.output import Output
-from dembound.casefile.sweep import Sweep
+from dembound.casefile.disks.targets import Scatter
+from dembound.casefile.tables import Chart, ChartChoice, Output, Sweep
 from dembound.table import Table, name_of
 
 Type = type[Table]

@@ -14,8 +14,8 @@ import pytest
 from small_cases import small
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.extended import extended
 from dembound.accuracy.history import loud
+from dembound.accuracy.judges import extended
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.edit import edited

@@ -18,9 +18,9 @@ from dembound.gauge.gauge_io import read_gauge
 from dembound.kinds import kind_of_record
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
-from dembound.plot.boundary import plot_boundary
 from dembound.plot.energy import plot_energy
 from dembound.plot.histories import plot_histories
+from dembound.plot.side import plot_boundary
 from dembound.results.compare import compare
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots

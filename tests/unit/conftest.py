@@ -17,7 +17,10 @@ from typer.main import get_command
 from dembound import cli
 from dembound.casefile import Case
 from dembound.cli import compiling
-from dembound.disks.contacts.rows import contact_rows
+from dembound.continuum.medium import Medium
+from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.part import GridBody
+from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.kind import Disks
 from dembound.disks.scene import DiskScene
 from dembound.kinds import loads, with_changes
@@ -25,9 +28,6 @@ from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import NEVER
-from dembound.outside.body import GridBody
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Around, Mesh
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.running import plan

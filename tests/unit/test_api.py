@@ -16,7 +16,7 @@ import tomli_w
 
 import dembound
 from dembound import api, shipped
-from dembound.casefile.output import Output
+from dembound.casefile.tables import Output
 from dembound.results.reader import text_of
 from dembound.waves import Cosine
 

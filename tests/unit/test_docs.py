@@ -11,7 +11,7 @@ import tomli_w
 
 from dembound import errors, kinds, laws
 from dembound.casefile.json_schema import json_schema
-from dembound.casefile.output import Output
+from dembound.casefile.tables import Output
 from dembound.cli import app
 from dembound.cli.app import EXIT_CODES
 from dembound.exact import cells_per_wavelength, courant_limit

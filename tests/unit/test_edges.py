@@ -5,11 +5,11 @@ import pytest
 
 from dembound.boundaries import Fixed
 from dembound.boundaries.support import Edge
-from dembound.disks.loads import forces_of
 from dembound.disks.scene import build
-from dembound.edges import is_within, spans_all
+from dembound.disks.supports import forces_of
 from dembound.holes import Circle, Ellipse, Hole, Polygon, Rectangle
 from dembound.kinds import loads
+from dembound.places import is_within, spans_all
 
 COUNT = 14
 CENTRES = np.stack(np.meshgrid(*2 * [np.arange(1, 2 * COUNT, 2)]), axis=-1).reshape(-1, 2)

@@ -18,10 +18,9 @@ from dembound.files import arrays_of, content_of, copy, lock_of, make_folder, re
 from dembound.plot.style import save
 from dembound.results.checkpoint import Checkpoint
 from dembound.results.committed import CommittedFile, changed_file, new_file
-from dembound.results.csv_files import write_csv
 from dembound.results.folder import Folder
-from dembound.results.json_files import write_json
-from dembound.results.summary_file import read_json
+from dembound.results.summary import read_json
+from dembound.results.text_files import write_csv, write_json
 from dembound.studies.sweep.perform import outcome_in, times_in
 
 STATE = Checkpoint({"version": "1"}, {"a": np.zeros(3)})

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.nearest import nearest, nearest_number
+from dembound.places import nearest, nearest_number
 
 LATTICE = np.stack(np.meshgrid(np.arange(12.0), np.arange(9.0)), axis=-1).reshape(-1, 2)
 

@@ -11,13 +11,13 @@ import tomli_w
 from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.casefile import Case
-from dembound.disks.beyond.edges import find_edges
-from dembound.disks.contacts.rows import contact_rows
+from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.material.packed_material import make_packed_material
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.scene_parts import Start
 from dembound.disks.stepping.system import DiskSystem
+from dembound.disks.surroundings.edges import find_edges
 from dembound.kernels.elastic import contact_forces
 from dembound.kinds import loads, with_changes
 from dembound.motion.energy import Ledger

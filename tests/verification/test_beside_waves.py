@@ -9,7 +9,7 @@ from dembound.disks.reports.beside_wave import taken_from_waves
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
-from dembound.results.relative_error import relative_error
+from dembound.results.compare import relative_error
 
 POINTS = 0.03
 """Largest difference of shares.

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.disks.stability import step_limit
-from dembound.motion.eigenvalue import TOLERANCE
 from dembound.motion.simulation import Simulation
+from dembound.motion.stability import TOLERANCE
 
 SIDES = ("left", "right", "bottom", "top")
 

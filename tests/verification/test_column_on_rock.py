@@ -8,8 +8,8 @@ import numpy as np
 import tomli_w
 
 from dembound.disks.entry import mass_begins
+from dembound.disks.incident_wave import Level
 from dembound.disks.scene import build
-from dembound.disks.within import Level
 from dembound.exact.column import Column, Layer
 from dembound.kinds import loads
 

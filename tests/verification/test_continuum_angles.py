@@ -11,12 +11,12 @@ import pytest
 from angles import FREQUENCY, Side, reflection
 from element_row import ROWS, Row
 
+from dembound.continuum.layer import Absorption
+from dembound.continuum.part import GridPart
 from dembound.disks.scene import DiskScene
 from dembound.kernels.grid import move
 from dembound.kernels.tables import Body
-from dembound.motion.layout import Layout, aligned_zeros
-from dembound.outside.layer import Absorption
-from dembound.outside.part import GridPart
+from dembound.motion.state import Layout, aligned_zeros
 
 FLOOR = 4e-4
 """Reflection by elements with 17 nodes in the shortest S wave: 2e-4 was measured at normal incidence."""

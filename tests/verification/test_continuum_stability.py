@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from grid_scene import GridScene, step_limit
 
+from dembound.continuum import layer
+from dembound.continuum.layer import Absorption
+from dembound.continuum.medium import Medium
+from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.part import GridBody
 from dembound.motion.simulation import Simulation
-from dembound.outside import layer
-from dembound.outside.body import GridBody
-from dembound.outside.layer import Absorption
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Around, Mesh
 
 STEPS = 2000
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from grid_scene import GridScene, step_limit
 
+from dembound.continuum.axis import Rule
+from dembound.continuum.medium import Medium
+from dembound.continuum.mesh import Mesh
+from dembound.continuum.part import GridBody
 from dembound.motion.simulation import Simulation
-from dembound.outside.body import GridBody
-from dembound.outside.gll import Rule
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Mesh
 
 MEDIA = {
     "isotropic": Medium.isotropic(2500.0, 1000.0, 1000.0 / np.sqrt(3.0)),

@@ -9,10 +9,10 @@ density, or 2/T, the first zero of its spectrum, where nothing comes back but wh
 import numpy as np
 import pytest
 
-from dembound.disks.beyond.settings import signals_of
-from dembound.disks.material.bragg import couplings, sent_back
+from dembound.disks.material.packing_waves import couplings, sent_back
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
+from dembound.disks.surroundings.settings import signals_of
 from dembound.kinds import with_changes
 from dembound.motion.simulation import Simulation
 

@@ -10,10 +10,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.disks.contacts.elastic_again import elastic_again, never_elastic_again, settled_slip
-from dembound.disks.reduced.reduction import reduced
+from dembound.disks.reduced import reduced
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
+from dembound.disks.stepping.first_law import elastic_again, never_elastic_again, settled_slip
 from dembound.kernels.contacts import SHEAR
 from dembound.kinds import with_changes
 

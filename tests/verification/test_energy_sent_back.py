@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.reflection.meter import Meter
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
+from dembound.disks.surroundings.frequencies import frequencies_of
 from dembound.motion.simulation import Simulation
 
 PERIOD, LENGTH, BRICK, SPEED = 0.04, 100.0, 5.0, 1000.0

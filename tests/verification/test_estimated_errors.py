@@ -17,8 +17,8 @@ from small_cases import Tables, small
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import SIDES
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History
+from dembound.accuracy.judges import extended
 from dembound.accuracy.runner import measure
 from dembound.running import Progress
 

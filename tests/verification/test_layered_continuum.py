@@ -13,12 +13,12 @@ from decay import kinetic
 from grid_scene import GridScene, step_limit
 
 from dembound.boundaries.support import SupportBuilder
+from dembound.continuum.layer import Absorption
+from dembound.continuum.medium import Layered, Medium
+from dembound.continuum.mesh import Around, Mesh, divided
+from dembound.continuum.part import GridBody
 from dembound.exact.column import Column, Layer
 from dembound.motion.simulation import Simulation
-from dembound.outside.body import GridBody
-from dembound.outside.layer import Absorption
-from dembound.outside.medium import Layered, Medium
-from dembound.outside.mesh import Around, Mesh, divided
 
 SPEEDS, DENSITIES, JOINTS, TOP = (700.0, 350.0, 200.0), (2300.0, 2000.0, 1800.0), (0.0, 40.0), 70.0
 FREQUENCY, DELAY, DURATION = 3.0, 0.6, 3.0

@@ -11,8 +11,8 @@ from dembound.disks.contacts import contact_list, layout
 from dembound.disks.contacts.row_plan import plan_rows
 from dembound.disks.material.constants import limits_between, limits_of
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping import contact_lists
-from dembound.motion.cracks import Cracks
+from dembound.disks.stepping import scene_parts
+from dembound.motion.part import Cracks
 from dembound.motion.simulation import Simulation
 
 STEPS, JOINT = 250, 10.0
@@ -30,7 +30,7 @@ def run(lab, monkeypatch) -> Callable[..., Simulation]:
     def make(
         pattern: str, geometry: str, columns: tuple[dict, dict] | None, joined: bool = True, steps: int = STEPS
     ) -> Simulation:
-        for module in (layout, contact_lists):
+        for module in (layout, scene_parts):
             monkeypatch.setattr(module, "plan_rows", lambda part, **_: replace(by_level(part), by_level=joined))
         words = {"held": (), "boundary": SIDES, "wave": lab.pulse(0.01)}
         if pattern == "B":
@@ -48,7 +48,7 @@ def run(lab, monkeypatch) -> Callable[..., Simulation]:
             below, on_top = materials
             friction = np.where(heights > JOINT, on_top.fric, below.fric)
             layers = limits_between([(below, on_top), (on_top, on_top)], types), friction
-        monkeypatch.setattr(contact_lists, "_layers", lambda *_: layers)
+        monkeypatch.setattr(scene_parts, "_layers", lambda *_: layers)
         simulation = Simulation(replace(scene, assembly=assembly), choose_step(scene)[0])
         (contacts,) = simulation.system.contacts.values()
         contacts.cells = contacts.cells._replace(reach=0.0)  # pairs are searched for as if any two disks might meet

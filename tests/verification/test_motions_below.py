@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import tomli_w
 
+from dembound.disks.incident_wave import Level
 from dembound.disks.kind import Disks
 from dembound.disks.scene import build
-from dembound.disks.within import Level
 from dembound.exact.column import Column, Layer
 from dembound.kinds import loads
 from dembound.studies.deconvolution import incident_below, level_ground

@@ -20,9 +20,8 @@ from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import CONTINUUM, SIDES
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History
-from dembound.accuracy.judges import judge_of
+from dembound.accuracy.judges import extended, judge_of
 from dembound.accuracy.runner import measure
 from dembound.casefile import Case
 from dembound.running import Progress, plan

@@ -8,7 +8,7 @@ import pytest
 from small_cases import GRAINS, small
 from warned_cases import warned
 
-from dembound.results.sides import read_side_history
+from dembound.results.histories import read_side_history
 from dembound.running import run_case
 
 WIDTH, HEIGHT = 4.0, 8.0

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from dembound.api import case
-from dembound.bar import end_echo
-from dembound.bar.end_echo import Returned, returned_of_waves
+from dembound.bar import echoes
+from dembound.bar.echoes import Returned, returned_of_waves
 from dembound.bar.facts import bar_facts
 from dembound.bar.linear_steps import LinearSteps
 from dembound.bar.scene import build_bar
@@ -101,11 +101,11 @@ def test_a_bar_too_long_to_be_stepped_is_represented_by_a_shorter_one(monkeypatc
     step = 0.8 * SPACING / SPEED
     most = measured(scene, going_on(scene, "right"), step)
     assert returned_of_waves(scene, "right", step).shares["p"] == pytest.approx(most, rel=1e-3)
-    monkeypatch.setattr(end_echo, "KEPT", 4e5)
+    monkeypatch.setattr(echoes, "KEPT", 4e5)
     found = returned_of_waves(scene, "right", step)
     assert 1.1 * most <= found.shares["p"] <= 5.0 * most
     assert found.within == np.inf
-    monkeypatch.setattr(end_echo, "KEPT", 4e4)
+    monkeypatch.setattr(echoes, "KEPT", 4e4)
     assert returned_of_waves(scene, "right", step).within < scene.case.run.duration
 
 
@@ -130,7 +130,7 @@ def test_tiny_steps_and_long_waves_take_bounded_work(monkeypatch):
     Of a wave of 500 ways, which is convolved at some nodes only, a dashpot returns nearly as much as at all of them.
     """
     work, convolved = [], []
-    after, largest = LinearSteps.after, end_echo._largest
+    after, largest = LinearSteps.after, echoes._largest
 
     def counted(self, force, motion, steps):
         work.append(self._gain.size * steps)
@@ -141,10 +141,10 @@ def test_tiny_steps_and_long_waves_take_bounded_work(monkeypatch):
         return largest(motions, signals, last)
 
     monkeypatch.setattr(LinearSteps, "after", counted)
-    monkeypatch.setattr(end_echo, "_largest", seen)
+    monkeypatch.setattr(echoes, "_largest", seen)
     unit = SPACING / SPEED
     scene = build_bar(case(**tables(1, cells=60, ways=2.0, boundary={"right": {"type": "viscous"}})))
-    slow, tiny = (returned_of_waves(scene, "right", courant * unit) for courant in (end_echo.LEAST, 1e-7))
+    slow, tiny = (returned_of_waves(scene, "right", courant * unit) for courant in (echoes.LEAST, 1e-7))
     assert tiny.shares["p"] == pytest.approx(slow.shares["p"], rel=1e-3)
     short = build_bar(replace(scene.case, wave={"p": scene.case.wave["p"].model_copy(update={"period": 1e-3 * unit})}))
     assert returned_of_waves(short, "right", 1e-7 * unit) == Returned({}, unknown=("p",))
@@ -153,12 +153,12 @@ def test_tiny_steps_and_long_waves_take_bounded_work(monkeypatch):
     given = tables(1, cells=60, ways=500.0, boundary={"right": {"type": "viscous"}}, wave=long)
     whole = returned_of_waves(build_bar(case(**given)), "right", 0.9 * unit)
     work.clear(), convolved.clear()
-    monkeypatch.setattr(end_echo, "KEPT", 4e5)
+    monkeypatch.setattr(echoes, "KEPT", 4e5)
     found = returned_of_waves(build_bar(case(**given)), "right", 0.9 * unit)
     assert whole.part == 1.0
     assert 9 / 61 <= found.part < 0.5
-    assert sum(work) < end_echo.WORK
-    assert sum(convolved) < 4.0 * end_echo.KEPT + 2e5
+    assert sum(work) < echoes.WORK
+    assert sum(convolved) < 4.0 * echoes.KEPT + 2e5
     assert 0.8 * whole.shares["p"] < found.shares["p"] < 1.001 * whole.shares["p"]
-    monkeypatch.setattr(end_echo, "KEPT", 1e5)
+    monkeypatch.setattr(echoes, "KEPT", 1e5)
     assert returned_of_waves(build_bar(case(**given)), "right", 0.9 * unit).unknown == ("p",)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks import DiskCase
-from dembound.damping.quality import Mechanisms
+from dembound.damping import Mechanisms
 from dembound.disks.kind import Disks
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step, step_limit

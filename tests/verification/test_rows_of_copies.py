@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.disks.contacts.rows import contact_rows
+from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
 

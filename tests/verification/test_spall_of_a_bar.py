@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from dembound.motion.cracks import Cracks
+from dembound.motion.part import Cracks
 from dembound.motion.simulation import Simulation
 
 DISKS, DIAMETER = 200, 0.5

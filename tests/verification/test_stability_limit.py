@@ -5,8 +5,8 @@ import pytest
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from dembound.disks.stability import OPENING, step_limit
-from dembound.motion.eigenvalue import TOLERANCE
 from dembound.motion.simulation import Simulation
+from dembound.motion.stability import TOLERANCE
 from dembound.packings.brick import Brick
 
 PERIODIC = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")

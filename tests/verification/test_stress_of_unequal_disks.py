@@ -6,9 +6,9 @@ A disk that is pushed by F from both sides has Σ f l = −F·2R, whatever its n
 import numpy as np
 import pytest
 
-from dembound.disks.contacts.arrays import plain_contacts
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.stress import particle_stress
+from dembound.disks.contacts.pairs import plain_contacts
+from dembound.disks.stepping.fields import particle_stress
+from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.kernels.contacts import REFERENCE, UPDATED
 
 RADII = np.array([0.25, 0.1, 0.4, 0.3, 0.15, 0.25])

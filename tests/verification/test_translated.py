@@ -21,11 +21,11 @@ from dembound.accuracy.runner import measure
 from dembound.boundaries import SIDES, normal_axis
 from dembound.check import check
 from dembound.disks.ram import SceneSizes
-from dembound.disks.rest.block_stress import Blocks
+from dembound.disks.rest.settled import Blocks
 from dembound.disks.scene import build
 from dembound.disks.sources import sources_of
 from dembound.kinds import loads
-from dembound.motion.silence import silent_rule
+from dembound.motion.endings import silent_rule
 from dembound.running import Progress
 
 BY = (-18.5, -35.5)

@@ -6,11 +6,11 @@ from angles import Side, branches, reflection
 from decay import step_beside
 from grid_scene import GridScene, step_limit
 
+from dembound.continuum.layer import Absorption
+from dembound.continuum.medium import Medium
+from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.part import GridBody
 from dembound.motion.simulation import Simulation
-from dembound.outside.body import GridBody
-from dembound.outside.layer import Absorption
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Around, Mesh
 
 pytestmark = pytest.mark.slow
 

@@ -11,16 +11,14 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import SIDES as OF_SIDES
 from dembound.accuracy.cause import Causes, Truth
-from dembound.accuracy.choice import Choice
-from dembound.accuracy.extended import MOST, extended
+from dembound.accuracy.choice import Choice, label
 from dembound.accuracy.history import Motions
-from dembound.accuracy.judges import judge_of
-from dembound.accuracy.labels import label
+from dembound.accuracy.judges import MOST, extended, judge_of
 from dembound.accuracy.reference import Exact, FinerRun, Reference
 from dembound.accuracy.runner import Run
 from dembound.boundaries import SIDES as SIDE_NAMES
 from dembound.casefile import Case
-from dembound.casefile.chart import ReferenceName
+from dembound.casefile.tables import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import with_changes
 from dembound.motion.kind import Finding

@@ -8,22 +8,38 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.cause import TITLES, Truth
-from dembound.accuracy.chart.choices import defaults, from_table
 from dembound.accuracy.chart.front import EQUAL, NONE, Point, cheapest_within, front, points_of
 from dembound.accuracy.chart.record import Record, record_in
 from dembound.accuracy.chart.references import exact_of, reference_of
-from dembound.accuracy.choice import Choice, choices_of, digest
+from dembound.accuracy.choice import Choice, choices_of, combinations, digest
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.reference import MonitorError, Reference, Requested, errors
 from dembound.accuracy.runner import Run, Runner, Shown, measure
-from dembound.casefile import Case
-from dembound.casefile.chart import ReferenceName
 from dembound.casefile.messages import counted
+from dembound.casefile.model import Case
+from dembound.casefile.tables import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import kind_of
 from dembound.results.histories import Quantity
 from dembound.table import Box
 from dembound.words import percent, with_unit
+
+
+def from_table(case: Case) -> dict[str, Mapping[str, Any]]:
+    """The choices of the case's [chart] table by name; none without one."""
+    table = case.chart
+    found: dict[str, Mapping[str, Any]] = {**combinations(case, table.vary)} if table.vary else {}
+    for choice in table.choice:
+        if choice.name in found:
+            raise CaseError([f"chart.choice: two choices have the name {choice.name}"], case.name)
+        found[choice.name] = choice.set
+    return found
+
+
+def defaults(case: Case) -> dict[str, dict[str, Any]]:
+    """Changes of keys by the name of the choice, for a case and a command that give none."""
+    return dict(judge_of(case).chart_choices(case))
+
 
 LEVELS = (0.01, 0.001)
 """Errors within which the cheapest choice is named."""

@@ -14,7 +14,7 @@ from dembound.accuracy.chart.record import write_motions
 from dembound.accuracy.chart.study import Charted, Line
 from dembound.accuracy.choice import digest
 from dembound.results.committed import changed_file
-from dembound.results.csv_files import write_csv
+from dembound.results.text_files import write_csv
 from dembound.version import __version__
 
 if TYPE_CHECKING:

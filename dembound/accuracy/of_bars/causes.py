@@ -33,8 +33,8 @@ import numpy as np
 from dembound.accuracy.cause import GRID, SIDES, STEP, Cause, Causes
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_bars.motions import BarMotions
-from dembound.accuracy.of_bars.window import Window
-from dembound.bar.layer_echo import WIDEST
+from dembound.accuracy.of_bars.rods import Window
+from dembound.bar.echoes import WIDEST
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.words import percent

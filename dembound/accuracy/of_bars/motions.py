@@ -13,8 +13,7 @@ import numpy as np
 
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_bars.chain import Chain, Frequencies, Response, observed_near
-from dembound.accuracy.of_bars.rods import Rods
-from dembound.accuracy.of_bars.window import Window, needed
+from dembound.accuracy.of_bars.rods import Rods, Window, needed
 from dembound.bar.layers import ENDS, EndLayer
 from dembound.bar.scene import BarScene, build_bar, end_supports
 from dembound.boundaries.matched_layer import MatchedLayer
@@ -28,7 +27,7 @@ FINER = 8
 BATCH, LARGE_BATCH = 256, 2**15
 """Numbers of frequencies that are computed together: of nodes, and of rods."""
 
-NEAR = 20
+EVANESCENT_NODES = 20
 """Nodes between a push and a monitor beyond which waves that do not run have no effect."""
 
 ABOVE = 1.1
@@ -146,7 +145,7 @@ class BarMotions:
 
         Higher frequencies only move nodes near forces; with monitors there all frequencies count.
         """
-        near = max(NEAR, 4 * wide)
+        near = max(EVANESCENT_NODES, 4 * wide)
         if any(abs(node - push) <= near for node in self.nodes.values() for push in pushed):
             return len(clock.s)
         highest = 2.0 / self.scene.step_limit()

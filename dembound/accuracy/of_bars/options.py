@@ -1,4 +1,4 @@
-"""The choices that a case of a bar leaves open: nodes, steps and ends that absorb, each with its predicted time."""
+"""The choices that a case of a bar leaves open: nodes, steps and ends that absorb, each with its cost."""
 
 from __future__ import annotations
 
@@ -6,21 +6,24 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, get_args
 
-from dembound.accuracy.choice import changed
-from dembound.accuracy.differences import keeps
-from dembound.bar import step_cost
+from dembound.accuracy.choice import COARSER, OWN, Named, changed, keeps, label, valid
+from dembound.bar import stability
 from dembound.bar.banded import ROUNDING
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import is_bounded_at_limit, own_step, unit_step
-from dembound.casefile.bar import BarCase
+from dembound.casefile.bar.model import BarCase
 from dembound.errors import DemboundError
-from dembound.methods import FiniteDifference
+from dembound.methods.finite_difference import FiniteDifference
+from dembound.methods.method import Method
+from dembound.methods.patch import Patch
+from dembound.methods.peridynamics import Peridynamics
+from dembound.methods.switch import Switch
 from dembound.words import with_unit
 
-COARSER = (32.0, 24.0, 16.0, 12.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25)
-FACTORS = (1.0, *COARSER, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125, 0.1)
+COARSER_NODES = (32.0, 24.0, 16.0, 12.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25)
+FACTORS = (1.0, *COARSER_NODES, 0.8, 2 / 3, 0.5, 0.4, 1 / 3, 0.25, 0.2, 1 / 6, 0.125, 0.1)
 """Spacings over the given ones that are tried: the nearest that divide their ranges, and that have nodes at monitors.
 """
 
@@ -84,7 +87,7 @@ class BarOption:
     @cached_property
     def cost(self) -> float:
         """Predicted CPU time of the steps, s."""
-        return 1e-9 * self.steps * step_cost.of_bar(self.scene)
+        return 1e-9 * self.steps * stability.time_per_step(self.scene)
 
     def case(self, given: BarCase) -> BarCase:
         """The case of the choice."""
@@ -227,3 +230,49 @@ def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequ
         is_valid = step <= min(limit * (1.0 + ROUNDING), other.run.duration)
         if is_valid and (not kept or keeps(case, changed(case, choice), kept)):
             yield BarOption(scene, step, choice, *words)
+
+
+HORIZON = 3
+"""Horizon of bars' methods where the case has none."""
+
+"""Keys of ``[run]`` that determine the step of a bar."""
+
+
+def bar_choices(case: BarCase) -> Named:
+    """The case itself, every method with every spacing at its automatic step, and finite differences at ν = 1.
+
+    A given step is dropped, as it would suit one method and spacing only.
+    """
+    yield OWN, {}
+    spacing, run = case.bar.spacing, case.run.given()
+    coarser = [change["bar.spacing"] for change in valid(case, ({"bar.spacing": k * spacing} for k in COARSER))]
+    automatic = {key: value for key, value in run.items() if key not in ("time_step", "courant") or value == "auto"}
+    exact = {key: value for key, value in run.items() if key not in STEP_KEYS} | {"courant": 1.0}
+    differences = _method(case, FiniteDifference)
+    for size in (spacing, *coarser):
+        name = label(case, {"bar.spacing": size, "method": differences, "run.courant": 1.0})
+        yield name, {"bar.spacing": size, "method": differences, "run": exact}
+        for method in _chart_methods(case):
+            changes = {"bar.spacing": size, "method": method}
+            yield label(case, changes), changes | ({} if automatic == run else {"run": automatic})
+
+
+def _chart_methods(case: BarCase) -> Iterator[dict[str, Any]]:
+    """The methods to chart; a method of another package that the case uses comes first.
+
+    Methods that wait for a break are included only if the bar can break.
+    """
+    kinds: list[type[Method]] = [FiniteDifference, Peridynamics]
+    if case.bar.least_strength < math.inf:
+        kinds += [Switch, Patch]
+    if type(case.method) not in kinds:
+        yield case.method.given()
+    yield from (_method(case, kind) for kind in kinds)
+
+
+def _method(case: BarCase, kind: type[Method]) -> dict[str, Any]:
+    """The table of a method, with the case's values of all keys that both methods have."""
+    (name,) = get_args(kind.model_fields["type"].annotation)
+    horizon = {"horizon": max(case.method.largest_horizon, HORIZON)} if "horizon" in kind.model_fields else {}
+    own = {key: value for key, value in case.method.given().items() if key in kind.model_fields and key != "type"}
+    return {"type": name} | horizon | own

@@ -1,20 +1,173 @@
-"""Arrangements of sides that stand in for the ground beyond a scene: the case's own, dashpots, springs, a continuum."""
+"""Arrangements of sides that stand in for the ground beyond a scene, and boxes of disks with a continuum round them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from dembound.accuracy.choice import Choice, changed
-from dembound.accuracy.of_disks.boxes import box_tables, continuum_beyond, may_be_boxed, rectangles
 from dembound.boundaries.boundary import Boundary
-from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.settings import extents
+from dembound.boundaries.edge import SIDES
+from dembound.casefile.disks.model import DiskCase
+from dembound.continuum import sizing
+from dembound.continuum.interpolation import NearField
+from dembound.continuum.sizing import GridSizes
+from dembound.disks import step_cost
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.scene import DiskScene
+from dembound.disks.surroundings.edges import BAND as FLOOR
+from dembound.disks.surroundings.mesh import medium_of
+from dembound.disks.surroundings.settings import (
+    expected_tops,
+    extents,
+    least_element,
+    mesh_of,
+    settings_of,
+    signals_of,
+)
 from dembound.errors import CaseError
 from dembound.table import Box
+
+WORTH = 0.8
+"""Part of a scene's cost above which a box is no gain."""
+
+NEARER = (1.0, 0.7, 0.5, 0.35, 0.25)
+"""Parts of the distance that elements as large as waves allow need from loads; nearer ones are smaller."""
+
+BAND = 4.0
+"""Least distance of holes and loads from the sides of a box, in diameters: cracks near ties are not followed."""
+
+
+class BoxOfDisks(NamedTuple):
+    """A box: rectangle (m), numbers of its disks, of column disks and of nodes, and nanoseconds of a step."""
+
+    box: Box
+    disks: int
+    nodes: int
+    cost: float
+
+
+def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
+    """Changed keys, by table, of a case with disks in a box (m) only; unchanged packing keys are left out."""
+    left, bottom, right, top = box
+    size, origin = ([round(length, 10) for length in each] for each in ((right - left, top - bottom), (left, bottom)))
+    outside = {f"boundary.{side}": continuum_beyond(case.side(side)) for side in _sides_beyond(case, box)}
+    packing = {"size": size, "origin": origin}
+    ground = {"size": list(case.size)} | ({"origin": list(case.box[:2])} if any(case.box[:2]) else {})
+    return {"ground": ground, "packing": packing, **outside}
+
+
+def _sides_beyond(case: DiskCase, box: Box) -> Sequence[str]:
+    """The sides of a box (m) beyond which a continuum goes on, with the top if the box is below the surface."""
+    return SIDES if box[3] < case.box[3] else SIDES[:3]
+
+
+def continuum_beyond(table: Boundary) -> dict[str, Any]:
+    """The table of a side with a continuum beyond it, through which the waves of the given side enter."""
+    return {"type": "outside"} | {f"wave_{motion}": name for motion, name in table.waves.items()}
+
+
+def cheapest_box(scene: DiskScene) -> BoxOfDisks | None:
+    """The cheapest box of disks in place of a scene that `may_be_boxed`; None if it would gain little."""
+    best = min(boxes(scene), key=lambda each: each.cost, default=None)
+    return None if best is None or best.cost > WORTH * _cost(scene) else best
+
+
+def _cost(scene: DiskScene) -> float:
+    """Nanoseconds of a step of a scene, without forces of an oblique wave, which boxes need as well."""
+    return sum(cost for part, cost in step_cost.times_of_scene(scene).items() if part != "incident wave")
+
+
+def may_be_boxed(case: DiskCase) -> bool:
+    """Whether all sources but waves from below are in one place, and the ground could go on beyond it."""
+    plain = not any(case.periodic) and not case.motion.held
+    beyond = all(case.side(side).is_artificial for side in ("left", "right", "bottom"))
+    at_top = case.side("top").is_free or case.side("top").is_outside
+    from_below = not any(case.side(side).waves for side in ("left", "right", "top"))
+    return (
+        plain
+        and _ends_level(case)
+        and beyond
+        and at_top
+        and from_below
+        and bool(signals_of(case))
+        and any(True for _ in extents(case))
+    )
+
+
+def _ends_level(case: DiskCase) -> bool:
+    """Whether holes end within the sides, or as level floors at them, with no body-wide loads."""
+    left, _, right, _ = case.packing.box
+    reached = {side for hole in case.hole for side in ("left", "right") if _reaches(hole.box, side, left, right)}
+    if not reached:
+        return True
+    wide = FLOOR * 2.0 * case.packing.radius
+    is_level = all(side in case.floors and case.floors[side].width >= wide for side in reached)
+    return is_level and not case.entering and not any(load.is_everywhere for load in case.load) and case.static is None
+
+
+def _reaches(hole: Box, side: str, left: float, right: float) -> bool:
+    """Whether the rectangle round a hole reaches the left or the right side, at these x, m."""
+    return hole[0] <= left if side == "left" else hole[2] >= right
+
+
+def boxes(scene: DiskScene) -> Iterator[BoxOfDisks]:
+    """Boxes of disks with elements of different sizes round them, for a scene that `may_be_boxed`."""
+    for box in rectangles(scene.case, scene.ground):
+        try:
+            yield _with_continuum(scene, box)
+        except CaseError:  # no mesh
+            continue
+
+
+def rectangles(case: DiskCase, ground: PackedMaterial) -> Iterator[Box]:
+    """Boxes (m) of disks of a ground for a case that `may_be_boxed`, for different sizes of elements."""
+    diameter, order, accuracy = ground.brick.mean_diameter, case.outside.order, case.outside.accuracy
+    side = sizing.element_size(signals_of(case), medium_of(ground), order, accuracy)
+    beside_a_force = NearField((0.0, 0.0, 0.0, 0.0), 1.0, "force").largest_side(order, accuracy)
+    widest = max(side, least_element(case, diameter)) / beside_a_force
+    for part in NEARER:
+        box = _round(case, max(part * widest, BAND * diameter), diameter)
+        if box[0] < box[2] and box[1] < box[3]:  # else all that makes waves is on the continuum
+            yield box
+
+
+def _round(case: DiskCase, clearance: float, diameter: float) -> Box:
+    """The box of whole bricks (m) with a clearance (m) from holes and loads, up to the surface if it is near."""
+    brick = np.array(case.packing.brick_size)
+    lows, highs = (np.array(corners) for corners in zip(*extents(case), strict=True))
+    ground, origin = np.array(case.box), np.array([case.packing.origin[0], case.box[1]])
+    least = least_element(case, diameter)
+    lowest = lows.min(axis=0) - clearance
+    lowest[1] = min([lowest[1], *(floor.height - least for floor in case.floors.values())])
+    low = origin + brick * np.floor((lowest - origin) / brick)
+    high = origin + brick * np.ceil((highs.max(axis=0) + clearance - origin) / brick)
+    low, high = np.maximum(low, ground[:2]), np.minimum(high, ground[2:])
+    if ground[3] - high[1] < max(least, clearance):
+        high[1] = ground[3]
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _with_continuum(scene: DiskScene, box: Box) -> BoxOfDisks:
+    """A box with its counts and cost, including continuum and column."""
+    case, ground = scene.case, scene.ground
+    sides = _sides_beyond(case, box)
+    settings = settings_of(case, medium_of(ground), ground.brick.mean_diameter, box, sides)
+    surface, tops = (case.box[3], None) if "top" in sides else (None, expected_tops(case, box))
+    grid = GridSizes.of(mesh_of(settings, box, sides, surface=surface, tops=tops))
+    first = 0 if scene.seam is None else scene.seam.count
+    places = scene.assembly.positions[first:]
+    inside = int(np.count_nonzero(((places >= box[:2]) & (places <= box[2:])).all(axis=1)))
+    moved = any(table.waves for table in case.boundary.values()) or case.static is not None
+    column = moved * len(ground.brick.radii) * math.ceil(case.size[1] / case.packing.brick_size[1])
+    ties = int(2.0 * (box[2] - box[0] + box[3] - box[1]) / ground.brick.mean_diameter)
+    beyond = step_cost.times_of_continuum(grid.nodes, grid.nodes * grid.absorbing / grid.elements, ties)
+    cost = step_cost.time_per_disk(scene) * (inside + column) + sum(beyond.values())
+    return BoxOfDisks(box, inside + column, grid.nodes, cost)
+
 
 CONTINUUM_SHARE = 0.3
 """Part of the error asked for that the elements of a continuum may have; smaller ones cost more than they gain."""

@@ -11,17 +11,17 @@ import numpy as np
 from dembound.accuracy.cause import MOTIONS, SIDES, STEP, USUAL, Cause, Causes
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.companions import Companions, is_moved
+from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.held_sides import HeldSides
 from dembound.accuracy.of_disks.kinks import causes_of_kinks
-from dembound.accuracy.of_disks.pair import sides_of_pair
 from dembound.accuracy.of_disks.rest import REST, causes_of_rest
 from dembound.accuracy.watch import current
 from dembound.casefile.disks import DiskCase
 from dembound.disks.entry import late_by
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import DemboundError
-from dembound.results.resample import at_times
+from dembound.results.compare import at_times
 
 LEAST_LATE = 1e-4
 """Shift of all motion over the duration of a run from which on it is said."""
@@ -170,15 +170,15 @@ def causes_of_choice(
 
     ground : the result of `of_ground`, if known.
     """
-    ground = ground or of_ground(companions, scene, time_step)
+    ground = ground or ground_causes(companions, scene, time_step)
     found = Causes(ground, _not_counted(scene), motions=companions.recorded(scene))
     if sides_of_pair(scene.case):
-        sides = of_sides(companions, scene, time_step, wider)
+        sides = sides_cause(companions, scene, time_step, wider)
         found += Causes([sides], _breaks(companions), _echoes(companions), 0.0, companions.echo_free)
     return found
 
 
-def of_ground(companions: Companions, scene: DiskScene, time_step: float, *, told: bool = False) -> list[Cause]:
+def ground_causes(companions: Companions, scene: DiskScene, time_step: float, *, told: bool = False) -> list[Cause]:
     """All causes of the error of a choice but artificial sides, which would need companions of its own.
 
     told : whether the receiver is informed of those by formula as soon as they are known.
@@ -194,7 +194,7 @@ def of_ground(companions: Companions, scene: DiskScene, time_step: float, *, tol
     return [*known, *kinks, places, *_held(companions, scene)]
 
 
-def of_rest(companions: Companions, scene: DiskScene) -> Causes:
+def rest_causes(companions: Companions, scene: DiskScene) -> Causes:
     """The errors of a choice by its static stage, which ends as that of the given case or its companion."""
     try:
         static = companions.settled
@@ -236,7 +236,7 @@ def _held(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
             yield Cause(f"{side} side", words, parts, "companion", of_disks=True, factor=HELD_FACTOR)
 
 
-def of_sides(companions: Companions, scene: DiskScene, time_step: float, wider: float) -> Cause:
+def sides_cause(companions: Companions, scene: DiskScene, time_step: float, wider: float) -> Cause:
     """Errors of absorbing sides; see `Companions.of_sides`."""
     parts = companions.of_sides(scene.case, scene, time_step, wider)
     return Cause(SIDES, companions.words, parts, "companion", factor=USUAL)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from dembound.accuracy.choice import COARSER, OWN, Named, is_valid, valid
-from dembound.accuracy.labels import label
-from dembound.accuracy.of_disks.boxes import box_tables, cheapest_box, continuum_beyond, may_be_boxed
+from dembound.accuracy.choice import COARSER, OWN, Named, is_valid, label, valid
+from dembound.accuracy.of_disks.arrangements import box_tables, cheapest_box, continuum_beyond, may_be_boxed
 from dembound.boundaries import Motion
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase

@@ -27,11 +27,11 @@ from dembound.casefile.disks.layer import Layer
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import STIFFNESS_KEYS, TARGET_KEYS, Material
 from dembound.casefile.disks.static import Static
-from dembound.casefile.run import ENDING
-from dembound.disks.loads import forces_of
+from dembound.casefile.tables import ENDING
 from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial, nominal_moduli
 from dembound.disks.scene import DiskScene
+from dembound.disks.supports import forces_of
 from dembound.laws import Moduli
 from dembound.packings.square import Square
 from dembound.table import Box

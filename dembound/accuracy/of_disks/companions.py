@@ -13,9 +13,8 @@ import numpy as np
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import Coarser, coarser
-from dembound.accuracy.of_disks.extended import bricks_needed, enlarged
+from dembound.accuracy.of_disks.enlarged import Pair, bricks_needed, enlarged, pair_of, ratios, sides_of_pair
 from dembound.accuracy.of_disks.held_sides import HeldSides
-from dembound.accuracy.of_disks.pair import Pair, pair_of, ratios, sides_of_pair
 from dembound.accuracy.of_disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
 from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Run, Runner, at_step
@@ -24,7 +23,7 @@ from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.symmetry import Symmetry
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
-from dembound.disks.contacts.breaks import BREAK_TIME
+from dembound.disks.contacts.pairs import BREAK_TIME
 from dembound.disks.entry import depths_held
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step

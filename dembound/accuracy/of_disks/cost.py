@@ -13,17 +13,17 @@ from functools import cached_property
 import numpy as np
 
 from dembound.accuracy.of_disks.steps import Steps
-from dembound.boundaries.sides import normal_axis
+from dembound.boundaries.edge import normal_axis
 from dembound.casefile.disks import DiskCase
+from dembound.continuum.medium import Ground
+from dembound.continuum.sizing import GridSizes
 from dembound.disks import step_cost
-from dembound.disks.beyond.mesh import medium_of
-from dembound.disks.beyond.settings import expected_tops, mesh_of, settings_of
 from dembound.disks.ram import stands_in_rows
-from dembound.disks.reduced.one_row import OneRow
+from dembound.disks.reduced import OneRow
 from dembound.disks.scene import DiskScene
+from dembound.disks.surroundings.mesh import medium_of
+from dembound.disks.surroundings.settings import expected_tops, mesh_of, settings_of
 from dembound.motion.kind import Plan
-from dembound.outside.medium import Ground
-from dembound.outside.ram import GridSizes
 from dembound.packings.tiling import count_disks
 
 SAMPLES = 64
@@ -53,7 +53,7 @@ def planned_cost(planned: Plan[DiskScene]) -> Cost:
     column = 0 if stepped.seam is None else stepped.seam.count
     nodes = sum(beyond.count for beyond in stepped.continua)
     ties = sum(len(beyond.wall.element) for beyond in stepped.continua)
-    seconds = 1e-9 * planned.steps * sum(step_cost.of_scene(stepped).values())
+    seconds = 1e-9 * planned.steps * sum(step_cost.times_of_scene(stepped).values())
     return Cost(planned.time_step, planned.steps, stepped.disk_count, column, nodes, ties, seconds)
 
 
@@ -81,7 +81,7 @@ class Counted:
         in_rows = stands_in_rows(case)
         absorbing = grid.nodes * grid.absorbing / grid.elements if grid.elements else 0.0
         each = step_cost.DISK[in_rows, self.given.scene.has_history]
-        parts = [*step_cost.of_continuum(grid.nodes, absorbing, ties).values(), each * disks, self._drives(ties)]
+        parts = [*step_cost.times_of_continuum(grid.nodes, absorbing, ties).values(), each * disks, self._drives(ties)]
         return Cost(step, steps, disks, column, grid.nodes, ties, 1e-9 * steps * sum(parts))
 
     def _disks(self, case: DiskCase) -> float:
@@ -123,7 +123,7 @@ class Counted:
         if scene.ground_waves is None:
             return 0.0
         own = sum(len(beyond.wall.element) for beyond in scene.continua)
-        return step_cost.of_scene(scene)["incident wave"] * ties / own
+        return step_cost.times_of_scene(scene)["incident wave"] * ties / own
 
     @cached_property
     def _rows_alike(self) -> int | None:

@@ -13,10 +13,8 @@ from dembound.accuracy.cause import CONTINUUM, GRID, MOTIONS, NEAR, STEP, USUAL,
 from dembound.accuracy.delays import Delay, error_of_delay, error_of_steps
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.held_sides import HeldSides
-from dembound.accuracy.of_disks.layered_column import errors_in_layers
-from dembound.accuracy.of_disks.matched_sides import Reflected, reflected
+from dembound.accuracy.of_disks.matched_sides import Reflected, errors_on_rock, reflected
 from dembound.accuracy.of_disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_errors
-from dembound.accuracy.of_disks.rock_sides import errors_on_rock
 from dembound.accuracy.of_disks.waves import (
     AXES,
     DIAGONAL,
@@ -24,11 +22,12 @@ from dembound.accuracy.of_disks.waves import (
     Frequencies,
     crossing_time,
     delay_of,
+    errors_in_layers,
     frequencies_of,
     layers_between,
 )
 from dembound.boundaries import Motion, axis_of_motion, normal_axis, plane_of
-from dembound.boundaries.sides import OPPOSITE
+from dembound.boundaries.edge import OPPOSITE
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reports.continuum_errors import CONTINUUM_FACTOR, expected_errors
 from dembound.disks.scene import DiskScene

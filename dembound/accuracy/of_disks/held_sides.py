@@ -29,7 +29,7 @@ import numpy as np
 from dembound.accuracy.cause import MOTIONS, USUAL, Cause
 from dembound.accuracy.history import History, Motions
 from dembound.boundaries import SIDES, Motion, axis_of_motion, normal_axis
-from dembound.boundaries.sides import OPPOSITE, plane_of
+from dembound.boundaries.edge import OPPOSITE, plane_of
 from dembound.disks.entry import Entry, depths_held, entries_of
 from dembound.disks.scene import DiskScene
 

@@ -20,7 +20,7 @@ from dembound.accuracy.delays import error_of_delay, error_of_steps, part_above
 from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_disks.formulas import Formulas, Way
 from dembound.casefile.disks import DiskCase
-from dembound.edges import spans_all
+from dembound.places import spans_all
 from dembound.table import Box
 
 SLOW = math.sqrt(3.0) / 2.0

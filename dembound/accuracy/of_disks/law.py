@@ -22,17 +22,17 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.cause import USUAL, Cause, share_of
+from dembound.accuracy.choice import keeps
 from dembound.accuracy.delays import error_of_delay
-from dembound.accuracy.differences import keeps
 from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.pair import ratios
+from dembound.accuracy.of_disks.enlarged import ratios
 from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import BOND_KEYS, HISTORY_KEYS, STRENGTH_KEYS
 from dembound.casefile.types import LAWS
-from dembound.disks.material.scatter import bond_factors
+from dembound.disks.material.constants import bond_factors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step

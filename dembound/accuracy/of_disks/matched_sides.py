@@ -1,27 +1,25 @@
-"""Reflection of plane waves along the normal of a side by its dashpots, on the packing of a case, without a run.
-
-A coarser lattice with dashpots of half cells reflects (β0 − β)/(β0 + β) of such waves, next to nothing at β0. It gets
-the β with which it reflects as much as the side of the case, whose reflection is due to random packings, single rows of
-whole cells, and factors that are not calibrated.
-"""
+"""Reflection of plane waves along the normal of a side by its dashpots, and beyond that of rock itself."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.accuracy.cause import MOTIONS
+from dembound.accuracy.history import History
+from dembound.accuracy.of_disks.waves import crossing_time
 from dembound.accuracy.watch import begins
-from dembound.boundaries import Motion
-from dembound.boundaries.support import BoundaryMedium, Edge
-from dembound.disks.beyond.frequencies import frequencies_of
-from dembound.disks.matching import homogenised_beta, require_dashpots_alone
+from dembound.boundaries.edge import BoundaryMedium, Edge, Motion, axis_of_motion, normal_axis
+from dembound.disks.entry import side_ends
+from dembound.disks.matching import factors_in, homogenised_beta, require_dashpots_alone
 from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.reflection.meter import Meter
 from dembound.disks.scene import DiskScene, with_boundaries
-from dembound.disks.side_media import media_of
+from dembound.disks.sides import ground_at, media_of
+from dembound.disks.surroundings.frequencies import frequencies_of
 from dembound.errors import CaseError
 
 FREQUENCIES = 3
@@ -128,3 +126,37 @@ def _measured(end: DiskScene, side: str, step: float, frequencies: np.ndarray) -
 def factor_for(share: float) -> float:
     """β over the matched β with which dashpots reflect this share of the velocity."""
     return (1.0 - share) / (1.0 + share)
+
+
+def errors_on_rock(
+    scene: DiskScene, side: str, own: History, back: Mapping[Motion, float]
+) -> dict[str, np.ndarray | float]:
+    """Errors (k, 2) of a recorded motion by a side on rock, by quantity.
+
+    back : by kind of wave, the reflection of the opposite side, from which the motion comes back to the rock; 0 where
+    nothing does, but for waves that only leave: there the recorded motion itself arrives.
+    """
+    axis, errors = normal_axis(side), {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
+    driven, ground = scene.case.side(side).waves, ground_at(scene, side)
+    for motion, (mass, stiffness) in side_ends(scene, side).items():
+        speed, column = ground.wave_speeds(axis)[0 if motion == "p" else 1], axis_of_motion(side, motion)
+        alpha = factors_in(scene, side)[motion] / homogenised_beta(scene, side, motion)
+        if not math.isfinite(speed):
+            continue
+        trip = 2.0 * crossing_time(scene, axis, motion) if driven else 0.0
+        returned = back[motion] if driven else 1.0
+        lag = -2.0 * (stiffness * alpha**2 - mass) / (speed * (1.0 + alpha) ** 2)
+        velocity = own.values["velocity"][:, column]
+        rates = {"velocity": np.gradient(velocity, own.time), "displacement": velocity}
+        for quantity, rate in rates.items():
+            error = returned * lag * np.interp(own.time - trip, own.time, rate, left=0.0)
+            again, late = (1.0 - alpha) / (1.0 + alpha) * returned, trip
+            while driven and abs(again) > REPEATED and late < own.time[-1] - own.time[0]:
+                errors[quantity][:, column] += again * np.interp(own.time - late, own.time, error, left=0.0)
+                again, late = again * (1.0 - alpha) / (1.0 + alpha) * returned, late + trip
+            errors[quantity][:, column] += error
+    return dict(errors)
+
+
+REPEATED = 1e-3
+"""Share of an error that comes back from the rock once more, below which it no longer counts."""

@@ -17,15 +17,15 @@ from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.places import middle_of_forces
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.settings import signals_of
+from dembound.continuum.sizing import mean_frequency
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene
+from dembound.disks.surroundings.settings import signals_of
 from dembound.holes import Hole, Rectangle
 from dembound.holes.hole import WALL
-from dembound.outside.sizing import mean_frequency
 
-NEAR, CURVED = 0.1, 0.6
+ALONG_RAY, CURVED = 0.1, 0.6
 """Error of motion along the ray over (κD)² (r/(r + b))², κ = k + CURVED/r, with the RMS wave number k of S waves."""
 
 NEAR_FACTOR = 2.0
@@ -92,7 +92,7 @@ def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
     found = {}
     for quantity, values in own.values.items():
         number = _norm(rates[quantity]) / max(_norm(values), np.finfo(float).tiny) / speed
-        size = NEAR * spread * (diameter * (number + CURVED / distance)) ** 2
+        size = ALONG_RAY * spread * (diameter * (number + CURVED / distance)) ** 2
         found[quantity] = size * _along(values, own.component(quantity), ray / distance)
     return found
 

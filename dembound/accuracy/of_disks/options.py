@@ -9,18 +9,18 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.differences import keeps
+from dembound.accuracy.choice import keeps
 from dembound.accuracy.of_disks.arrangements import arrangements, may_widen
 from dembound.accuracy.of_disks.companions import farther, needed_by
 from dembound.accuracy.of_disks.cost import Counted, planned_cost
-from dembound.accuracy.of_disks.extended import enlarged
+from dembound.accuracy.of_disks.enlarged import enlarged
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
-from dembound.disks.loads import forces_of
 from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, ground_of
+from dembound.disks.supports import forces_of
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import checked, with_changes
 from dembound.motion.kind import Plan

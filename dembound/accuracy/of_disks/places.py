@@ -8,9 +8,9 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
-from dembound.nearest import nearest
+from dembound.disks.supports import forces_of
+from dembound.places import nearest
 
 NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
 """Columns and rows of a patch, counted from its middle."""

@@ -19,7 +19,7 @@ from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene
 
 REST = "rest"

@@ -22,13 +22,19 @@ from dembound.accuracy.cause import SIDES, STEP, Cause, Causes, Truth
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, of_ground, of_rest, of_sides
+from dembound.accuracy.judge import Proposal
+from dembound.accuracy.of_disks.causes import (
+    PLACES,
+    causes_of_choice,
+    ground_causes,
+    rest_causes,
+    sides_cause,
+)
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.law import ElasticTwin
 from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_errors
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
-from dembound.accuracy.of_disks.pair import sides_of_pair
-from dembound.accuracy.proposal import Proposal
 from dembound.accuracy.watch import begins
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
@@ -324,7 +330,9 @@ class Search:
         scene = built.planned.scene
         self.spent += PER_ERROR
         with suppress(DemboundError):
-            self._note_sides(option, [of_sides(self.companions, scene, built.planned.time_step, option.wider)], scene)
+            self._note_sides(
+                option, [sides_cause(self.companions, scene, built.planned.time_step, option.wider)], scene
+            )
 
     def _note_sides(self, option: DiskOption, causes: Sequence[Cause], scene: DiskScene) -> None:
         """Store the error of the sides of a choice from its causes."""
@@ -344,7 +352,7 @@ class Search:
         option, scene, step = built.option, built.planned.scene, built.planned.time_step
         motions = self.companions.recorded(scene)
         try:
-            ground = of_ground(self.companions, scene, step)
+            ground = ground_causes(self.companions, scene, step)
             of_disks = Causes([cause for cause in ground if cause.of_disks or cause.name == STEP])
             error = Budget(motions, of_disks, self.of).worst().share.upper
             self.of_disks[_disks(option)] = min(error, self.of_disks.get(_disks(option), error))
@@ -354,7 +362,7 @@ class Search:
             self.tried += 1
             self.spent += PER_ERROR
             causes = causes_of_choice(self.companions, scene, step, option.wider, ground)
-            causes += of_rest(self.companions, scene)
+            causes += rest_causes(self.companions, scene)
         except DemboundError:
             return []
         self._note_sides(option, causes.found, scene)

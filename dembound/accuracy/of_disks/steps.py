@@ -15,8 +15,8 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from dembound.boundaries import Boundary, Periodic
+from dembound.boundaries.edge import SIDES, normal_axis
 from dembound.boundaries.outside import Outside
-from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.outside import OutsideTable

@@ -1,6 +1,5 @@
 """Cases of a bar: their tables."""
 
-from dembound.casefile.bar.model import BarCase
-from dembound.casefile.bar.schema import SCHEMA
+from dembound.casefile.bar.model import SCHEMA, BarCase
 
 __all__ = ["SCHEMA", "BarCase"]

@@ -1,12 +1,18 @@
-"""The ``[ground]`` table, where in the ground monitors and loads may be, and mistakes of a box of disks in it."""
+"""The ``[ground]`` table, ground of two heights, and mistakes of holes that depend on other tables."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
 
 from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.sides import SIDES, is_far, plane_of
-from dembound.casefile.messages import corners
-from dembound.packings import Packing
-from dembound.packings.base import TYPED, Extent
+from dembound.boundaries.edge import SIDES, is_far, plane_of
+from dembound.boundaries.free import Free
+from dembound.casefile.disks.load import Load
+from dembound.casefile.messages import choices, corners, numbered, show
+from dembound.holes.floor import Floor, floor_beside
+from dembound.holes.hole import Hole
+from dembound.packings.base import TYPED, Extent, Packing
 from dembound.table import Box, Table, quantity
 
 
@@ -71,3 +77,127 @@ def reach(ground: Ground, packing: Packing, boundary: Mapping[str, Boundary | No
         if side in boundary and (table is None or table.is_outside) and not (side == "top" and below_surface):
             ends[side] = float("inf") if is_far(side) else float("-inf")
     return ends["left"], ends["bottom"], ends["right"], ends["top"]
+
+
+SIDEWAYS = ("left", "right")
+"""The sides at which there may be a floor."""
+
+
+def floors(holes: Sequence[Hole], packing: Packing, ground: Ground, boundary: Mapping[str, Any]) -> dict[str, Floor]:
+    """The floors at the sides of the disks, if these reach the free surface of the ground; see `floor_beside`."""
+    top = boundary.get("top", Free())
+    if not (top and top.is_free) or "top" in packing.gaps(ground.box(packing)):
+        return {}
+    found = {side: floor_beside(holes, packing.box, side, 2.0 * packing.radius) for side in SIDEWAYS}
+    return {side: floor for side, floor in found.items() if floor is not None}
+
+
+def lowered(found: Mapping[str, Floor], boundary: Mapping[str, Any]) -> dict[str, Floor]:
+    """Floors at sides beyond which a continuum has the same height; an invalid side is None."""
+    return {side: floor for side, floor in found.items() if (table := boundary.get(side)) and table.is_outside}
+
+
+def lowered_in(tables: Mapping[str, Any]) -> dict[str, Floor]:
+    """Lowered floors from the tables of a case; tables and entries that are invalid on their own are None."""
+    packing, ground, boundary = (tables[key] for key in ("packing", "ground", "boundary"))
+    holes = [hole for hole in tables["hole"] if hole]
+    return lowered(floors(holes, packing, ground, boundary), boundary) if packing and ground else {}
+
+
+def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
+    """Tables that need a half-space as the ground, where the ground beyond a side is lower."""
+    lower = lowered_in(tables)
+    if not lower:
+        return
+    where = " and ".join(f"at y = {floor.height:.4g} m beyond the {side} side" for side, floor in lower.items())
+    no_half_space = (
+        f"as the ground is no half-space, with its surface {where}; end the holes inside the disks, with the surface "
+        "at its height at both sides"
+    )
+    if tables["incident"]:
+        yield f"incident: what the surface sends back of the wave is not known, {no_half_space}"
+    for side, table in tables["boundary"].items():
+        for motion in table.waves if table and table.is_outside else ():
+            yield f"boundary.{side}.wave_{motion}: the motion far from the disks is not known, {no_half_space}"
+    for place, load in numbered("load", tables["load"]):
+        if load.is_everywhere and (load.wave is not None or not tables["static"]):
+            yield f"{place}: acts on all disks, which needs a [static] stage and no wave, {no_half_space}"
+    if static := tables["static"]:
+        for side in SIDEWAYS:
+            table, own = tables["boundary"].get(side), static.boundary.get(side)
+            if table and table.is_outside and not (own and 0 in own.prescribed(0)):
+                yield f'static.boundary.{side}: must be "roller" or "fixed", as the ground beyond is no half-space'
+
+
+def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
+    """Check the holes; a table or an entry that is invalid on its own is None.
+
+    has_static : whether there is a static stage.
+    """
+    for place, hole in numbered("hole", tables["hole"]):
+        if tables["packing"]:
+            yield from _outside(place, hole, tables["packing"].box)
+        if hole.is_shape:
+            yield from _shapes(place, hole, tables["boundary"])
+        if hole.stage == "after" and not has_static:
+            yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
+        for key in ("load", "monitor"):
+            yield from _places_in_it(place, hole, key, tables)
+    for place, load in numbered("load", tables["load"]):
+        if load.hole is not None:
+            yield from _no_wall(place, load, tables)
+
+
+def _shapes(place: str, hole: Hole, boundary: Mapping[str, Any]) -> Iterator[str]:
+    """The shape of a sample that is cut later, or beside which the ground goes on."""
+    if hole.stage == "after":
+        yield f'{place}.stage: is "after", but a sample is cut before anything else; leave it out'
+    for side, table in boundary.items():
+        if table and (table.is_periodic or table.is_outside or table.needs_column or table.half_cells):
+            kind = "half_mass" if table.half_cells else f'"{table.type}"'
+            yield f'{place}.keep: is "inside", so the body ends at this shape; boundary.{side} must not be {kind}'
+
+
+def _outside(place: str, hole: Hole, box: Box) -> Iterator[str]:
+    """A hole outside the disks' box (left, bottom, right, top; m)."""
+    x0, y0, x1, y1 = hole.box
+    left, bottom, right, top = box
+    if x1 <= left or y1 <= bottom or x0 >= right or y0 >= top:
+        yield f"{place}: lies outside the scene, {corners(*box)}"
+
+
+def _places_in_it(place: str, hole: Hole, key: str, tables: Mapping[str, Any]) -> Iterator[str]:
+    """Loads or monitors in the hole, where there are no particles."""
+    span = tables["packing"].span if tables["packing"] else 0.0
+    for where, table in numbered(key, tables[key]):
+        if table.position is not None and hole.takes(np.array([table.position]), span)[0]:
+            yield f"{where}.position: lies in {place}; must be where particles remain"
+
+
+def _no_wall(place: str, load: Load, tables: Mapping[str, Any]) -> Iterator[str]:
+    """A pressure on a hole that the case does not have, or whose wall is not its whole outline.
+
+    A hole that is invalid on its own has no name here.
+    """
+    holes = {hole.name: hole for hole in tables["hole"] if hole}
+    if load.hole not in holes:
+        if None not in tables["hole"]:
+            defined = f"defined: {choices(str(load.hole), holes)}" if holes else "none is defined"
+            yield f"{place}.hole: {show(load.hole)} is not a hole of this case; {defined}"
+        return
+    hole = holes[load.hole]
+    if hole.is_shape:
+        yield f"{place}.hole: {show(hole.name)} is the shape of the sample; a pressure acts in a hole, or on sides"
+    if load.on == "outline" and hole.outline is None:
+        yield f'{place}.on: "outline" needs edges that do not cross; give hole {hole.name} such, or on = "bonds"'
+    if tables["packing"]:
+        yield from _at_periodic_sides(place, hole, tables)
+
+
+def _at_periodic_sides(place: str, hole: Hole, tables: Mapping[str, Any]) -> Iterator[str]:
+    """A message about a hole that reaches a periodic side, beyond which it is not repeated."""
+    (x0, y0, x1, y1), (left, bottom, right, top) = hole.box, tables["packing"].box
+    reached = {"left": x0 <= left, "right": x1 >= right, "bottom": y0 <= bottom, "top": y1 >= top}
+    for side, table in tables["boundary"].items():
+        if table and table.is_periodic and reached[side]:
+            yield f"{place}.hole: {show(hole.name)} reaches the periodic side {side}, which closes its wall otherwise"

@@ -1,11 +1,11 @@
-"""The ``[[load]]`` tables."""
+"""The ``[[load]]`` and ``[[monitor]]`` tables of disks."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import model_validator
+from pydantic import AfterValidator, model_validator
 
-from dembound.boundaries import normal_axis
+from dembound.boundaries.edge import normal_axis
 from dembound.table import Box, FileName, Table, quantity
 
 Vector = tuple[float, float]
@@ -151,3 +151,27 @@ def gravity(loads: Iterable[Load | None]) -> list[float]:
     """Accelerations (m/s²) along y of the steady ones among some loads that act on all particles."""
     everywhere = [load for load in loads if load and load.acceleration is not None and load.is_everywhere]
     return [load.vector[1] for load in everywhere if load.wave is None]
+
+
+FREE_FIELD = ".free_field"
+"""Suffix of a monitor's name for the history of its twin in the free-field column."""
+
+
+def _is_no_twin(name: str) -> str:
+    if name.endswith(FREE_FIELD):
+        raise ValueError(f'is "{name}", must not end in "{FREE_FIELD}", which is kept for a monitor\'s twin')
+    return name
+
+
+class Monitor(Table):
+    """A place at which the motion of the nearest particle, or of the continuum there, is recorded."""
+
+    name: Annotated[FileName, AfterValidator(_is_no_twin)] = quantity(
+        ..., unit="1", help="name of the history in the results"
+    )
+    position: tuple[float, float] = quantity(
+        ...,
+        unit="m",
+        means="place",
+        help="where; between equally near particles the lowest is taken, of these the leftmost",
+    )

@@ -4,8 +4,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from dembound.casefile.disks.scatter import Scatter
-from dembound.casefile.disks.targets import PAIRS, PlaneModuli, Target
+from dembound.casefile.disks.targets import PAIRS, PlaneModuli, Scatter, Target
 from dembound.casefile.types import LAWS, LawName
 from dembound.table import Table, quantity
 

@@ -3,27 +3,44 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks.damping import Damping
-from dembound.casefile.disks.floors import floors, lowered
-from dembound.casefile.disks.ground import Ground
-from dembound.casefile.disks.incident import IncidentWave
+from dembound.casefile.disks.ground import Ground, floors, lowered
+from dembound.casefile.disks.incident import IncidentWave, Motion
 from dembound.casefile.disks.intact import bearing_of, intact_depths
 from dembound.casefile.disks.layer import Layer, bottoms
-from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
-from dembound.casefile.disks.monitor import Monitor
-from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.outside import OutsideTable
-from dembound.casefile.disks.reduce import Reduce
-from dembound.casefile.disks.run import DiskRun
 from dembound.casefile.disks.static import Static, begins_stressed
 from dembound.casefile.model import Case
-from dembound.holes import Hole
+from dembound.casefile.tables import Run
 from dembound.holes.floor import Floor
-from dembound.packings import Packing
-from dembound.table import Box
+from dembound.holes.hole import Hole
+from dembound.packings.base import Packing
+from dembound.table import Box, Table, quantity
+
+
+class Reduce(Table):
+    """Parts of a scene that are not stepped, as their motion follows from that of other parts."""
+
+    rows: bool = quantity(True, unit="1", help="whether rows of disks that move identically are stepped as one")
+    settled: bool = quantity(
+        False, unit="1", help="whether the elastic law serves again after a static stage if nothing is open or slides"
+    )
+
+
+class DiskRun(Run):
+    """The simulated time and the time step of disks, and what becomes of disks that have fallen far below the scene."""
+
+    far: Literal["keep", "retire"] = quantity(
+        "keep",
+        unit="1",
+        help='disks that touch nothing and have fallen below the base by more than the height of the scene; "keep": '
+        'they fall on; "retire": they stop there, and their energy counts as taken by damping',
+    )
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

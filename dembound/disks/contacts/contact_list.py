@@ -5,25 +5,21 @@ from dataclasses import fields
 import numpy as np
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.contacts.arrays import ContactHistory, Pairs, bonds_of
 from dembound.disks.contacts.dashpots import Dashpots
-from dembound.disks.contacts.forces import acting
-from dembound.disks.contacts.neighbours import near_pairs, pair_keys
-from dembound.disks.contacts.pair_list import NO_LIMITS, PairList
+from dembound.disks.contacts.pair_list import NO_LIMITS, PairList, near_pairs, pair_keys
 from dembound.disks.contacts.pair_rows import PairPlan
+from dembound.disks.contacts.pairs import ContactHistory, Pairs, acting, bonds_of
 from dembound.disks.contacts.row_plan import RowPlan
 from dembound.disks.material.at_rest import StressAtRest, stressed
-from dembound.disks.material.constants import brick_constants, limits_of, shared_constants
+from dembound.disks.material.constants import BondFactors, brick_constants, limits_of, shared_constants
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.material.scatter import BondFactors
 from dembound.kernels import contacts as kernel
-from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
+from dembound.kernels.near import approach
 from dembound.kernels.tables import Limits
-from dembound.motion.cracks import Cracks, joined
-from dembound.motion.layout import Layout
-from dembound.motion.state import Arrays
+from dembound.motion.part import Cracks, joined
+from dembound.motion.state import Arrays, Layout
 from dembound.packings.tiling import Assembly
 
 SKIN = 0.05

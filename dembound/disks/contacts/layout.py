@@ -1,17 +1,157 @@
-"""The order of a scene's disks in RAM, and the contacts of the elastic law in that order."""
+"""The order of a scene's disks in RAM, and the contacts of the elastic law for its kernels."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from dembound.disks.contacts.lane_rows import lane_rows
-from dembound.disks.contacts.row_plan import RowPlan, plan_rows
-from dembound.disks.contacts.rows import contact_rows
+from dembound.disks.contacts.row_plan import Ends, RowPlan, entries_of, plan_rows
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.kernels.lanes import LANES
-from dembound.kernels.tables import LaneRows, NeighbourTable
-from dembound.motion.layout import Layout
+from dembound.kernels.compiler.lanes import LANES
+from dembound.kernels.tables.contacts import LaneRows, NeighbourTable
+from dembound.laws.law import Stiffness
+from dembound.motion.state import Layout
+from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
+
+Springs = Callable[[tuple[int, int]], Stiffness]
+"""Constants of the brick's contacts between two zones, see `PackedMaterial.stiffness_of`."""
+
+
+def contact_rows(
+    assembly: Assembly, ground: PackedMaterial, begin: int = 0, springs: Springs | None = None
+) -> NeighbourTable:
+    """Sort the contacts into one row per particle, with a table of the constants of the brick's contacts.
+
+    begin : number of the assembly's first particle in the scene. springs : in place of those of the ground.
+
+    The rows of the table are in the order in which the particles use them, so that a loop over particles reads the
+    table in order as well, and it stays in the cache of the core.
+    """
+    constants, row_of = elastic_constants(ground, springs)
+    i, j = assembly.pairs.T
+    owner = np.concatenate([i, j])
+    neighbour = np.concatenate([j, i])
+    contact_type = row_of[np.concatenate([2 * assembly.contact_type, 2 * assembly.contact_type + 1])]
+    order = np.lexsort((neighbour, owner))
+    start = np.zeros(begin + len(assembly.radii) + 1, dtype=np.uint32)
+    np.cumsum(np.bincount(owner, minlength=len(assembly.radii)), out=start[begin + 1 :])
+    return NeighbourTable(
+        begin, start, (begin + neighbour[order]).astype(np.uint32), contact_type[order].astype(np.uint32), constants
+    )
+
+
+def elastic_constants(ground: PackedMaterial, springs: Springs | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Constants (4b, 6), and the row in them of contact k for its first (2k) and second disk (2k + 1).
+
+    Contacts from number b on are those of the brick with half their stiffness, for sides of half cells; those of other
+    pairings of zones follow in a layered ground.
+    """
+    found, rows, springs = [], [], springs or ground.stiffness_of
+    for number, pairing in enumerate(ground.pairings):
+        constants, row_of = _constants_of(ground.brick, springs(pairing))
+        found.append(constants)
+        rows.append(row_of + number * len(row_of))
+    return np.vstack(found), np.concatenate(rows)
+
+
+def _constants_of(brick: Brick, law: Stiffness) -> tuple[np.ndarray, np.ndarray]:
+    """Constants and rows, as of `elastic_constants`, of the brick's contacts with these stiffnesses."""
+    vectors = brick.vectors
+    n = vectors / np.hypot(*vectors.T)[:, None]
+    root_n, root_s = np.sqrt(law.normal), np.sqrt(law.shear)
+    ratio = np.divide(root_s, root_n, out=np.zeros_like(root_n), where=root_n > 0.0)  # a gap without bond has neither
+    common = [root_n * n[:, 0], root_n * n[:, 1], ratio]
+    directed = np.empty((len(vectors), 2, 6))
+    directed[:, 0] = np.stack([*common, root_s * law.arm_i, root_s * law.arm_j, law.bending], axis=1)
+    directed[:, 1] = np.stack([*common, -root_s * law.arm_j, -root_s * law.arm_i, law.bending], axis=1)
+    flat = directed.reshape(-1, 6)
+    order = np.lexsort((brick.pairs[:, ::-1].ravel(), brick.pairs.ravel()))
+    row_of = np.empty(len(order), dtype=np.int64)
+    row_of[order] = np.arange(len(order))
+    half = flat[order] * [np.sqrt(0.5), np.sqrt(0.5), 1.0, np.sqrt(0.5), np.sqrt(0.5), 0.5]
+    return np.vstack([flat[order], half]), np.concatenate([row_of, row_of + len(order)])
+
+
+def lane_rows(
+    assembly: Assembly, ground: PackedMaterial, plan: RowPlan, begin: int, slots: int, fraction: np.ndarray
+) -> LaneRows:
+    """The contacts of an assembly between its rows.
+
+    begin : slot of the first block; slots : number of slots of the scene; fraction (n,) of its mass that each disk has.
+    """
+    table, row_of = elastic_constants(ground)
+    constants = matrices(table)
+    first_block, rows = begin // LANES, int(plan.group_row[-1])
+    joined, ends = entries_of(Ends.of(assembly, plan.slot, row_of), plan)
+    whole = joined.mask < 0
+    order = np.lexsort((~whole, joined.row))
+    own = np.zeros((rows, 3))
+    np.add.at(own, joined.row[whole], constants[joined.line[whole], 8:])
+    start = np.zeros((rows + 1, 2), dtype=np.int64)
+    start[1:, 0] = np.cumsum(np.bincount(joined.row, minlength=rows))
+    start[:-1, 1] = start[:-1, 0] + np.bincount(joined.row[whole], minlength=rows)
+    special = np.zeros(first_block + plan.group_block[-1], dtype=np.bool_)
+    slot = begin + plan.slot
+    special[slot[fraction != 1.0] // LANES] = True
+    special[(begin + ends.slot) // LANES] = True
+    mass, inertia = np.zeros(rows), np.zeros(rows)
+    mass[plan.row], inertia[plan.row] = ground.disk_masses(assembly)
+    return LaneRows(
+        group_row=plan.group_row,
+        group_block=first_block + plan.group_block,
+        inverse_mass=1.0 / mass,
+        inverse_inertia=1.0 / inertia,
+        start=start,
+        shift=joined.shift[order],
+        mask=joined.mask[order],
+        masks=joined.masks,
+        constants=np.ascontiguousarray(constants[joined.line[order], :8]),
+        turn=np.ascontiguousarray(constants[joined.line[order], 8:]),
+        own=own,
+        special=special,
+        **_strays(ends, begin),
+        stray_constants=table,
+        extra=np.zeros((3, slots if len(ends.line) else LANES)),
+    )
+
+
+def matrices(table: np.ndarray) -> np.ndarray:
+    """Constants (p, 11) of contacts as matrices, from rows (p, 6) of elastic.py.
+
+    Force on i by Δx, Δy of j relative to i and by θ_j: [xx, xy, yy, xθ, yθ], its moment by these [θx, θy, θθ], and
+    force and moment by θ_i, [x, y, θ].
+    """
+    x, y, ratio, arm_i, arm_j, bending = table.T
+    across, up = -ratio * y, ratio * x  # √k_s t
+    return np.stack(
+        [
+            x * x + across * across,
+            x * y + across * up,
+            y * y + up * up,
+            -across * arm_j,
+            -up * arm_j,
+            arm_i * across,
+            arm_i * up,
+            bending - arm_i * arm_j,
+            -across * arm_i,
+            -up * arm_i,
+            -bending - arm_i * arm_i,
+        ],
+        axis=1,
+    )
+
+
+def _strays(ends: Ends, begin: int) -> dict[str, np.ndarray]:
+    """The contact ends that are in no entry, by their owners, see `LaneRows`."""
+    ends = ends.at(np.lexsort((ends.other, ends.line, ends.slot)))
+    slot, start = np.unique(ends.slot, return_index=True)
+    return {
+        "stray": begin + slot,
+        "stray_start": np.append(start, len(ends.slot)),
+        "stray_neighbour": (begin + ends.other).astype(np.uint32),
+        "stray_type": ends.line.astype(np.uint32),
+    }
+
 
 LEAST_FILL = 0.3
 """Share of the lanes that have to hold disks for rows of copies to be worth it; two copies of a brick fill 0.25 and are

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from dembound.disks.contacts.row_plan import RowPlan
-from dembound.kernels.began import began_of
-from dembound.kernels.lanes import LANES
+from dembound.kernels.compiler.lanes import LANES
+from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.tables import PairRows
 
 LEAST_SHARE = 0.3

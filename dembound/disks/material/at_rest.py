@@ -19,8 +19,8 @@ from dembound.disks.material.homogenise import Network
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.sliding import springs_of, strains_of, strains_with_slip, within_friction
-from dembound.edges import ROUNDING
 from dembound.packings.tiling import Assembly
+from dembound.places import ROUNDING
 
 
 @dataclass(frozen=True, eq=False)

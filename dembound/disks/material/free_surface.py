@@ -14,10 +14,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from dembound.continuum.edges import edge_lengths
+from dembound.continuum.mesh import Mesh
 from dembound.disks.material.homogenise import Network
 from dembound.laws import Stiffness
-from dembound.outside.edges import edge_lengths
-from dembound.outside.mesh import Mesh
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import tile
 from dembound.table import Box

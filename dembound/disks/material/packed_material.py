@@ -12,10 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.edge import SIDES
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
-from dembound.damping.attenuation import Attenuation
+from dembound.damping import Attenuation
 from dembound.disks.material.free_surface import cut_at, skin_depths
 from dembound.disks.material.homogenise import HomogenisedMaterial, Network, homogenise
 from dembound.disks.material.sliding import sliding_forces

@@ -9,19 +9,18 @@ from typing import Any
 import numpy as np
 
 from dembound.boundaries import Motion, normal_axis
-from dembound.boundaries.words import reflected
+from dembound.boundaries.description import reflected
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import linear_law
-from dembound.disks.beyond.frequencies import frequencies_of
 from dembound.disks.matching import factors_in, homogenised_beta
-from dembound.disks.reflection.arrivals import Arrival, arrivals_of
+from dembound.disks.reflection.arrivals import Arrival, arrivals_of, wide_frequencies, words_of
 from dembound.disks.reflection.bricks import BrickInRow, end_of, end_scene
-from dembound.disks.reflection.compared import wide_frequencies, words_of
 from dembound.disks.reflection.continuum_end import ContinuumEnd, beside_elements, copies_beside
 from dembound.disks.reflection.meter import End, Meter, Reflections
 from dembound.disks.reflection.smeared import by_smeared_supports
 from dembound.disks.scene import DiskScene, build, ground_of, with_boundaries
 from dembound.disks.stability import choose_step
+from dembound.disks.surroundings.frequencies import frequencies_of
 from dembound.errors import CaseError
 from dembound.schemas import with_changes
 

@@ -21,7 +21,7 @@ from dembound.boundaries import Boundary, Periodic, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.reflection.condensed import Body, Condensed
+from dembound.disks.reflection.modes import Body, Condensed
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.laws import Stiffness

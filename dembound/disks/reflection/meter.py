@@ -18,8 +18,7 @@ from dembound.boundaries import normal_axis
 from dembound.disks.material.homogenise import GRADIENTS
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reflection.bricks import BrickInRow, end_of, is_outwards
-from dembound.disks.reflection.condensed import Oscillation
-from dembound.disks.reflection.modes import Modes, modes_of, modes_of_copies, sent_back
+from dembound.disks.reflection.modes import Modes, Oscillation, modes_of, modes_of_copies, sent_back
 from dembound.disks.scene import DiskScene
 
 Kind = Literal["p", "s"]

@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dembound.boundaries import SIDES, Motion, is_far, normal_axis
-from dembound.disks.beyond.frequencies import mean_frequency
 from dembound.disks.matching import Held
 from dembound.disks.scene import DiskScene
-from dembound.disks.side_media import ground_at, layers_beside
+from dembound.disks.sides import ground_at, layers_beside
+from dembound.disks.surroundings.frequencies import mean_frequency
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix

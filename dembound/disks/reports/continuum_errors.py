@@ -25,15 +25,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.boundaries.sides import normal_axis
-from dembound.disks.beyond.settings import ROUNDING, near_fields, signals_of
-from dembound.disks.beyond.surroundings import Surroundings
+from dembound.boundaries.edge import normal_axis
+from dembound.continuum import sizing
+from dembound.continuum.medium import Medium
+from dembound.continuum.sizing import Signal
 from dembound.disks.packing_errors import lattice_errors, unevenness
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import place_of
-from dembound.outside import sizing
-from dembound.outside.medium import Medium
-from dembound.outside.sizing import Signal
+from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.surroundings.settings import ROUNDING, near_fields, signals_of
 
 PASSED, STEEP, RETURNED = 4.5, 8.0, 0.5
 """Nodes in the length of the shortest wave that elements pass on, the power of f above which they return less, and the

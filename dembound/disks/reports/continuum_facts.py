@@ -8,11 +8,18 @@ from itertools import product
 
 import numpy as np
 
-from dembound.boundaries.sides import normal_axis
+from dembound.boundaries.edge import normal_axis
 from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.messages import counted
+from dembound.continuum import sizing
+from dembound.continuum.layer import RETURNED
+from dembound.continuum.sizing import Signal
 from dembound.disks import step_cost
-from dembound.disks.beyond.settings import (
+from dembound.disks.packing_errors import packing_facts
+from dembound.disks.reports.continuum_errors import coarsest, elements_by_layer, largest_element, near_error
+from dembound.disks.scene import DiskScene
+from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.surroundings.settings import (
     ROUNDING,
     buried,
     lasting_time,
@@ -20,13 +27,6 @@ from dembound.disks.beyond.settings import (
     margin_below_surface,
     signals_of,
 )
-from dembound.disks.beyond.surroundings import Surroundings
-from dembound.disks.packing_errors import packing_facts
-from dembound.disks.reports.continuum_errors import coarsest, elements_by_layer, largest_element, near_error
-from dembound.disks.scene import DiskScene
-from dembound.outside import sizing
-from dembound.outside.layer import RETURNED
-from dembound.outside.sizing import Signal
 from dembound.words import Entries, percent
 
 SHOWN = 5e-4
@@ -181,7 +181,7 @@ def _reflections(outside: Surroundings, signals: Sequence[Signal]) -> tuple[list
 
 def _cost(scene: DiskScene) -> str:
     """Shares of a step's time, in words."""
-    costs = step_cost.of_scene(scene)
+    costs = step_cost.times_of_scene(scene)
     whole = sum(costs.values())
     shares = [f"{name} {100.0 * cost / whole:.0f} %" for name, cost in costs.items() if cost > 0.0]
     return f"of the stepping about: {', '.join(shares)}"

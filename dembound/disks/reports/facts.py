@@ -6,28 +6,26 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries.words import side_in_words
+from dembound.boundaries.description import side_in_words
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.monitor import FREE_FIELD
+from dembound.casefile.disks.load import FREE_FIELD, Load
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
-from dembound.damping.quality import Mechanisms
-from dembound.damping.rayleigh import Rayleigh
-from dembound.disks.beyond.frequencies import mean_frequency
+from dembound.damping import Mechanisms, Rayleigh
 from dembound.disks.contacts.layout import fill
 from dembound.disks.entry import MOTIONS
-from dembound.disks.loads import forces_of
 from dembound.disks.matching import sent_back
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.reports.continuum_facts import continuum_facts
 from dembound.disks.reports.incident_facts import incident_facts
 from dembound.disks.reports.intact import intact_facts
-from dembound.disks.reports.materials import Own, materials_of
+from dembound.disks.reports.micro_macro import Own, materials_of
 from dembound.disks.reports.summary import describe_layers, describe_packing, describe_side
 from dembound.disks.reports.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.disks.scene import DiskScene
 from dembound.disks.stability import viscous_share
+from dembound.disks.supports import forces_of
+from dembound.disks.surroundings.frequencies import mean_frequency
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
 BALANCED = 1e-9

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.disks.beyond.ground_waves import GroundWaves, reference_point
-from dembound.disks.beyond.layered_waves import LayeredWaves, Undisturbed, critical_in_layers
-from dembound.disks.beyond.oblique_layers import ObliqueLayers
-from dembound.disks.beyond.surroundings import Surroundings
+from dembound.continuum.medium import GRAZING, ElasticPlaneWave, critical_angle
 from dembound.disks.scene import DiskScene
-from dembound.outside.plane_waves import GRAZING, ElasticPlaneWave, critical_angle
+from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.surroundings.ground_waves import GroundWaves, reference_point
+from dembound.disks.surroundings.layered_waves import LayeredWaves, Undisturbed, critical_in_layers
+from dembound.disks.surroundings.oblique_layers import ObliqueLayers
 from dembound.words import Entries
 
 NAMES = {"sv": "SV", "p": "P"}

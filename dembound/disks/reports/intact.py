@@ -6,8 +6,8 @@ import numpy as np
 
 from dembound.boundaries.intact import Keeping
 from dembound.casefile.disks.intact import can_break, keeps_forces
-from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
+from dembound.disks.supports import forces_of
 from dembound.words import Entries, with_unit
 
 TENTH = 0.1

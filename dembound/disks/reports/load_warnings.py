@@ -6,8 +6,8 @@ import numpy as np
 
 from dembound.boundaries.support import Edge
 from dembound.casefile.disks.load import Load
-from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
+from dembound.disks.supports import forces_of
 from dembound.words import percent
 
 HELD = 0.1

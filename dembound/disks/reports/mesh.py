@@ -1,37 +1,8 @@
-"""Snapshots of disks for ParaView: one vertex per disk, and a script that shows them.
-
-Every disk is a vertex at its reference position moved by its displacement (z = 0), with these point data:
-
-
-| name | unit | shape | what |
-|---|---|---|---|
-| ``radii`` | m | (n,) | disk radius (YADE's name) |
-| ``id`` | 1 | (n,) | number of the disk in the scene (YADE's name) |
-| ``linVelVec`` | m/s | (n, 3) | velocity, z = 0 (YADE's name) |
-| ``angVelVec`` | rad/s | (n, 3) | angular velocity, along z (YADE's name) |
-| ``speed`` | m/s | (n,) | length of ``linVelVec`` |
-| ``displacement`` | m | (n, 3) | since the start of the run, z = 0 |
-| ``rotation`` | rad | (n,) | since the start of the run |
-| ``brick_particle`` | 1 | (n,) | the disk of the brick that this one is a copy of |
-| ``column`` | 1 | (n,) | 1 for a disk of a free-field column, else 0 |
-| ``layer`` | 1 | (n,) | number of its layer, from 1 at the surface; of a layered ground |
-| ``coordNumber`` | 1 | (n,) | its intact bonds and closed contacts, of a history-dependent law (YADE's name) |
-| ``nbCracks`` | 1 | (n,) | its bonds that have broken so far (YADE's name) |
-| ``damage`` | 1 | (n,) | that number over the bonds it had at the start, 0 where it had none |
-| ``stress`` | Pa | (n, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, with Z 0; if the case asks for it |
-| ``peakVelocity`` | m/s | (n,) | largest speed in the whole run, in every file; if the case asks for it |
-
-To see disks in ParaView, run ``paraview --script=view.py`` in the folder, or open ``particles.pvd``, press
-Apply and run ``view.py`` from the Python shell (Run Script). By hand: representation *Point Gaussian*, shader
-preset *Plain circle*, scale by array ``radii``, no scale function, Gaussian radius 1. As solid geometry: filter
-*Glyph*, type *2D Glyph* (circle, filled), no orientation, scale array ``radii``, scale factor 2, all points.
-*Warp By Vector* with ``displacement`` and factor k − 1 shows displacements k times as large. The script also shows the
-continuum of ``continuum.pvd``, see `disks.continuum_mesh`.
-"""
+"""Snapshots for ParaView: a vertex per disk, a line per contact, cells of the continuum, and a script."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -125,3 +96,79 @@ def tensors(stress: np.ndarray) -> np.ndarray:
     tensors = np.zeros((len(stress), 6))
     tensors[:, [0, 1, 3]] = stress
     return tensors
+
+
+def contact_mesh(particles: Arrays, snapshot: Arrays) -> meshio.Mesh:
+    """The contacts of one snapshot as lines with the cell data of this module's table."""
+    import meshio  # imported here, as commands that write no files need not wait for it
+
+    pairs = snapshot["contacts/particles"]
+    begin = places_of(particles, snapshot)[pairs[:, 0]]
+    end = begin + in_space(snapshot["contacts/vector"])
+    data = {
+        "normalForce": snapshot["contacts/normal_force"],
+        "shearForce": snapshot["contacts/shear_force"],
+        "bonded": snapshot["contacts/bonded"],
+        "particles": pairs,
+    }
+    lines = np.arange(2 * len(pairs), dtype=np.int32).reshape(-1, 2)
+    points = np.stack([begin, end], axis=1).reshape(-1, 3)
+    return meshio.Mesh(points, [("line", lines)], cell_data={name: [values] for name, values in shown(data).items()})
+
+
+def continuum_mesh(columns: Arrays, snapshot: Arrays) -> meshio.Mesh:
+    """One snapshot as quadrilaterals with the point data of this module's table."""
+    import meshio
+
+    displacement, velocity = (snapshot[f"continuum/{name}"][:, :2] for name in ("displacement", "velocity"))
+    data = {
+        "linVelVec": in_space(velocity),
+        "speed": np.hypot(*velocity.T),
+        "displacement": in_space(displacement),
+        "stress": tensors(snapshot["continuum/stress"]),
+        "absorbs": columns["continuum/absorbs"],
+    }
+    if "continuum/total" in columns:
+        data["scattered"], data["scatteredVelocity"] = (
+            in_space(snapshot[f"continuum/scattered_{name}"][:, :2]) for name in ("displacement", "velocity")
+        )
+        data["total"] = columns["continuum/total"]
+    if "continuum/peak_velocity" in columns:
+        data["peakVelocity"] = columns["continuum/peak_velocity"]
+    across = Across.of(columns)
+    points = np.concatenate([columns["continuum/position"], across.place])
+    node = np.concatenate([np.arange(len(displacement)), across.node])
+    cells = np.concatenate([columns["continuum/cell"], across.cell]).astype(np.int32)
+    shift = in_space(points + displacement[node])
+    return meshio.Mesh(shift, [("quad", cells)], point_data=shown({name: each[node] for name, each in data.items()}))
+
+
+class Across(NamedTuple):
+    """Nodes and cells of a periodic continuum across its period.
+
+    node : (k,) nodes that are repeated. place : (k, 2) m, their places one period on. cell : (c, 4) corners of the
+    cells between the last nodes and the repeated ones, which are numbered after all nodes.
+    """
+
+    node: np.ndarray
+    place: np.ndarray
+    cell: np.ndarray
+
+    @classmethod
+    def of(cls, columns: Arrays) -> Across:
+        """Points of a record's continuum that meet across a period; empty for one that is not periodic."""
+        position, node = columns["continuum/position"], columns["continuum/node"].astype(np.int64)
+        low, high = (columns["continuum/element"][:, None, None, end] for end in (slice(0, 2), slice(2, 4)))
+        is_last = np.zeros((1, *node.shape[1:], 2), dtype=np.bool_)
+        is_last[:, :, -1, 0] = is_last[:, -1, :, 1] = True
+        place = position[node]
+        wraps = is_last & (place < 0.5 * (low + high))  # the last line of points is the first one of the mesh
+        place = np.where(wraps, high, place)
+        of_node = wraps.any(axis=3)
+        kept = np.column_stack([node[of_node], wraps[of_node]])
+        chosen, first, number = np.unique(kept, axis=0, return_index=True, return_inverse=True)
+        corner = node.copy()
+        corner[of_node] = len(position) + number.ravel()
+        cells = np.stack([corner[:, :-1, :-1], corner[:, :-1, 1:], corner[:, 1:, 1:], corner[:, 1:, :-1]], axis=3)
+        cells = cells.reshape(-1, 4)
+        return cls(chosen[:, 0], place[of_node][first], cells[(cells >= len(position)).any(axis=1)])

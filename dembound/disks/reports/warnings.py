@@ -13,21 +13,19 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import MODULI_KEYS, with_history
 from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
-from dembound.disks.far import far_warnings
-from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.reports.continuum_facts import continuum_warnings
 from dembound.disks.reports.intact import intact_warnings
 from dembound.disks.reports.load_warnings import load_warnings
-from dembound.disks.reports.materials import Own, materials_of
-from dembound.disks.reports.outcome import SHOWN, block_in_words
-from dembound.disks.reports.side_warnings import side_warnings
-from dembound.disks.reports.spring_warnings import spring_warnings
+from dembound.disks.reports.micro_macro import Own, materials_of
+from dembound.disks.reports.side_warnings import side_warnings, spring_warnings
+from dembound.disks.reports.summary import SHOWN, block_in_words
 from dembound.disks.reports.wave_warnings import wave_warnings
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.disks.stepping.near_ties import near_tie_warnings
 from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
-from dembound.disks.turns import turn_warnings
+from dembound.disks.watches import far_warnings, turn_warnings
 from dembound.meanings import MEANINGS
 from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import energy_warnings, still_moving

@@ -18,17 +18,16 @@ from dembound.casefile.magnitudes import (
     time_warnings,
     waves_used,
 )
-from dembound.disks.beyond.frequencies import share_above
-from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.reports.incident_facts import arrival
-from dembound.disks.reports.materials import materials_of
+from dembound.disks.reports.micro_macro import materials_of
 from dembound.disks.scene import DiskScene
-from dembound.disks.side_media import boundary_medium, medium_of_side
-from dembound.edges import spans_all
+from dembound.disks.sides import boundary_medium, medium_of_side
+from dembound.disks.surroundings.frequencies import share_above
 from dembound.errors import CaseError
+from dembound.places import spans_all
 from dembound.waves.constant import Constant
-from dembound.waves.spectrum import HANN_FADE
-from dembound.waves.wave import Wave
+from dembound.waves.wave import HANN_FADE, Wave
 from dembound.words import percent, with_unit
 
 FEWEST_PER_WAVELENGTH = 20.0

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.system import DiskSystem

@@ -1,9 +1,4 @@
-"""The static stage: a damped run that brings a body to rest under steady loads and a given stress.
-
-The forces of its supports and from outside then act as a constant force F_0 on every particle (Z eqs 5, 6: the
-unbalanced force F_eq with opposite sign). The motion starts from rest, and the boundaries of the run replace the
-supports.
-"""
+"""The static stage: a damped run that brings a body to rest under steady forces, and its end."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -11,20 +6,163 @@ from pathlib import Path
 
 import numpy as np
 
-from dembound.disks.rest.block_stress import Uniformity, block_stress
-from dembound.disks.rest.loading import Loading
-from dembound.disks.rest.settled import Settled, among
+from dembound.disks.rest.loading import LOOK, Loading
+from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene
-from dembound.disks.rest.until_at_rest import UntilAtRest
 from dembound.disks.scene import DiskScene, column_alone
 from dembound.disks.stability import step_limit
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
-from dembound.motion.kind import OnLook
+from dembound.motion.kind import OnLook, Stages, StalledError
+from dembound.motion.part import Cracks, joined
 from dembound.motion.simulation import Simulation
-from dembound.motion.stages import Stages
+from dembound.motion.state import Arrays, State
+from dembound.motion.trackers import Run, Tracker
 from dembound.results.reader import understood
+
+PATIENCE = 20_000
+"""Steps after which a stage has stalled if the force ratio has not decreased by a tenth."""
+
+ELASTIC_PATIENCE = 5_000
+"""Steps without such a decrease after which a body leaves the elastic law."""
+
+WORST = 3
+"""Number of particles in the message about a stalled stage."""
+
+
+class UntilAtRest(Tracker):
+    """Ends a static stage that is at rest or has stalled; until then it applies the loads.
+
+    Parameters
+    ----------
+    body : the scene that settles.
+    system : its parts.
+    loading : applies its loads.
+    on_look : receives the number of steps done, the force ratio and the name from time to time.
+    stage : its name in messages.
+
+    Attributes
+    ----------
+    ratio : mean unbalanced over mean contact force at the last evaluation. forces : (3, n) N and N·m of contacts at
+    that time.
+    """
+
+    name = "until at rest"
+
+    def __init__(
+        self, body: StaticScene, system: DiskSystem, loading: Loading, on_look: OnLook | None, stage: str
+    ) -> None:
+        self.ratio, self.forces = np.inf, np.zeros((3, 0))
+        self._body, self._system, self._loading = body, system, loading
+        self._on_look, self._stage = on_look, stage
+        self._best, self._best_at = np.inf, 0
+        # a law without history has no list of pairs, but their forces are needed too
+        self._contacts = system.contacts or contact_lists(body.scene)
+        self._look_after(0)
+
+    def _look_after(self, step: int) -> None:
+        self.due = min(step + LOOK, max(self._body.static.max_steps, step + 1))
+
+    def handle(self, run: Run) -> None:
+        """Evaluate the force ratio; raise StalledError if it no longer decreases or the steps exceed the maximum."""
+        state, static, loading = run.state, self._body.static, self._loading
+        self._body.keep_from_turning(state)
+        self.forces = self._contact_forces(state.displacement)
+        self.ratio = self._body.force_ratio(self._system, self.forces, self._contacts)
+        if self._on_look is not None:
+            self._on_look(state.step, self.ratio, self._stage)
+        if loading.is_rising(state.step):
+            self._begin_anew(state)
+        elif self.ratio <= self._enough:
+            if loading.is_the_answer(state):
+                run.stopped = True
+                return
+            self._begin_anew(state)
+        elif self.ratio < 0.9 * self._best:
+            self._best, self._best_at = self.ratio, state.step
+        elif state.step - self._best_at >= ELASTIC_PATIENCE and loading.give_up_elastic_law(state):
+            self._begin_anew(state)
+        if state.step - self._best_at >= PATIENCE or state.step >= static.max_steps:
+            self._fail(run)
+        loading.put_on(state)
+        self._look_after(state.step)
+
+    @property
+    def _enough(self) -> float:
+        """The force ratio at which the stage is over under the present law."""
+        return self._body.static.enough(slides=self._system.uses_history)
+
+    def _begin_anew(self, state: State) -> None:
+        """Reset the record of progress, as the loads or the law have changed."""
+        self._best, self._best_at = np.inf, state.step
+
+    def _fail(self, run: Run) -> None:
+        """Raise StalledError."""
+        lacking, cracks = self._body.unbalanced(self._system, self.forces), self.take_cracks()
+        ended = _where_it_ended(run, self.ratio, self._enough, self._body.static.max_steps, lacking, cracks)
+        message = f"{self._stage} {ended}"
+        raise StalledError(message, run, lacking.T, cracks)
+
+    def saved_arrays(self) -> Arrays:
+        """The next step of evaluation, the force ratio and step of the last progress, and the loads."""
+        best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
+        return {**super().saved_arrays(), **best, **self._loading.saved_arrays()}
+
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        super().restore(saved)
+        self._best, self._best_at = float(saved["best"]), int(saved["best_at"])
+        self._loading.restore(saved)
+
+    def take_cracks(self) -> Cracks:
+        """The bonds that broke since the last call."""
+        return joined([pairs.take_cracks() for pairs in self._contacts.values()])
+
+    def _contact_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces and moments (3, n) of contacts and ties now, under the elastic law with the locked-in forces."""
+        if not self._system.uses_history:
+            for pairs in self._contacts.values():
+                pairs.push(displacement, reference=True)
+        return self._system.forces.last(self._contacts) + self._system.forces.of_ties(displacement)
+
+
+def _where_it_ended(run: Run, ratio: float, enough: float, most: int, unbalanced: np.ndarray, cracks: Cracks) -> str:
+    """Lines about a stage that takes too long, with its state and advice.
+
+    enough : the force ratio at which it is over. most : number of its steps. unbalanced (2, n) N as for `_lacking`.
+    """
+    steps = run.state.step
+    facts = f"static.ratio requests {enough:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
+    if steps >= most:
+        came = f"came to an unbalanced force ratio of {ratio:.3g} in {steps:,} steps"
+        return f"{came}, {facts}\nallow more with static.max_steps"
+    return (
+        f"stalls at an unbalanced force ratio of {ratio:.3g} after {steps:,} steps, {facts}\n"
+        "is the body held, and can its contacts carry the load?"
+    )
+
+
+def _lacking(run: Run, unbalanced: np.ndarray) -> str:
+    """The particles with the largest unbalanced forces, a line each, and how many have half of the sum.
+
+    unbalanced (2, n) N is the sum of the forces on each particle.
+    """
+    scene, size = run.scene, np.hypot(*unbalanced)
+    order = np.argsort(-size, kind="stable")
+    half = 1 + int(np.searchsorted(np.cumsum(size[order]), 0.5 * size.sum()))
+    places = scene.positions + run.state.displacement[:2].T
+    worst = [
+        f"unbalanced force on particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m: "
+        f"({unbalanced[0, i] + 0.0:.3g}, {unbalanced[1, i] + 0.0:.3g}) N"  # + 0.0: no −0
+        for i in order[: min(WORST, len(order))]
+    ]
+    low, high = places[order[:half]].min(axis=0), places[order[:half]].max(axis=0)
+    share = (
+        f"{half:,} of {scene.count:,} particles have half of all unbalanced force, between "
+        f"({low[0]:.2f}, {low[1]:.2f}) and ({high[0]:.2f}, {high[1]:.2f}) m"
+    )
+    return "\n".join([*worst, share])
+
 
 SAFETY = 0.9
 """Time step over the stability limit."""

@@ -1,20 +1,85 @@
-"""Recorded fields of a system of disks besides its motion: stresses, contacts, and fields of its continuum."""
+"""Recorded fields of a system of disks besides its motion: stresses, contacts, cracks; the rotation of a body."""
+
+from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import chain
 
 import numpy as np
 
+from dembound.continuum.part import GridPart
 from dembound.disks.body import DiskBody
-from dembound.disks.contacts.arrays import plain_contacts
-from dembound.disks.contacts.forces import contact_columns, pieces
+from dembound.disks.contacts.pairs import contact_columns, pieces, plain_contacts
 from dembound.disks.stepping.damped_ground import unrelaxed
-from dembound.disks.stepping.disk_parts import DiskParts
 from dembound.disks.stepping.part import DiskPart
-from dembound.disks.stepping.stress import part_stress
+from dembound.disks.stepping.scene_parts import DiskParts
 from dembound.kernels.contacts import REFERENCE
+from dembound.kernels.tables.contacts import Contacts
 from dembound.motion.part import Part, System, Tie
-from dembound.outside.part import GridPart
+
+
+def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np.ndarray:
+    """Total stress (m, 3) of one part's particles, including that of a static stage, see `particle_stress`.
+
+    displacement (3, n) m and rad. Under the history-dependent law its forces are those at the beginning of the last
+    step.
+    """
+    return particle_stress(scene, part.stressed_pairs, displacement, part.geometry)[part.nodes]
+
+
+def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarray, geometry: int) -> np.ndarray:
+    """Stress (n, 3) xx, yy, xy in Pa of all particles, tension positive; xy is the mean of both shear stresses.
+
+    A particle's stress is Σ f_a l n_b over its area, πR² plus its share of the pores, half of that for half cells, with
+    f the force on it at a contact and l n the vector from its centre to the contact (Love's and Weber's mean). Forces
+    from outside on a side are no contact forces and are not included.
+
+    Parameters
+    ----------
+    scene : the scene of the particles.
+    contacts : its pairs.
+    displacement : (3, n) m and rad.
+    geometry : of the forces and vectors of the pairs, see `forces.pieces`.
+    """
+    moments = np.zeros((3, scene.disk_count))
+    for piece in pieces(scene.layout, contacts, displacement, geometry):
+        (x, y), (pull_x, pull_y) = piece.vector, piece.force
+        for total, dyad in zip(moments, (pull_x * x, pull_y * y, 0.5 * (pull_x * y + pull_y * x)), strict=True):
+            np.add.at(total, piece.first, piece.near * dyad)
+            np.add.at(total, piece.second, (1.0 - piece.near) * dyad)
+    area = np.pi * scene.assembly.radii**2 * scene.cell_fraction / scene.ground.brick.solid_fraction
+    return (moments / area).T
+
+
+def turns_freely(scene: DiskBody) -> bool:
+    """Whether only dashpots resist the rigid rotation of a body."""
+    held = scene.supports.prescribed.any() or scene.supports.stiffness.any()
+    periodic = any(table.is_periodic for table in scene.case.boundary.values())
+    return bool(scene.free.all()) and scene.seam is None and not held and not periodic
+
+
+def turned_as_a_whole(
+    scene: DiskBody, displacement: np.ndarray, velocity: np.ndarray, datum: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Displacements and velocities (3, n) of a body rotated exactly, from those of linearised rotation.
+
+    Under the law of small displacements a body that rotates by θ moves from r to r + θ ẑ × r + w, which stretches it by
+    ½θ². The exact motion is from r to R(θ)(r + w). datum : (3, n) displacements at the start.
+    """
+    mass = scene.mass
+    displacement, velocity = displacement.copy(), velocity.copy()
+    arm = scene.assembly.positions.T + datum[:2]
+    arm = arm - np.average(arm, axis=1, weights=mass)[:, None]
+    moved = displacement[:2] - datum[:2]
+    centre = np.average(moved, axis=1, weights=mass)[:, None]
+    spin = np.sum(mass * (arm[0] * moved[1] - arm[1] * moved[0])) + np.sum(scene.inertia * (displacement - datum)[2])
+    angle = spin / (np.sum(mass * (arm**2).sum(axis=0)) + scene.inertia.sum())
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    stretched = moved - centre - angle * np.stack([-arm[1], arm[0]])
+    displacement[:2] = datum[:2] + centre + turn @ (arm + stretched) - arm
+    mean = np.average(velocity[:2], axis=1, weights=mass)[:, None]
+    velocity[:2] = mean + turn @ (velocity[:2] - mean)
+    return displacement, velocity
 
 
 class RecordedDisks(System):

@@ -13,18 +13,17 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.disks.material.at_rest import stressed
-from dembound.disks.material.constants import brick_constants, ground_limits, strength_of
-from dembound.disks.material.scatter import bond_factors
+from dembound.disks.material.constants import bond_factors, brick_constants, ground_limits, strength_of
 from dembound.disks.stepping.system import DiskSystem
-from dembound.edges import is_within
-from dembound.kernels.began import began_of
 from dembound.kernels.common import CHUNKS
-from dembound.kernels.limits import in_columns
+from dembound.kernels.compiler.limits import in_columns
+from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.load_factor import least_factors
 from dembound.kernels.tables import Limits
 from dembound.motion.kind import Finding
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
+from dembound.places import is_within
 from dembound.table import EVERYWHERE, Box
 
 LIMITS = ("opens", "slides", "slides", "breaks in tension", "breaks in tension", "breaks in shear", "breaks in shear")

@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.edge import SIDES
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.contact_list import ContactList
-from dembound.kernels.began import began_with
+from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, INTACT
 from dembound.kernels.tables import Contacts
 from dembound.motion.state import Arrays, State
 
-NEAR = 2.0
+TIE_DISTANCE = 2.0
 """Largest distance, in mean diameters, between the centres of a tied disk and of one that counts as near it."""
 
 ROUNDING = 1e-9
@@ -45,7 +45,7 @@ def sides_near(scene: DiskBody) -> np.ndarray:
     side = np.concatenate([np.full(len(disks), number) for number, disks in tied])
     positions = scene.assembly.positions
     tree = cKDTree(positions[np.concatenate([disks for _, disks in tied])])
-    reach = NEAR * (1.0 + ROUNDING) * scene.ground.brick.mean_diameter
+    reach = TIE_DISTANCE * (1.0 + ROUNDING) * scene.ground.brick.mean_diameter
     _, nearest = tree.query(positions, distance_upper_bound=reach)
     found: np.ndarray = np.append(side, -1)[nearest]  # the number of all tied disks where none is in reach
     return found
@@ -170,6 +170,6 @@ def near_tie_warnings(scene: DiskBody, summary: Mapping[str, Any], cracks: Array
         if events:
             time, (x, y), what = min(events, key=lambda event: event[0])
             yield (
-                f"boundary.{side}: {what} t = {time:.4g} s near ({x:.4g}, {y:.4g}) m, within {NEAR:g} diameters of the "
-                "ties to the continuum, which stays elastic; take a larger packing.size"
+                f"boundary.{side}: {what} t = {time:.4g} s near ({x:.4g}, {y:.4g}) m, within {TIE_DISTANCE:g} diameters "
+                "of the ties to the continuum, which stays elastic; take a larger packing.size"
             )

@@ -5,13 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.contact_list import ContactList
-from dembound.disks.contacts.layout import Rows, with_special
-from dembound.disks.contacts.rows import elastic_constants
+from dembound.disks.contacts.layout import Rows, elastic_constants, with_special
+from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.stepping.memories import DiskMemories
+from dembound.disks.stepping.damped_ground import DiskMemories
 from dembound.kernels import bonded, bonded_lanes, damped, dashpots, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contact_measures import strain_energy
@@ -28,10 +27,8 @@ from dembound.kernels.tables import (
     SeamEnds,
     WatchedLinks,
 )  # fmt: skip
-from dembound.motion.cracks import NO_CRACKS, Cracks
-from dembound.motion.layout import Layout
-from dembound.motion.part import Part, Tie
-from dembound.motion.state import Arrays, State
+from dembound.motion.part import NO_CRACKS, Cracks, Part, Tie
+from dembound.motion.state import Arrays, Layout, State
 from dembound.packings.column import Seam as ColumnSeam
 from dembound.packings.tiling import Assembly
 

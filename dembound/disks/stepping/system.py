@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
+from dembound.disks.bearing import BearingTie
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.balance import Balance
-from dembound.disks.stepping.bearing import BearingTie
-from dembound.disks.stepping.continuum_ties import grids, walls
+from dembound.disks.stepping.carriers import RestForces
 from dembound.disks.stepping.damped_ground import drag_rates
-from dembound.disks.stepping.disk_parts import DiskParts
-from dembound.disks.stepping.fields import RecordedDisks
+from dembound.disks.stepping.fields import RecordedDisks, turned_as_a_whole, turns_freely
 from dembound.disks.stepping.first_law import balanced, first_law, not_balanced
 from dembound.disks.stepping.near_ties import NearTies
-from dembound.disks.stepping.rest_forces import RestForces
-from dembound.disks.stepping.rotation import turned_as_a_whole, turns_freely
+from dembound.disks.stepping.scene_parts import DiskParts, Start, grids, walls
 from dembound.disks.stepping.side_watch import SideWatch
-from dembound.disks.stepping.start import Start
 from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.follower import turn_forces
-from dembound.motion.state import Arrays, State, within
+from dembound.motion.state import Arrays, State, arrays_of_owner
 
 
 class DiskSystem(RecordedDisks):
@@ -202,11 +199,11 @@ class DiskSystem(RecordedDisks):
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         super().restore(saved)
-        kept = within(saved, "balance")
+        kept = arrays_of_owner(saved, "balance")
         self.balance = Balance.restored(self.scene, kept) if kept else None
         if self.near_ties is not None:
-            self.near_ties.restore(within(saved, "near_ties"))
-        self.side_watch.restore(within(saved, "side_watch"))
+            self.near_ties.restore(arrays_of_owner(saved, "near_ties"))
+        self.side_watch.restore(arrays_of_owner(saved, "side_watch"))
         self._set_balance_in_use()
         self._let_go()
         self._begin_at_rest()

@@ -133,7 +133,7 @@ class PairRows(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """Cells of the n disks at the displacements at which pairs were listed, see kernels/approach.py.
+    """Cells of the n disks at the displacements at which pairs were listed, see kernels/near.py.
 
     Cell c contains the disks member[start[c]:start[c + 1]], of those from `begin` on; divisions : (2,) columns and rows
     of cells, which are numbered row by row; wraps : (2,) whether the first touches the last along x and y. reach : m,

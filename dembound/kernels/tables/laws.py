@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dembound.kernels.tables.bars import Softening
 from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
-from dembound.kernels.tables.softening import Softening
 
 
 class Links(NamedTuple):

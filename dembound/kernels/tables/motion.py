@@ -1,10 +1,85 @@
-"""Arrays by which nodes are moved, and the record of every step. n nodes, of which k are supported."""
+"""Arrays by which nodes are moved, of the sides whose forces are recorded, and of ties between two parts."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from dembound.kernels.tables.sides import NO_SIDES, Sides
+
+class Sides(NamedTuple):
+    """Forces on s sides of a body in b batches of e elements, and their m members; see kernels/sides.py.
+
+    A batch has elements of one kind on one component, of one side. kind, side, component, signal : (b,), signal the
+    column of signals (steps, q) of its incident wave or power, −1 for none. leaves : (b,) bool, whether energy that
+    does not come in by its forces counts as absorbed.
+    start : (b + 1,) elements of each batch in line (e,), the line of each in the support table; constant (e,), by kind:
+    N of forces needed over those of the nodes stepped; N·s/m of dashpots, twice; N/m of springs, from rest 0; N per
+    unit of signal; N of ties over those on the nodes stepped; follow (e,) N·s/m; column (e,) of the signals of drives.
+    member_start : (s + 1,) members of each side in member (m,), nodes; weight (m,) of their displacements in the mean.
+    offset : (s, 2) N, added to the force on each side. bearer_start : (s + 1,) nodes of each side in bearer (q,) whose
+    steady forces are added too, times share (2, q); none if these do not change.
+    borne : (k, 3) N on the lines of the support table by springs on relative motion, see `Bearings`.
+    record : (rows, s, 5) mean displacement, m and rad, and force, N, at the start of each `every`-th step, of which
+    `first` came before; every is 0 where nothing is recorded. work : (2, s, 2) J that came in and were absorbed,
+    without springs; row 0 up to the half step reached, row 1 up to the last whole step, after the last step of a call.
+    """
+
+    kind: np.ndarray
+    side: np.ndarray
+    component: np.ndarray
+    signal: np.ndarray
+    leaves: np.ndarray
+    signals: np.ndarray
+    start: np.ndarray
+    line: np.ndarray
+    constant: np.ndarray
+    follow: np.ndarray
+    column: np.ndarray
+    member_start: np.ndarray
+    member: np.ndarray
+    weight: np.ndarray
+    offset: np.ndarray
+    bearer_start: np.ndarray
+    bearer: np.ndarray
+    share: np.ndarray
+    borne: np.ndarray
+    every: int
+    first: int
+    record: np.ndarray
+    work: np.ndarray
+
+    @classmethod
+    def none(cls) -> "Sides":
+        """A table without sides."""
+        number, value = np.zeros(0, dtype=np.int64), np.zeros(0)
+        return cls(
+            kind=number,
+            side=number,
+            component=number,
+            signal=number,
+            leaves=np.zeros(0, dtype=np.bool_),
+            signals=np.zeros((0, 0)),
+            start=np.zeros(1, dtype=np.int64),
+            line=number,
+            constant=value,
+            follow=value,
+            column=number,
+            member_start=np.zeros(1, dtype=np.int64),
+            member=number,
+            weight=value,
+            offset=np.zeros((0, 2)),
+            bearer_start=np.zeros(1, dtype=np.int64),
+            bearer=number,
+            share=np.zeros((2, 0)),
+            borne=np.zeros((0, 3)),
+            every=0,
+            first=0,
+            record=np.zeros((0, 0, 5)),
+            work=np.zeros((2, 0, 2)),
+        )
+
+
+NO_SIDES = Sides.none()
+"""Table for runs in which sides are not recorded."""
 
 
 class Body(NamedTuple):
@@ -92,3 +167,89 @@ class Log(NamedTuple):
     work: np.ndarray
     supplied: np.ndarray
     sides: Sides = NO_SIDES
+
+
+class Seam(NamedTuple):
+    """The forces of a free-field column under the elastic law on k supported nodes across its seam.
+
+    twin : (k,) the column's particle at the same place of the brick, −1 for none; start : (k + 1,) rows of its contacts
+    across the seam: neighbour (e,) there, and contact_type (e,), rows of constants (p, 6).
+    """
+
+    twin: np.ndarray
+    start: np.ndarray
+    neighbour: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
+
+
+class SeamEnds(NamedTuple):
+    """Ends of a seam for a column under the history-dependent law: start (k + 1,) rows of its contact ends, end (e,).
+
+    force : (4, b) of its contacts, see Contacts.
+    """
+
+    start: np.ndarray
+    end: np.ndarray
+    force: np.ndarray
+
+
+class WallTies(NamedTuple):
+    """Half bonds between particles and the wall of a grid, by its e elements of N × N nodes; see kernels/wall.py.
+
+    Ties are in B blocks of eight (kernels/compiler/lanes.py), T = 8B of them with those of no stiffness that fill the
+    last block of each element. points : tuple of N numbers, so that N is part of the type. start : (e + 1,) blocks of each
+    element. node : (e, N²) its nodes, row by row, and line, theirs in the support table. reach : (e, 4) first and end
+    column, first and end row of the nodes that the ties act on. particle, particle_line : (T,) of the particle; twin
+    (T,) in the free-field column, −1 for none. along, up : (B·N·8,) values of the element's shape functions along x and
+    y at the tie's point; along_slope, up_slope their derivatives, 1/m. corrector : (B·12·8,) m and rad, motion x, y,
+    rotation of the bond's middle beyond that of the point, each per unit gradient xx, yy, xy, yx. normal : (2T,)
+    components x, then y, from the particle to the point; arm (T,) m. stiffness : (3T,) N/m, N/m and N·m of the half
+    bonds. lag : η, s. moved (2N²,), reaction (2N²·8,), field (48,), own (24,) : work space.
+    """
+
+    points: tuple[float, ...]
+    start: np.ndarray
+    node: np.ndarray
+    line: np.ndarray
+    reach: np.ndarray
+    particle: np.ndarray
+    particle_line: np.ndarray
+    twin: np.ndarray
+    along: np.ndarray
+    along_slope: np.ndarray
+    up: np.ndarray
+    up_slope: np.ndarray
+    corrector: np.ndarray
+    normal: np.ndarray
+    arm: np.ndarray
+    stiffness: np.ndarray
+    lag: float
+    moved: np.ndarray
+    reaction: np.ndarray
+    field: np.ndarray
+    own: np.ndarray
+
+
+class Repeats(NamedTuple):
+    """Forces on lines of the support table that are repeated on others: source and target, (r,) each."""
+
+    source: np.ndarray
+    target: np.ndarray
+
+
+class Bearings(NamedTuple):
+    """Springs of k nodes on their motion relative to the ground beyond; see kernels/follower.py.
+
+    node, twin, line : (k,) each node, its twin, −1 for none, and its line in the support table. weight : (k,) in the
+    mean motion of all. stiffness : (k, 2) N/m along x and y; rest : (k, 2) m, displacement relative to the ground
+    without force. force : (s, 3) N of each line of the support table, work space.
+    """
+
+    node: np.ndarray
+    twin: np.ndarray
+    line: np.ndarray
+    weight: np.ndarray
+    stiffness: np.ndarray
+    rest: np.ndarray
+    force: np.ndarray

@@ -13,14 +13,14 @@ import tomli_w
 from dembound.boundaries import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import STRENGTH_KEYS
-from dembound.casefile.output import ParaView
-from dembound.casefile.toml import parsed
+from dembound.casefile.reader import parsed
+from dembound.casefile.tables import ParaView
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import ground_of
 from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.packings.base import DensePacking, Packing
-from dembound.results.loading_curve import TestName
+from dembound.results.recording import TestName
 from dembound.words import with_unit
 
 Ends = Literal["smooth", "grips"]

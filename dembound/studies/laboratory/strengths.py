@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.scatter import Scatter
+from dembound.casefile.disks.targets import Scatter
 from dembound.casefile.types import LAWS
-from dembound.disks.material.scatter import drawn
+from dembound.disks.material.constants import drawn
 from dembound.errors import CaseError, RunError
 from dembound.files import require_no_link
 from dembound.kinds import with_changes
-from dembound.results.loading_curve import TestName
+from dembound.results.recording import TestName
 from dembound.studies.laboratory.sample import LAW, Sample
 from dembound.studies.laboratory.study import perform, specimens_of
-from dembound.studies.sweep.statistics import Statistic
 from dembound.studies.sweep.study import Options, Report
+from dembound.studies.sweep.tables import Statistic
 from dembound.words import percent, with_unit
 
 SPREADS = (0.0, 0.3, 0.43)
@@ -66,7 +66,7 @@ MOST_RATIO, MOST_SCATTERED = 5.0, 7.0
 MISSED = 0.04
 """Deviation of a ratio of strengths from what is in reach that is still tried: each strength misses by half of it."""
 
-NEAR = 0.1
+NEAR_LIMIT = 0.1
 """Distance from the smallest or largest ratio in reach below which a trial tells what it is."""
 
 TRIED = np.geomspace(COHESIONS[0], COHESIONS[-1], 2000)
@@ -207,8 +207,8 @@ def _require_told(ratio: float, own: float, ratios: np.ndarray) -> None:
     own : ratio of this trial; ratios : those in reach in its packing.
     """
     low, high = ratios.min(), ratios.max()
-    least = (1.0 - MISSED) * low if own < (1.0 + NEAR) * low else 0.0
-    most = (1.0 + MISSED) * high if own > (1.0 - NEAR) * high else np.inf
+    least = (1.0 - MISSED) * low if own < (1.0 + NEAR_LIMIT) * low else 0.0
+    most = (1.0 + MISSED) * high if own > (1.0 - NEAR_LIMIT) * high else np.inf
     _require_within(ratio, least, most, f", in this packing {low:.2g} to {high:.2g}")
 
 

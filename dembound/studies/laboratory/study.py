@@ -1,4 +1,4 @@
-"""A laboratory test over seeds: its runs as members of a sweep, and what is measured in each."""
+"""A laboratory test over seeds: its runs, what is measured in each, the Mohr-Coulomb line of strengths."""
 
 from __future__ import annotations
 
@@ -7,22 +7,44 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from dembound.errors import CaseError
 from dembound.files import remove
-from dembound.kinds import loads
 from dembound.results.checkpoint import FILE as CHECKPOINT
-from dembound.results.loading_curve import LoadingCurve, read_test
-from dembound.results.named import missing
-from dembound.studies.laboratory.envelope import Envelope, fitted
+from dembound.results.histories import missing
+from dembound.results.recording import LoadingCurve, read_test
+from dembound.schemas import loads
 from dembound.studies.laboratory.sample import Sample
 from dembound.studies.sweep.members import Member, key_of
 from dembound.studies.sweep.perform import MEMBERS, Outcome
-from dembound.studies.sweep.statistics import Statistic, statistic
 from dembound.studies.sweep.study import Options, Report, sweep
-from dembound.studies.sweep.tables import distinct
+from dembound.studies.sweep.tables import Statistic, distinct, statistic
+
+
+class Envelope(NamedTuple):
+    """Friction angle in degrees, cohesion (Pa), and the uniaxial strength (Pa) of the line σ1 = uniaxial + Nσ3."""
+
+    friction_angle: float
+    cohesion: float
+    uniaxial: float
+
+    @property
+    def slope(self) -> float:
+        """N = (1 + sin φ)/(1 − sin φ)."""
+        sine = np.sin(np.radians(self.friction_angle))
+        return float((1.0 + sine) / (1.0 - sine))
+
+
+def fitted(pressures: Sequence[float], strengths: Sequence[float]) -> Envelope:
+    """The line by least squares through largest stresses (Pa) at two or more different pressures (Pa)."""
+    slope, uniaxial = np.polyfit(pressures, strengths, 1)
+    root = np.sqrt(max(slope, 1e-12))
+    angle = 2.0 * np.degrees(np.arctan(root)) - 90.0
+    return Envelope(float(angle), float(uniaxial / (2.0 * root)), float(uniaxial))
+
 
 SHARES = (0.1, 0.5)
 """Shares of the peak between which moduli are the slopes of the curve."""

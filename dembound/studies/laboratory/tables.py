@@ -11,11 +11,10 @@ import numpy as np
 
 from dembound.errors import RecordError
 from dembound.files import make_folder, write_text
-from dembound.results.csv_files import write_csv
-from dembound.results.json_files import read_json, write_json
-from dembound.results.loading_curve import TestName
+from dembound.results.recording import TestName
+from dembound.results.text_files import read_json, write_csv, write_json
 from dembound.studies.laboratory.study import UNITS, Tested
-from dembound.studies.sweep.statistics import Statistic
+from dembound.studies.sweep.tables import Statistic
 from dembound.version import __version__
 
 MOST_POINTS = 400

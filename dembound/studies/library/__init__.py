@@ -11,10 +11,16 @@ sum if Δ is that of its points, 1/16 of its samples', or a whole fraction of it
 """
 
 from dembound.studies.library.build import build_library
-from dembound.studies.library.contacts import LoadFactor, load_factor, watched_contacts
 from dembound.studies.library.library import Library
 from dembound.studies.library.record import Record, RecordTimes, read_records
-from dembound.studies.library.response import case_of, record_warnings, write_response
+from dembound.studies.library.response import (
+    LoadFactor,
+    case_of,
+    load_factor,
+    record_warnings,
+    watched_contacts,
+    write_response,
+)
 
 __all__ = [
     "Library",

@@ -12,8 +12,8 @@ from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import BOND_KEYS
 from dembound.casefile.model import as_kind
-from dembound.casefile.run import ENDING
-from dembound.casefile.toml import parsed
+from dembound.casefile.reader import parsed
+from dembound.casefile.tables import ENDING
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
@@ -21,7 +21,7 @@ from dembound.files import remove
 from dembound.kinds import loads, with_changes
 from dembound.motion.kind import Plan
 from dembound.results.folder import Folder
-from dembound.results.json_files import write_json
+from dembound.results.text_files import write_json
 from dembound.running import Progress, plan, run_case, warnings_before
 from dembound.version import __version__
 

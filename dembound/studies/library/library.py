@@ -13,8 +13,8 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, RecordError
 from dembound.kinds import loads
-from dembound.results.json_files import read_json
 from dembound.results.reader import open_record
+from dembound.results.text_files import read_json
 from dembound.studies.library.build import FILE, HAT, REST, inputs_of, is_at_rest
 from dembound.studies.library.record import RecordTimes
 from dembound.version import __version__

@@ -17,17 +17,17 @@ from dembound.accuracy.estimate import estimate_if_asked
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
-from dembound.casefile.sweep import Action, Method
+from dembound.casefile.tables import Action, Method
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.files import content_of, require_writable, write_text
 from dembound.interrupts import Interrupts, Stopped, look
 from dembound.kinds import loads
 from dembound.motion.trackers import Run
 from dembound.results.folder import Folder
-from dembound.results.json_files import read_json, write_json
-from dembound.results.summary_file import read_summary
+from dembound.results.summary import read_summary
+from dembound.results.text_files import read_json, write_json
 from dembound.running import Progress, Shared, resume_case, run_case
-from dembound.studies.sweep.values import values_of_calibration, values_of_run
+from dembound.studies.sweep.members import values_of_calibration, values_of_run
 
 MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"
 """Folders of a sweep: runs, outcomes by key, stages before runs."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from filelock import Timeout
 
-from dembound.casefile.sweep import Action, Method
+from dembound.casefile.tables import Action, Method
 from dembound.errors import CaseError, RunError
 from dembound.files import lock_of, make_folder, remove, require_no_link, write_text
 from dembound.interrupts import look

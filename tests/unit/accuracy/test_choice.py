@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import pytest
 
-from dembound.accuracy.choice import choices_of, combinations, digest, parsed
+from dembound.accuracy.choice import choices_of, combinations, digest, parsed_options
 from dembound.errors import CaseError
 
 
 def test_values_are_toml_or_plain_text() -> None:
-    found = parsed(
+    found = parsed_options(
         ['boundary.right={type="viscous", beta_p=0.5},{type="free"}', "run.safety=0.9,0.5", "material.law=a,b"]
     )
     assert found == {
@@ -17,13 +17,13 @@ def test_values_are_toml_or_plain_text() -> None:
         "run.safety": [0.9, 0.5],
         "material.law": ["a", "b"],
     }
-    assert parsed(["packing.size=[1.0, 2.0],[3.0, 4.0]", 'title="a, b",c']) == {
+    assert parsed_options(["packing.size=[1.0, 2.0],[3.0, 4.0]", 'title="a, b",c']) == {
         "packing.size": [[1.0, 2.0], [3.0, 4.0]],
         "title": ["a, b", "c"],
     }
     for options in (["run.safety"], ["=1"], ["run.safety="], ["a=1,,2"], ["a=1", "a=2"]):
         with pytest.raises(CaseError, match="--vary"):
-            parsed(options)
+            parsed_options(options)
 
 
 def test_all_combinations_are_named_with_units(bar, spalling) -> None:

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from small_cases import PUSHED, small
 
-from dembound.accuracy.differences import differences, in_toml, keeps, value_at
-from dembound.casefile.toml import parsed
+from dembound.accuracy.choice import differences, in_toml, keeps, value_at
+from dembound.casefile.reader import parsed
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 

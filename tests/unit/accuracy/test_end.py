@@ -13,7 +13,7 @@ from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import END, LEAST_SAVED, earlier_ends, ended_earlier
 from dembound.accuracy.history import History
-from dembound.accuracy.proposal import Proposal
+from dembound.accuracy.judge import Proposal
 from dembound.accuracy.runner import measure
 from dembound.running import Progress
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dembound.accuracy.extended import extended
-from dembound.accuracy.of_disks.extended import _floors_beyond
+from dembound.accuracy.judges import extended
+from dembound.accuracy.of_disks.enlarged import _floors_beyond
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import checked, load

@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from dembound.boundaries import Boundary
-from dembound.boundaries.driven import Driven
+from dembound.boundaries.boundary import Driven
 from dembound.boundaries.viscous import Dashpots, Viscous
 from dembound.holes import Hole
 from dembound.laws import Elastic

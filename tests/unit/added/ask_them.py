@@ -18,17 +18,16 @@ with warnings.catch_warnings():
 from dembound.accuracy.advise import advise
 from dembound.accuracy.cause import share_of
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.extended import extended
 from dembound.accuracy.history import History
-from dembound.accuracy.judges import judge_of
+from dembound.accuracy.judges import extended, judge_of
 from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
+from dembound.accuracy.of_disks.exact.references import ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
 from dembound.accuracy.of_disks.near import wall_errors
 from dembound.accuracy.of_disks.options import Options
 from dembound.accuracy.runner import Runner, at_step
-from dembound.boundaries.words import side_in_words
+from dembound.boundaries.description import side_in_words
 from dembound.disks.matching import Held
 from dembound.disks.reflection import measure_side
 from dembound.disks.reports.side_warnings import side_warnings

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.bar.entering import entering_pressure, moments
+from dembound.bar.scene import entering_pressure, moments
 
 TIME = np.array([-1e-5, 5e-5, 2e-4, 4e-4])
 SHAPE = np.array([0.0, 0.25, 1.0, 0.0])

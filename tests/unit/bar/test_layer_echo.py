@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from dembound.bar.layer_echo import returned
+from dembound.bar.echoes import returned
 from dembound.bar.layers import EndLayer
-from dembound.boundaries.layer import Layer
+from dembound.boundaries.boundary import Layer
 from dembound.exact import Lattice
 
 SPACING, SPEED, MASS = 0.01, 1000.0, 3.0

@@ -2,7 +2,7 @@
 
 import pytest
 
-from dembound.bar.outcome import bar_outcome
+from dembound.bar.summary import bar_outcome
 
 
 def outcome(spalls: list[dict], note: str | None = None, **more) -> list[str]:

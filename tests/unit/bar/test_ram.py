@@ -2,12 +2,12 @@
 
 import pytest
 
-from dembound.bar import ram as bar_ram
+from dembound.bar import cost as bar_ram
 from dembound.bar.scene import build_bar
 from dembound.errors import CaseError
 from dembound.machine import Memory
 from dembound.methods.opening import COLUMNS
-from dembound.motion import ram
+from dembound.motion import resources
 
 
 def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
@@ -26,7 +26,7 @@ def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
 
 
 def test_a_bar_too_large_is_refused_before_its_nodes_are_placed(spalling, monkeypatch) -> None:
-    monkeypatch.setattr(ram, "memory_here", lambda: Memory(300e6, 250e6))
+    monkeypatch.setattr(resources, "memory_here", lambda: Memory(300e6, 250e6))
     said = r"^bar.spacing: 1,000,001 nodes with a horizon of 3 spacings need about \d+ MB of "
     with pytest.raises(CaseError, match=said):
         build_bar(spalling({"bar.spacing": 1e-6}))

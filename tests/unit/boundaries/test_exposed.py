@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.boundaries.exposed import exposed, outer_row
+from dembound.boundaries.edge import exposed, outer_row
 
 COLUMNS, ROWS = 6, 4
 
@@ -46,7 +46,7 @@ def test_sides_do_not_depend_on_how_many_disks_are_looked_at_together(monkeypatc
     positions, radii = rng.uniform(0.0, (5.0, 40.0), (200, 2)), rng.uniform(0.2, 0.6, 200)
     positions[1], radii[1] = positions[0], radii[0] = (-0.5, 20.0), 0.5  # of two in one place the first is seen
     together = exposed(positions, radii, "left", period).tolist()
-    monkeypatch.setattr("dembound.boundaries.exposed.AT_ONCE", at_once)
+    monkeypatch.setattr("dembound.boundaries.edge.AT_ONCE", at_once)
 
     assert exposed(positions, radii, "left", period).tolist() == together
     assert 10 < len(together) < 100

@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from dembound.boundaries import MatchedLayer
-from dembound.boundaries.layer import Layer
+from dembound.boundaries.boundary import Layer
 from dembound.boundaries.matched_layer import usual_reflection
 
 

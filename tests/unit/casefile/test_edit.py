@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from dembound import shipped, starting
 from dembound.casefile.edit import commented, edited, rewritten
-from dembound.casefile.statements import Place, lines_of, statements_of
+from dembound.casefile.keys import Place, lines_of, statements_of
 
 SHIPPED = [(shipped.folder() / f"{name}.toml").read_text(encoding="utf-8") for name in shipped.names()]
 TEXTS = sorted([*SHIPPED, *map(starting.starting_point, starting.names())], key=len)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from dembound.casefile.toml import DEEPEST, parsed, value_of
+from dembound.casefile.reader import DEEPEST, parsed, value_of
 from dembound.errors import CaseError
 
 

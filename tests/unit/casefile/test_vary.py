@@ -3,9 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from dembound.casefile.chart import Chart
-from dembound.casefile.sweep import Sweep
-from dembound.casefile.vary import range_of
+from dembound.casefile.tables import Chart, Sweep, range_of
 
 
 def test_ranges_include_both_ends_and_other_values_are_none() -> None:

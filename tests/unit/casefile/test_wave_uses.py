@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.casefile.wave_uses import wave_use_warnings
+from dembound.casefile.unlikely import wave_use_warnings
 
 BLOW = {"name": "blow", "force": [1.0, 0.0], "position": [5.0, 0.5]}
 

@@ -6,7 +6,7 @@ import signal
 import pytest
 from unit.accuracy.test_advise import BAR, small
 
-from dembound.accuracy.of_disks import advice
+from dembound.accuracy.of_disks import judge
 from dembound.accuracy.runner import Runner
 from dembound.cli.advise import bound_of, name_within
 from dembound.errors import CaseError
@@ -91,8 +91,8 @@ def _stop(*arguments, **more):
 
 
 def test_what_is_known_remains_of_advice_that_is_interrupted(dembound, case, monkeypatch) -> None:
-    answers = iter([advice._best])
-    monkeypatch.setattr(advice, "_best", lambda *given: next(answers, _stop)(*given))
+    answers = iter([judge._best])
+    monkeypatch.setattr(judge, "_best", lambda *given: next(answers, _stop)(*given))
     answer = dembound("advise", case)
     assert answer.code == 130
     assert "errors: RMS over RMS" in answer.out

@@ -2,7 +2,7 @@
 
 import json
 
-from dembound.cli.ending import peaks
+from dembound.cli.cases import peaks
 
 
 def test_a_run_ends_with_peaks_files_and_the_next_command(dembound, written, tmp_path) -> None:

@@ -14,8 +14,8 @@ from dembound.running import run_case
 from dembound.studies.laboratory import strengths, study
 from dembound.studies.laboratory.sample import RISE, sample_of
 from dembound.studies.sweep.perform import MEMBERS, Outcome
-from dembound.studies.sweep.statistics import statistic
 from dembound.studies.sweep.study import Standing
+from dembound.studies.sweep.tables import statistic
 
 STRENGTH, MODULUS = 5e5, 2e9
 BONDS = {"emod": 0.0, "pb_emod": MODULUS, "pb_ten": STRENGTH, "pb_coh": 2.0 * STRENGTH}

@@ -4,7 +4,7 @@ import numpy as np
 import tomli_w
 from small_cases import PUSHED, small
 
-from dembound.casefile.toml import parsed
+from dembound.casefile.reader import parsed
 
 SIDES = {"left": "push", "right": "pull"}
 

@@ -6,10 +6,10 @@ from disk_systems import BODY, FREE_FIELD, STEP, shaken
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build, column_alone
-from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
-from dembound.motion.cracks import joined
+from dembound.motion.part import joined
 
 RANDOM = {"size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 PACKINGS = {

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.disks.far import STEPS, FarDisks, far_warnings
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
+from dembound.disks.watches import STEPS, FarDisks, far_warnings
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 

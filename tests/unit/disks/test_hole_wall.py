@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, PUSHED, small
 
-from dembound.disks.hole_wall import shares_of
-from dembound.disks.loads import forces_of
+from dembound.disks.pressure import shares_of
 from dembound.disks.reports.facts import disk_facts
 from dembound.disks.scene import DiskScene, build
+from dembound.disks.supports import forces_of
 from dembound.errors import CaseError
 from dembound.holes.outline import EllipseOutline, PolygonOutline
 from dembound.kinds import with_changes

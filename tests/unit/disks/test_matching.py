@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.matching import homogenised_beta, reflected
-from dembound.disks.material.wave_front import slowest_speed
+from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import build
 from dembound.running import plan, warnings_before
 

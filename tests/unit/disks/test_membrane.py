@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, problems_of, small
 
-from dembound.disks.loads import forces_of
-from dembound.disks.membrane import in_run, membranes_of
+from dembound.disks.pressure import in_run, membranes_of
 from dembound.disks.scene import build
+from dembound.disks.supports import forces_of
 
 P = 1e6
 ALL = {"name": "cell", "pressure": P, "sides": ["left", "right", "bottom", "top"]}

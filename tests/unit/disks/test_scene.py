@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.scene import build, with_boundaries
-from dembound.disks.side_media import boundary_medium
+from dembound.disks.sides import boundary_medium
 from dembound.errors import CaseError, PackingError
 
 RANDOM = {

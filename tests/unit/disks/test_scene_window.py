@@ -7,10 +7,10 @@ import pytest
 from small_cases import GROUND, Tables, small
 
 from dembound.casefile import Case
-from dembound.disks.beyond.mesh import ElementSizes, box_of
-from dembound.disks.beyond.settings import least_element
 from dembound.disks.rest.settled import settling_keys
 from dembound.disks.scene import DiskScene, build, ground_of
+from dembound.disks.surroundings.mesh import ElementSizes, box_of
+from dembound.disks.surroundings.settings import least_element
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 

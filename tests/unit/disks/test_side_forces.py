@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from disk_systems import BODY, TWO_BRICKS
 
-from dembound.disks.rest.tractions import Tractions
+from dembound.disks.rest.static_scene import Tractions
 from dembound.disks.scene import build
 from dembound.disks.side_forces import side_forces
-from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.motion.sides import _bearers
 
 HALF = {"boundary": {side: {"type": "viscous", "half_mass": True} for side in ("bottom", "right")}}

@@ -11,8 +11,8 @@ from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import OPENING, choose_step, step_limit
 from dembound.errors import CaseError, RunError
-from dembound.motion import eigenvalue
-from dembound.motion.eigenvalue import LEAST
+from dembound.motion import stability
+from dembound.motion.stability import LEAST
 
 MASS = 2500.0 * 0.5**2
 K = 2500.0 * 1000.0**2
@@ -56,7 +56,7 @@ def test_the_same_scene_has_the_same_limit(bar) -> None:
 
 def test_a_limit_that_is_not_found_in_time_is_an_error(bar, monkeypatch) -> None:
     scene = build(bar({**ONLY_X, "packing.size": [50.0, 5.0]}))
-    monkeypatch.setattr(eigenvalue, "MOST", LEAST)  # enough for scenes of few disks only
+    monkeypatch.setattr(stability, "MOST", LEAST)  # enough for scenes of few disks only
     with pytest.raises(RunError, match="was not found in 40 iterations"):
         step_limit(scene)
 

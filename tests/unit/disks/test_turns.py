@@ -9,7 +9,7 @@ from small_cases import small
 from dembound.casefile import Case
 from dembound.disks.kind import Disks
 from dembound.disks.scene import build
-from dembound.disks.turns import WARNS, Turns, turn_warnings
+from dembound.disks.watches import WARNS, Turns, turn_warnings
 from dembound.kernels.contacts import INTACT
 from dembound.motion.simulation import Simulation
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.exact.bessel import decaying_ratios, growing_ratios
+from dembound.exact.transform import decaying_ratios, growing_ratios
 
 
 def test_orders_of_thousands_obey_the_wronskian() -> None:

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from dembound.exact.column import Column, Layer
-from dembound.exact.column_motion import ColumnMotion
+from dembound.exact.column import Column, ColumnMotion, Layer
 
 WEIGHTS, TIMES, UNRELAXED = np.array([0.0641, 0.0472, 0.0749]), np.array([0.56, 0.0917, 0.0146]), 1.107
 """Mechanisms of Q = 20."""

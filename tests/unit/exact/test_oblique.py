@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from ground_motions import GENERAL
 
-from dembound.disks.beyond.oblique_layers import bed_of
+from dembound.continuum.medium import Medium, incident_wave, reflected_waves, waves_with
+from dembound.disks.surroundings.oblique_layers import bed_of
 from dembound.exact.column import Column, Layer
 from dembound.exact.oblique import Bed, amplitudes
-from dembound.outside.medium import Medium
-from dembound.outside.plane_waves import incident_wave, reflected_waves, waves_with
 
 FREQUENCIES = np.array([0.3, 1.7, 4.1, 9.0])
 MEDIA = (Medium.isotropic(1800.0, 400.0, 200.0), GENERAL, Medium.isotropic(2300.0, 1400.0, 700.0))

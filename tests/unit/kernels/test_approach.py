@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.disks.contacts.neighbours import CELL, cells_of
-from dembound.kernels.approach import approach, moved
+from dembound.disks.contacts.pair_list import CELL, cells_of
+from dembound.kernels.near import approach, moved
 
 COUNT, SIZE, RADIUS = 800, (30.0, 10.0), 0.25
 

@@ -8,10 +8,10 @@ import pytest
 from plain_kernels import PlainPairs, behind, random_pairs, stepped
 
 from dembound.kernels import bonded, follower  # noqa: F401  (they make the law and the forces that turn known)
-from dembound.kernels.approach import moved
 from dembound.kernels.common import BROKE, CHUNKS, DONE, LIST_ENDS
 from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED
 from dembound.kernels.loop import advance
+from dembound.kernels.near import moved
 from dembound.kernels.tables import Bonded, Cells, Contacts, Limits, Log
 
 PARTICLES, PAIRS = 25, 60

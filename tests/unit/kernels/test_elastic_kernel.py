@@ -7,12 +7,12 @@ import pytest
 from plain_kernels import behind, random_pairs, stepped
 
 from dembound.kernels import tables
-from dembound.kernels.approach import moved
 from dembound.kernels.common import CHUNKS, DONE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import BONDED
 from dembound.kernels.elastic import contact_forces
 from dembound.kernels.loop import advance
+from dembound.kernels.near import moved
 
 PARTICLES, CONTACTS = 30, 70
 TIME_STEP = 0.02

@@ -7,13 +7,12 @@ import pytest
 from grid_scene import GridScene
 
 from dembound.boundaries.support import SupportBuilder
+from dembound.continuum.layer import Profile
+from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.part import GridBody, GridPart
 from dembound.kernels.grid import move
 from dembound.kernels.tables import Body
 from dembound.motion.simulation import Simulation
-from dembound.outside.body import GridBody
-from dembound.outside.layer import Profile
-from dembound.outside.mesh import Around, Mesh
-from dembound.outside.part import GridPart
 
 STEP = 1e-4
 """About half of the stable one of elements of 3 × 2 m of order 4."""

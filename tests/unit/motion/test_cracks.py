@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.motion.cracks import NO_CRACKS, Cracks, joined
+from dembound.motion.part import NO_CRACKS, Cracks, joined
 
 
 def test_cracks_among_some_particles_are_numbered_as_these() -> None:

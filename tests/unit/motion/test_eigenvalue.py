@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from dembound.errors import RunError
-from dembound.motion import eigenvalue
-from dembound.motion.eigenvalue import TOLERANCE, largest_eigenvalue
-from dembound.motion.layout import Layout
+from dembound.motion import stability
+from dembound.motion.stability import TOLERANCE, largest_eigenvalue
+from dembound.motion.state import Layout
 
 NODES, FREE = 60, np.array([1.0, 1.0, 0.0])
 
@@ -61,7 +61,7 @@ def test_any_number_of_threads_gives_the_same_bits() -> None:
 
 def test_an_iteration_that_does_not_end_is_an_error(monkeypatch) -> None:
     layout, mass, _ = scene()
-    monkeypatch.setattr(eigenvalue, "MOST", 1)
+    monkeypatch.setattr(stability, "MOST", 1)
     moves = np.ones((3, NODES), dtype=np.bool_)
     with pytest.raises(RunError, match="was not found in 1 iterations"):
         largest_eigenvalue(layout, mass, mass, FREE, moves, lambda u, force: np.copyto(force, -u))

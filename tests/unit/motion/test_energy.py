@@ -12,8 +12,7 @@ from dembound.bar import stability as bar_stability
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
 from dembound.kinds import loads

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.motion.layout import Layout
+from dembound.motion.state import Layout
 
 SPREAD = Layout(np.array([9, 2, 4, 7]), 12)
 

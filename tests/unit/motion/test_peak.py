@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.boundaries import Velocity
-from dembound.motion.peak import Peak, PeakRule
+from dembound.motion.endings import Peak, PeakRule
 from dembound.motion.sides import Samples
 
 EVERY = 2

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.kinds import kind_of
-from dembound.motion.silence import Silence, Silent, silent_rule
+from dembound.motion.endings import Silence, Silent, silent_rule
 
 STEP = 0.5
 """Time step (s) of synthetic runs; exact in binary."""

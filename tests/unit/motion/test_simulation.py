@@ -8,8 +8,7 @@ import pytest
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step, step_limit
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
 from dembound.motion.scene import FASTEST

@@ -7,7 +7,7 @@ from dembound.errors import PackingError
 from dembound.kernels import pack
 from dembound.packings import bed as module
 from dembound.packings.bed import Bed, widest_circle
-from dembound.packings.contacts import listed
+from dembound.packings.brick import listed
 
 BOX = np.array([20.0, 20.0])
 

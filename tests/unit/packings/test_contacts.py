@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.packings.contacts import strip_order, wrap
+from dembound.packings.brick import strip_order, wrap
 
 BOX = np.array([10.0, 6.0])
 

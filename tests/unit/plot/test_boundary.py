@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.plot.boundary import plot_boundary
+from dembound.plot.side import plot_boundary
 
 
 @pytest.mark.parametrize(("side", "axis", "along"), [("left", 1, "y"), ("top", 0, "x")])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.plot.convergence import plot_convergence
+from dembound.plot.stability import plot_convergence
 from dembound.results.datasets import describe
 
 BETA = [0.5, 0.618, 0.7]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.plot.linear_spectra import plot_spectra
+from dembound.plot.record import plot_spectra
 
 HEIGHT, LENGTH = 0.8, 0.05  # m/s, s
 

@@ -6,10 +6,8 @@ import pytest
 from matplotlib.collections import EllipseCollection, PathCollection, TriMesh
 
 from dembound.errors import CaseError
-from dembound.plot.moving_bar import MovingBar
-from dembound.plot.moving_scene import MovingScene
+from dembound.plot.moving import MovingBar, MovingScene, TimeLine
 from dembound.plot.style import COLOURS
-from dembound.plot.time_line import TimeLine
 
 
 def one(panel, kind):

@@ -10,8 +10,8 @@ from small_cases import SURROUNDED, small
 from dembound.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 from dembound.plot import style
-from dembound.plot.moving_scene import MovingScene
-from dembound.plot.outlines import ABOVE_FIELD, ABOVE_FILLING, read_holes
+from dembound.plot.disks import ABOVE_FIELD, ABOVE_FILLING, read_holes
+from dembound.plot.moving import MovingScene
 from dembound.plot.scene import plot_scene
 from dembound.results.recorder import Recorder
 

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.plot.hodograph import plot_hodograph
-from dembound.plot.section import plot_section
+from dembound.plot.histories import plot_hodograph, plot_section
 from dembound.plot.table import columns_of
 from dembound.results.reader import record_names
 

@@ -9,9 +9,9 @@ from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.plot.side import plot_side
 from dembound.plot.table import columns_of
+from dembound.results.histories import read_side_history
 from dembound.results.reader import text_of
 from dembound.results.results import Results
-from dembound.results.sides import read_side_history
 from dembound.running import run_case
 
 CASE = {

@@ -8,8 +8,7 @@ from dembound.errors import CaseError
 from dembound.plot.spectra import plot_fourier, plot_response, plot_transfer
 from dembound.plot.table import columns_of
 from dembound.results.histories import read_histories
-from dembound.spectra.fourier import fourier_spectrum, smoothed
-from dembound.spectra.response import response_spectrum, slope
+from dembound.spectra import fourier_spectrum, response_spectrum, slope, smoothed
 
 COUNT, STEP = 400, 1e-3
 

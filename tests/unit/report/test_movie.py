@@ -10,9 +10,8 @@ from PIL import Image
 from readable import problems_of
 
 from dembound.errors import CaseError
-from dembound.plot.boundary import plot_boundary
 from dembound.plot.energy import plot_energy
-from dembound.plot.side import plot_side
+from dembound.plot.side import plot_boundary, plot_side
 from dembound.plot.style import SIGNED_MAP
 from dembound.report import movie as movie_module
 from dembound.report.movie import movie_of, write_movie

@@ -6,7 +6,7 @@ import h5py
 import pytest
 
 from dembound.errors import RecordError
-from dembound.results.damage import damage_in_words
+from dembound.results.datasets import damage_in_words
 from dembound.results.reader import open_record
 
 VELOCITY = "snapshots/0001/velocity"

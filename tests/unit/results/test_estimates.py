@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 
-from dembound.results.estimates import entries, in_words, read_bands
+from dembound.results.histories import entries, in_words, read_bands
 
 
 def test_errors_in_words():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import RecordError
-from dembound.results.damage import require_places
+from dembound.results.datasets import require_places
 from dembound.results.reader import understood
 
 

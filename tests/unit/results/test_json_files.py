@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from dembound.results.json_files import write_json
+from dembound.results.text_files import write_json
 
 PACKAGE = Path(__file__).parents[3] / "dembound"
 

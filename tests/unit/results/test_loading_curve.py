@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.results.loading_curve import LoadingCurve
+from dembound.results.recording import LoadingCurve
 
 TIME = np.linspace(0.0, 3.0, 301)
 RATE = 0.002

@@ -8,6 +8,7 @@ import pytest
 
 from dembound.errors import CaseError, RecordError
 from dembound.files import replacing
+from dembound.results.histories import read_side_history
 from dembound.results.reader import (
     cracks_until,
     energy_of,
@@ -24,7 +25,6 @@ from dembound.results.reader import (
     text_of,
 )
 from dembound.results.results import Results
-from dembound.results.sides import read_side_history
 
 
 def test_what_damage_raises_is_one_line_about_the_record(small_run, tmp_path):

@@ -10,12 +10,11 @@ import pytest
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.contact_lists import contact_lists
-from dembound.disks.stepping.start import Start
+from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
-from dembound.motion.cracks import NO_CRACKS
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.kind import Stage
+from dembound.motion.part import NO_CRACKS
 from dembound.motion.simulation import Simulation
 from dembound.results import recorder as module
 from dembound.results.new_record import write_stages

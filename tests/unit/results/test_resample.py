@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.results.resample import at_times
+from dembound.results.compare import at_times
 
 REQUESTED = np.sort(np.random.default_rng(0).uniform(0.0, 10.0, 5000))
 STEP = 0.05

@@ -10,7 +10,7 @@ from small_cases import SPALLING, small
 
 import dembound
 from dembound.errors import CaseError, RecordError
-from dembound.results.summary_file import read_summary
+from dembound.results.summary import read_summary
 from dembound.running import run_case
 from dembound.running.unfinished import changes_since
 

@@ -11,7 +11,7 @@ import pytest
 from dembound.errors import CaseError, RecordError
 from dembound.results.reader import history_of, open_record, snapshots_of, understood
 from dembound.results.structure import MOST_ATTRIBUTES, MOST_MEMBERS, MOST_OBJECTS
-from dembound.results.summary_file import read_summary
+from dembound.results.summary import read_summary
 
 
 @pytest.fixture

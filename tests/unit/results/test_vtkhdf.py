@@ -12,8 +12,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from dembound.bar.kind import Bars
 from dembound.disks.kind import Disks
 from dembound.results import committed
-from dembound.results.vtk import write_paraview
-from dembound.results.vtkhdf import temporal_file
+from dembound.results.vtk import temporal_file, write_paraview
 
 
 def steps_of(path):

@@ -7,9 +7,9 @@ import pytest
 
 from dembound import check
 from dembound.kinds import with_changes
-from dembound.motion.ram import in_words
-from dembound.running import Progress, disk_space, job, plan, resume_case, run_case, warnings_before
-from dembound.running.disk_space import ALWAYS, results_bytes, space_warnings
+from dembound.motion.resources import in_words
+from dembound.running import Progress, job, plan, planning, resume_case, run_case, warnings_before
+from dembound.running.planning import ALWAYS, results_bytes, space_warnings
 
 LAW = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e9, "material.pb_coh": 1e9}
 STATIC = {"static": {"stress": [-1e6, -1e6, 0.0], "ratio": 1e-2}}
@@ -67,7 +67,7 @@ def test_a_disk_with_less_space_is_warned_of_with_both_numbers(bar, tmp_path, mo
     planned = plan(bar({"output.snapshots": 50}))
     need = in_words(sum(results_bytes(planned).values()))
     assert list(space_warnings(planned, tmp_path)) == []
-    monkeypatch.setattr(disk_space, "disk_free", lambda path: 1e5)
+    monkeypatch.setattr(planning, "disk_free", lambda path: 1e5)
     (warning,) = space_warnings(planned, tmp_path)
 
     assert warning.startswith(f"output.snapshots: the results take about {need}, ")
@@ -90,7 +90,7 @@ class Heard(Progress):
 def test_a_run_warns_before_it_begins(bar, tmp_path, monkeypatch, caplog) -> None:
     heard = Heard()
     with monkeypatch.context() as patch:
-        patch.setattr(disk_space, "disk_free", lambda path: 1e5)
+        patch.setattr(planning, "disk_free", lambda path: 1e5)
         run_case(bar(), tmp_path, heard)
     assert "free" in heard.lines[0]
     monkeypatch.setattr(job, "LARGE", 1e5)
@@ -112,12 +112,12 @@ def test_a_continued_run_warns_of_what_it_will_add(bar, tmp_path, monkeypatch) -
     partial = folder.rename(folder.with_name(f"{folder.name}.partial"))
     left = sum(whole.values()) - sum(written(partial).values())
     with monkeypatch.context() as small_disk:
-        small_disk.setattr(disk_space, "disk_free", lambda path: left - 1e3)
+        small_disk.setattr(planning, "disk_free", lambda path: left - 1e3)
         resume_case(partial, longer, heard)
     assert f"the results take about {in_words(left)} more, " in heard.lines[0]
 
     heard = Heard()
-    monkeypatch.setattr(disk_space, "disk_free", lambda path: left + 1e3)  # the complete run is copied
+    monkeypatch.setattr(planning, "disk_free", lambda path: left + 1e3)  # the complete run is copied
     resume_case(folder, longer + case.run.duration, heard)
     assert "the results take about" in heard.lines[0]
     assert " more, " not in heard.lines[0]

@@ -10,8 +10,8 @@ from readable import drawn_quickly
 
 from dembound.errors import CaseError, RunError
 from dembound.kinds import with_changes
+from dembound.motion.endings import monitored
 from dembound.motion.paths import first_arrivals
-from dembound.motion.silence import monitored
 from dembound.motion.trackers import Run
 from dembound.plot.scene import plot_scene
 from dembound.results.folder import OWN

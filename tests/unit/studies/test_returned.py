@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.studies.returned import returned
-from dembound.studies.strip import calibration_pulse, linear_medium
+from dembound.studies.strip import calibration_pulse, linear_medium, returned
 
 BARS = {
     "right": {},

@@ -23,13 +23,13 @@ from dembound.accuracy.of_disks.exact.problem import (
 )
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
+from dembound.disks.supports import forces_of
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
 from dembound.exact.lamb_below import buried_displacement
 from dembound.exact.solid import Solid
-from dembound.motion.silence import monitored
+from dembound.motion.endings import monitored
 from dembound.waves import Wave
 
 CORNER = 0.25

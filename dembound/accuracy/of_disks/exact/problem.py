@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from dembound.accuracy.history import History
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.edge import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.messages import numbered
 from dembound.casefile.types import LAWS

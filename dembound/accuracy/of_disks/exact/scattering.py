@@ -22,13 +22,13 @@ from dembound.accuracy.of_disks.exact.problem import (
     surface_of,
 )
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.ground_waves import ground_waves
+from dembound.continuum.medium import ElasticPlaneWave
 from dembound.disks.scene import DiskScene
+from dembound.disks.surroundings.ground_waves import ground_waves
 from dembound.errors import CaseError
 from dembound.exact.scattering import PlaneWave, scattered_motion
 from dembound.exact.solid import Solid
 from dembound.holes import Circle
-from dembound.outside.plane_waves import ElasticPlaneWave
 from dembound.waves import Wave
 
 

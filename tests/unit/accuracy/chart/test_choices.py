@@ -2,7 +2,7 @@
 
 import pytest
 
-from dembound.accuracy.chart.choices import defaults, from_table
+from dembound.accuracy.chart.study import defaults, from_table
 from dembound.accuracy.choice import choices_of
 from dembound.accuracy.of_disks import chart_choices
 from dembound.disks.matching import homogenised_beta

@@ -8,9 +8,8 @@ import pytest
 
 from dembound.accuracy.chart.references import exact_of
 from dembound.accuracy.history import History
-from dembound.accuracy.of_bars.pulse import PulseInBar
-from dembound.accuracy.of_disks.exact.continuum import ExactContinuum
-from dembound.accuracy.of_disks.exact.plane_wave import ExactPlaneWave
+from dembound.accuracy.of_bars.exact import PulseInBar
+from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactPlaneWave
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import load, with_changes

@@ -5,7 +5,7 @@ import pytest
 from estimated_bars import dalembert, scene
 
 from dembound.accuracy.of_bars.exact import ExactMotion
-from dembound.accuracy.of_bars.window import Window
+from dembound.accuracy.of_bars.rods import Window
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.kinds import with_changes

@@ -5,7 +5,7 @@ import pytest
 
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.history import History
-from dembound.accuracy.of_bars.finer import finer
+from dembound.accuracy.of_bars.judge import finer
 from dembound.accuracy.runner import Run
 from dembound.kinds import with_changes
 

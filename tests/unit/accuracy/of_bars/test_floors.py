@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from estimated_bars import scene
 
-from dembound.accuracy.of_bars.floors import MARGIN, Floors, first_echo, is_regular
 from dembound.accuracy.of_bars.options import BarOption
+from dembound.accuracy.of_bars.search import MARGIN, Floors, first_echo, is_regular
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar import BarCase
 from dembound.kinds import with_changes

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.accuracy.of_bars.window import Window, needed
+from dembound.accuracy.of_bars.rods import Window, needed
 
 
 def hump(time: np.ndarray) -> np.ndarray:

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from dembound.accuracy.of_disks.boxes import WORTH, BoxOfDisks, box_tables, cheapest_box, may_be_boxed
+from dembound.accuracy.of_disks.arrangements import WORTH, BoxOfDisks, box_tables, cheapest_box, may_be_boxed
 from dembound.api import case
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.edge import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.disks import step_cost
 from dembound.disks.scene import DiskScene, build
@@ -50,7 +50,7 @@ def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
 
     assert 16.0 < right - left < 0.5 * SIZE[0]
     assert (0.5 * (left + right), 0.5 * (bottom + top)) == (60.0, 50.0)
-    assert found.cost < WORTH * sum(step_cost.of_scene(build(tunnel())).values())
+    assert found.cost < WORTH * sum(step_cost.times_of_scene(build(tunnel())).values())
     assert {side: table.type for side, table in scene.case.boundary.items()} == dict.fromkeys(SIDES, "outside")
     assert scene.case.side("bottom").waves == {"s": "pulse"}
     assert (scene.disk_count, scene.outside.count) == (found.disks, found.nodes)  # type: ignore[union-attr]

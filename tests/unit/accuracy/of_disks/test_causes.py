@@ -8,7 +8,7 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
 from dembound.accuracy.cause import STEP
-from dembound.accuracy.of_disks.causes import causes_of_run, of_ground, of_rest
+from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest_causes
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.places import places_of_loads
@@ -58,7 +58,7 @@ def test_other_places_change_the_motion_as_they_do_in_an_exact_wave(given: Compa
     planned = plan(with_changes(given.case, {"packing.radius": 0.75}))
     scene = planned.scene
     assert isinstance(scene, DiskScene)
-    places = next(cause for cause in of_ground(given, scene, planned.time_step) if cause.name == "places")
+    places = next(cause for cause in ground_causes(given, scene, planned.time_step) if cause.name == "places")
 
     for name, own in given.recorded(scene).items():
         asked = next(monitor.position[0] for monitor in scene.case.monitor if monitor.name == name)
@@ -69,7 +69,7 @@ def test_other_places_change_the_motion_as_they_do_in_an_exact_wave(given: Compa
 
 
 def test_the_given_scene_has_no_other_places(given: Companions) -> None:
-    places = next(cause for cause in of_ground(given, given.scene, given.time_step) if cause.name == "places")
+    places = next(cause for cause in ground_causes(given, given.scene, given.time_step) if cause.name == "places")
     for errors in places.parts.values():
         np.testing.assert_allclose(np.asarray(errors["velocity"]), 0.0, atol=1e-12)
 
@@ -119,7 +119,7 @@ def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_mor
         - companions._unmoved({"m": there + np.array([-0.25, 0.25]) + shift}, shift)["m"]["velocity"]
         for shift in (each.middle - each.asked for each in places)
     )
-    cause = next(cause for cause in of_ground(companions, scene, planned.time_step) if cause.name == "places")
+    cause = next(cause for cause in ground_causes(companions, scene, planned.time_step) if cause.name == "places")
 
     assert np.linalg.norm(right - left) > 0.3 * np.linalg.norm(right)
     larger = max((left, right), key=lambda each: float(np.linalg.norm(each)))
@@ -242,7 +242,7 @@ def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() ->
     assert isinstance(scene, DiskScene)
     own, larger = (Companions(case, scene, step, most) for most in (1e9, 0.0))
     assert larger.diameter > 1.5 * own.scene.ground.brick.mean_diameter
-    found = [of_rest(each, scene).found[0].parts["top"]["velocity"] for each in (own, larger)]
+    found = [rest_causes(each, scene).found[0].parts["top"]["velocity"] for each in (own, larger)]
     peaks = [np.abs(each.recorded(scene)["top"].velocity[:, :2]).max() for each in (own, larger)]
     assert found[1] * peaks[1] == pytest.approx(found[0] * peaks[0], rel=0.15)
     assert own.settled is not None

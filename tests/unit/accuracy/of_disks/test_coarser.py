@@ -5,9 +5,9 @@ import pytest
 from small_cases import Tables, small
 
 from dembound.accuracy.of_disks.coarser import coarser, largest_diameter
-from dembound.disks.loads import forces_of
 from dembound.disks.matching import Held, homogenised_beta
 from dembound.disks.scene import build
+from dembound.disks.supports import forces_of
 
 STEP = 1e-4
 

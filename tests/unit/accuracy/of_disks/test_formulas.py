@@ -15,7 +15,7 @@ from dembound.accuracy.of_disks.matched_sides import Reflected
 from dembound.accuracy.runner import measure
 from dembound.disks.entry import late_by
 from dembound.disks.scene import build
-from dembound.results.relative_error import relative_error
+from dembound.results.compare import relative_error
 from dembound.running import Progress
 
 HEIGHT, SPEED, PERIOD = 20.0, 1000.0, 0.02

@@ -9,13 +9,13 @@ from small_cases import GRAINS, PUSHED, small
 from dembound.accuracy.cause import MOTIONS
 from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.near import (
+    ALONG_RAY,
     BETWEEN,
     CREEP,
     CURVED,
     DARK,
     FALL,
     LIT,
-    NEAR,
     OF_WAVES,
     RANDOM,
     SHORT,
@@ -23,13 +23,13 @@ from dembound.accuracy.of_disks.near import (
     wall_errors,
 )
 from dembound.casefile.disks import DiskCase
-from dembound.disks.beyond.settings import signals_of
-from dembound.disks.material.wave_front import slowest_speed
+from dembound.continuum.sizing import mean_frequency
+from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene, build
+from dembound.disks.surroundings.settings import signals_of
 from dembound.holes import Circle, Rectangle
 from dembound.holes.rectangle import STRAIGHT
 from dembound.kinds import loads
-from dembound.outside.sizing import mean_frequency
 from dembound.packings import Square
 
 RATE = 2.0 * np.pi * 20.0
@@ -59,7 +59,7 @@ def recorded(place: tuple[float, float], move: tuple[float, float]) -> History:
 
 def near(diameter: float, distance: float, wide: float = WIDE) -> float:
     """The error at a distance (m) along the force."""
-    return NEAR * (diameter * (RATE / SPEED + CURVED / distance) * distance / (distance + wide)) ** 2
+    return ALONG_RAY * (diameter * (RATE / SPEED + CURVED / distance) * distance / (distance + wide)) ** 2
 
 
 def test_it_is_of_second_order_in_the_disks_times_the_curvature_along_the_ray() -> None:

@@ -3,9 +3,9 @@
 import pytest
 from small_cases import Tables, small
 
-from dembound.accuracy.of_disks import pair as pairs
+from dembound.accuracy.of_disks import enlarged as pairs
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.pair import pair_of
+from dembound.accuracy.of_disks.enlarged import pair_of
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError

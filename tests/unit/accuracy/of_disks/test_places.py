@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
-from dembound.accuracy.extended import extended
+from dembound.accuracy.judges import extended
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.places import NINE, middle_of_loads, patch_around, weights_at
 from dembound.accuracy.runner import measure

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from small_cases import Tables, small
 
-from dembound.accuracy.of_disks.plain_sides import with_plain_sides
+from dembound.accuracy.of_disks.equal_sides import with_plain_sides
 from dembound.boundaries import Boundary
 from dembound.disks.matching import Held
 from dembound.disks.scene import DiskScene, build, with_boundaries

@@ -2,7 +2,7 @@
 
 import pytest
 
-from dembound.disks.beyond.mechanisms import BAND, band_of, mechanisms_of
+from dembound.disks.surroundings.frequencies import BAND, band_of, mechanisms_of
 from dembound.errors import CaseError
 
 Q = {"material.quality_factor": 20.0}

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.disks.beyond.cut_bonds import CutBonds
-from dembound.disks.beyond.mesh import medium_of
-from dembound.disks.beyond.settings import Settings, mesh_of
+from dembound.continuum.layer import Absorption
+from dembound.continuum.medium import Layered, Medium
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.scene import DiskScene, build
-from dembound.outside.layer import Absorption
-from dembound.outside.medium import Layered, Medium
+from dembound.disks.surroundings.cut_bonds import CutBonds
+from dembound.disks.surroundings.mesh import medium_of
+from dembound.disks.surroundings.settings import Settings, mesh_of
 from dembound.packings.cut import cut_contacts
 
 ROCK, SOIL = Medium.isotropic(2300.0, 1400.0, 700.0), Medium.isotropic(1800.0, 400.0, 200.0)

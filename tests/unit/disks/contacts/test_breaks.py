@@ -2,7 +2,7 @@
 
 import pytest
 
-from dembound.disks.contacts.breaks import BREAK_TIME, BREAK_X, BREAK_Y, first_break
+from dembound.disks.contacts.pairs import BREAK_TIME, BREAK_X, BREAK_Y, first_break
 from dembound.disks.kind import Disks
 from dembound.kinds import with_changes
 from dembound.motion.simulation import Simulation

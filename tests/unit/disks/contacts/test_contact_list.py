@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from disk_systems import BODY, TWO_BRICKS, WRAP
 
-from dembound.disks.contacts.arrays import plain_contacts
 from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION, note_places
 
 SIDES = {

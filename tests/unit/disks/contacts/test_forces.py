@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from disk_systems import BODY, DENSE, FREE_FIELD, WRAP
 
-from dembound.disks.contacts import forces as module
-from dembound.disks.contacts.arrays import plain_contacts
-from dembound.disks.contacts.forces import contact_columns, pieces
+from dembound.disks.contacts import pairs as module
+from dembound.disks.contacts.pairs import contact_columns, pieces, plain_contacts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping.system import DiskSystem

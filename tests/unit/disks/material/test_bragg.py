@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from dembound.disks.material import bragg
-from dembound.disks.material.bragg import Coupling, couplings
+from dembound.continuum.sizing import Signal, energies
+from dembound.disks.material import packing_waves
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.outside.sizing import Signal, energies
+from dembound.disks.material.packing_waves import Coupling, couplings
 from dembound.waves.cosine import Cosine
 
 
@@ -85,15 +85,15 @@ def test_work_is_bounded_and_the_rest_is_named(dense: PackedMaterial, monkeypatc
     """The columns of all solves times the disks stay below the bound, for waves along both axes."""
     signals = [Signal(Cosine(type="cosine", amplitude=1.0, period=0.004), is_force=True)]
     columns = []
-    inner = bragg._matrices
-    monkeypatch.setattr(bragg, "_matrices", lambda *given: columns.append(4 * len(given[1])) or inner(*given))
-    whole = bragg.sent_back(dense, signals, (30.0, 30.0), (0, 1))
+    inner = packing_waves._matrices
+    monkeypatch.setattr(packing_waves, "_matrices", lambda *given: columns.append(4 * len(given[1])) or inner(*given))
+    whole = packing_waves.sent_back(dense, signals, (30.0, 30.0), (0, 1))
     asked, count = sum(columns), len(dense.brick.radii)
     columns.clear()
-    monkeypatch.setattr(bragg, "WORK", 0.4 * asked * count)
-    part = bragg.sent_back(dense, signals, (30.0, 30.0), (0, 1))
+    monkeypatch.setattr(packing_waves, "WORK", 0.4 * asked * count)
+    part = packing_waves.sent_back(dense, signals, (30.0, 30.0), (0, 1))
 
-    assert 0 < sum(columns) * count < bragg.WORK
+    assert 0 < sum(columns) * count < packing_waves.WORK
     assert part.share < whole.share
     assert part.highest < whole.highest
     assert part.above > whole.above

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
+from dembound.continuum.mesh import Around, Mesh
 from dembound.disks.material import free_surface
 from dembound.disks.material.free_surface import LEAST_MASS, _curved, _turned, cut_at, inset, mass_of, skin_depths
 from dembound.disks.material.homogenise import Network, homogenise
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
-from dembound.outside.mesh import Around, Mesh
 from dembound.packings.brick import Brick
 from dembound.packings.square import Square
 from dembound.packings.tiling import tile

@@ -5,7 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.disks.material.wave_front import front_of, largest_group_speed, largest_phase_speed, slowest_speed
+from dembound.disks.material.packing_waves import (
+    front_of,
+    largest_group_speed,
+    largest_phase_speed,
+    slowest_speed,
+)
 from dembound.disks.scene import ground_of
 
 SOFT = {"fric": 0.5, "kratio": 0.5, "pb_kratio": 0.5}

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, small
 
+from dembound.continuum.sizing import Signal
 from dembound.disks.reflection.arrivals import Arrival, arrivals_of, over_spectrum
 from dembound.disks.reflection.meter import Reflections
 from dembound.disks.scene import ground_of
-from dembound.outside.sizing import Signal
 from dembound.waves import FileWave
 
 POINT = {"name": "blow", "position": [2.0, 4.0], "force": [0.0, -1e3], "wave": "pulse"}

@@ -6,8 +6,8 @@ from small_cases import small
 
 from dembound import api
 from dembound.disks.reflection import compare_types
-from dembound.disks.reflection.compared import amplitudes, returned_range, signal_for
-from dembound.spectra.fourier import fourier_spectrum
+from dembound.disks.reflection.arrivals import amplitudes, returned_range, signal_for
+from dembound.spectra import fourier_spectrum
 
 LENGTH, SPEED, PERIOD = 100.0, 1000.0, 0.04
 SPRINGS = {"type": "viscoelastic", "distance": 5.0, "alpha_n": 2.5}

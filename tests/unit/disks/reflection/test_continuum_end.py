@@ -7,12 +7,12 @@ import pytest
 from angles import FREQUENCY, Side, reflection
 from small_cases import GRAINS, small
 
+from dembound.continuum.layer import Absorption
 from dembound.disks.reflection import beyond, measure_side
 from dembound.disks.reflection.bricks import BrickInRow
 from dembound.disks.reflection.continuum_end import ContinuumEnd, beside_elements, copies_of
 from dembound.disks.reflection.meter import Meter
 from dembound.disks.scene import build, ground_of
-from dembound.outside.layer import Absorption
 
 ANGLES = [0.0, 25.0, 60.0]
 

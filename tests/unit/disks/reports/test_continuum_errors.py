@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from small_cases import SURROUNDED, Tables, small
 
+from dembound.continuum.sizing import slowest
 from dembound.disks.reports import continuum_errors as of
 from dembound.disks.reports.continuum_errors import expected_errors
 from dembound.disks.scene import DiskScene, build
-from dembound.outside.sizing import slowest
 
 SPEED, DIAMETER = 1000.0 / math.sqrt(2.0), 1.0
 SIDES = ("left", "right", "bottom", "top")

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from disk_systems import LAMB
 
-from dembound.disks.beyond.settings import signals_of
-from dembound.disks.material.bragg import sent_back
+from dembound.disks.material.packing_waves import sent_back
 from dembound.disks.packing_errors import lattice_errors
 from dembound.disks.reports.continuum_errors import expected_errors
 from dembound.disks.reports.continuum_facts import ANGLES, continuum_facts, continuum_warnings
 from dembound.disks.scene import build
+from dembound.disks.surroundings.settings import signals_of
 from dembound.kinds import with_changes
 from dembound.words import percent
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import pyvista
 
+from dembound.continuum.mesh import Around, Mesh
 from dembound.disks.kind import Disks
-from dembound.disks.reports.continuum_mesh import continuum_mesh
-from dembound.outside.mesh import Around, Mesh
+from dembound.disks.reports.mesh import continuum_mesh
 from dembound.results.vtk import write_paraview
 
 

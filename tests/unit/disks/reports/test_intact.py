@@ -6,7 +6,7 @@ import pytest
 from small_cases import GRAINS, small
 
 from dembound.disks.reports.intact import creep, intact_facts, intact_warnings
-from dembound.disks.reports.outcome import disk_outcome
+from dembound.disks.reports.summary import disk_outcome
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
 

@@ -12,8 +12,7 @@ from warned_cases import warned
 
 from dembound import api
 from dembound.disks.kind import Disks
-from dembound.disks.loads import forces_of
-from dembound.disks.material.wave_front import front_of
+from dembound.disks.material.packing_waves import front_of
 from dembound.disks.ram import SceneSizes
 from dembound.disks.reports.beside_wave import Grid, undisturbed
 from dembound.disks.reports.facts import disk_facts
@@ -22,6 +21,7 @@ from dembound.disks.reports.wave_warnings import strong_waves
 from dembound.disks.scene import build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import step_limit
+from dembound.disks.supports import forces_of
 from dembound.disks.trials import trials_of_disks
 from dembound.plot.scene import plot_scene
 from dembound.report import page

@@ -1,6 +1,6 @@
 """Results of a run of disks in words."""
 
-from dembound.disks.reports.outcome import disk_outcome
+from dembound.disks.reports.summary import disk_outcome
 
 
 def test_only_what_applies_is_reported() -> None:

@@ -4,7 +4,7 @@ import pytest
 from small_cases import small
 from warned_cases import GROUND
 
-from dembound.disks.reports.spring_warnings import spring_warnings
+from dembound.disks.reports.side_warnings import spring_warnings
 from dembound.disks.scene import build
 
 BLOW = {"name": "blow", "force": [0.0, -1e5], "position": [9.5, 9.5], "wave": "blow"}

@@ -6,7 +6,7 @@ from small_cases import small
 from warned_cases import DENSE, SLOW, warned
 
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.reports.materials import materials_of
+from dembound.disks.reports.micro_macro import materials_of
 from dembound.disks.reports.warnings import _s_speed_of_the_packing
 from dembound.disks.scene import build
 

@@ -9,7 +9,7 @@ from warned_cases import DENSE, SLOW, warned
 from dembound.disks.reports.wave_warnings import particles_per_wavelength
 from dembound.disks.scene import build
 from dembound.running import plan
-from dembound.waves.spectrum import HANN_FADE
+from dembound.waves.wave import HANN_FADE
 from dembound.words import with_unit
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from disk_systems import BODY, WRAP
 
-from dembound.disks.rest.block_stress import Blocks, Uniformity, block_stress
+from dembound.disks.rest.settled import Blocks, Uniformity, block_stress
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.side_forces import packing_pieces
 from dembound.disks.stepping.system import DiskSystem

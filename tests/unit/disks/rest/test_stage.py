@@ -6,7 +6,7 @@ from disk_systems import DENSE
 from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
 from small_cases import SURROUNDED, small
 
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.edge import SIDES
 from dembound.disks.rest.loading import LOOK
 from dembound.disks.rest.stage import require_stages, settle
 from dembound.disks.rest.static_scene import StaticScene

@@ -5,7 +5,7 @@ import pytest
 from disk_systems import BODY, TWO_BRICKS, fitted, shaken, turn
 
 from dembound.boundaries import OPPOSITE
-from dembound.disks.rest.tractions import Tractions
+from dembound.disks.rest.static_scene import Tractions
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.side_forces import side_forces
 

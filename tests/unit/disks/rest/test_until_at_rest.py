@@ -5,7 +5,7 @@ import pytest
 from disk_systems import DENSE
 from settling import FIXED, MASS, STANDING, WRAP, G, scene
 
-from dembound.disks.rest import until_at_rest
+from dembound.disks.rest import stage
 from dembound.disks.rest.loading import LOOK
 from dembound.disks.rest.stage import settle
 from dembound.errors import RunError
@@ -19,7 +19,7 @@ def test_a_body_that_slides_without_end_stalls(bar, monkeypatch) -> None:
     loose = {"material.law": "linearpbond", "material.contact_share": 1.0, "material.fric": 0.1}
     push = {"name": "push", "acceleration": [G, 0.0]}
     changes = {"packing.size": [1.0, 1.0], "motion.held": ["y", "rotation"], "boundary": WRAP, "load": [push]}
-    monkeypatch.setattr(until_at_rest, "PATIENCE", PATIENCE)
+    monkeypatch.setattr(stage, "PATIENCE", PATIENCE)
     looks: list[float] = []
     with pytest.raises(RunError, match=r"stalls at an unbalanced force ratio of (?s:.*)is the body held") as caught:
         settle(scene(bar, **{**changes, **loose}), lambda _, ratio, stage: looks.append(ratio))

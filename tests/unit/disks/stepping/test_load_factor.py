@@ -10,7 +10,7 @@ from dembound.accuracy.runner import measure
 from dembound.disks.kind import Disks
 from dembound.disks.stepping.load_factor import LIMITS, LOAD_FACTOR, limit_in_words, limit_lines, load_factor_in_words
 from dembound.errors import CaseError
-from dembound.kernels.limits import in_columns
+from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.tables import Limits
 from dembound.running import Progress, plan, resume_case, run_case
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.damping.quality import fitted
-from dembound.disks.contacts.rows import contact_rows
+from dembound.damping import fitted
+from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping import damped_ground

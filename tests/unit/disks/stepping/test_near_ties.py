@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from small_cases import SURROUNDED, small
 
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.edge import SIDES
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.near_ties import sides_near
 from dembound.disks.stepping.system import DiskSystem

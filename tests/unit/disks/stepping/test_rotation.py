@@ -5,7 +5,7 @@ import pytest
 from disk_systems import BODY, turn
 
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stepping.rotation import turned_as_a_whole, turns_freely
+from dembound.disks.stepping.fields import turned_as_a_whole, turns_freely
 
 RANDOM = {
     "pattern": "C",

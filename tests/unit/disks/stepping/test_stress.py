@@ -3,10 +3,10 @@
 import numpy as np
 from disk_systems import BODY, WRAP
 
-from dembound.disks.contacts.arrays import plain_contacts
+from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.stress import particle_stress
+from dembound.disks.stepping.fields import particle_stress
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.simulation import Simulation
 

@@ -18,7 +18,7 @@ from disk_systems import (
     shaken,
 )
 
-from dembound.disks.stepping.contact_lists import contact_lists
+from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import DONE, LAW_ENDS, LIST_ENDS
 

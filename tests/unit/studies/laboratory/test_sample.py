@@ -5,8 +5,8 @@ from small_cases import PUSHED, small
 
 from dembound.errors import CaseError
 from dembound.kinds import loads
-from dembound.studies.laboratory.envelope import fitted
 from dembound.studies.laboratory.sample import RISE, Sample, ignored, sample_of
+from dembound.studies.laboratory.study import fitted
 
 TABLES = {name: table for name, table in PUSHED.items() if name != "monitor"}
 BROKEN = {"material.law": "linearpbond", "material.pb_ten": 5e5, "material.pb_coh": 8e5}

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from dembound.casefile.disks.scatter import Scatter
+from dembound.casefile.disks.targets import Scatter
 from dembound.errors import CaseError
 from dembound.studies.laboratory.strengths import CLOSE, COHESIONS, SHARES, SPREADS, Search, in_words, spread_of
-from dembound.studies.sweep.statistics import Statistic
+from dembound.studies.sweep.tables import Statistic
 
 BOTH = {"ucs": 180e6, "tension": 50e6}
 ONE_STRENGTH = np.divide(SHARES["ucs"][0], SHARES["tension"][0])

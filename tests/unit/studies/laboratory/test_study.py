@@ -11,7 +11,7 @@ from small_cases import PUSHED, small
 
 import dembound
 from dembound.errors import CaseError, RunError
-from dembound.results.loading_curve import LoadingCurve
+from dembound.results.recording import LoadingCurve
 from dembound.studies.laboratory import study
 from dembound.studies.sweep import perform
 

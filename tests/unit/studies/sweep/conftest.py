@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from dembound.studies.sweep.members import Member, changes_of, members_of
+from dembound.studies.sweep.members import Member, members_of, variations
 from dembound.studies.sweep.perform import OUTCOMES, Task
 
 
@@ -16,7 +16,7 @@ def rods(spalling) -> Callable[..., list[Member]]:
 
     def make(*pressures: float, **changes: Any) -> list[Member]:
         case = spalling({"output.pictures": False, **changes}, "rod")
-        members, left_out = members_of(case, changes_of({"load.hit.pressure": pressures}, False), "run", "impedance")
+        members, left_out = members_of(case, variations({"load.hit.pressure": pressures}, False), "run", "impedance")
         assert not left_out
         return members
 

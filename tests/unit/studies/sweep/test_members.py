@@ -5,11 +5,11 @@ from small_cases import GRAINS, small
 
 from dembound.errors import CaseError
 from dembound.results.folder import problem_of
-from dembound.studies.sweep.members import LONGEST, changes_of, members_of
+from dembound.studies.sweep.members import LONGEST, members_of, variations
 
 
 def names(case, vary, together=False):
-    members, _ = members_of(case, changes_of(vary, together), "run", "impedance")
+    members, _ = members_of(case, variations(vary, together), "run", "impedance")
     return [member.name for member in members]
 
 
@@ -18,11 +18,11 @@ def test_all_combinations_are_members_the_last_key_first_or_values_together(bar)
     assert names(bar(), vary) == [f"safety={s},duration={d}" for s in (0.5, 0.9) for d in (0.01, 0.02)]
     assert names(bar(), vary, together=True) == ["safety=0.5,duration=0.01", "safety=0.9,duration=0.02"]
     with pytest.raises(CaseError, match=r"--together: .* run.safety 2 values, run.duration 1 value"):
-        changes_of(vary | {"run.duration": [0.01]}, together=True)
+        variations(vary | {"run.duration": [0.01]}, together=True)
     with pytest.raises(CaseError, match="--vary: is missing"):
-        changes_of({}, False)
+        variations({}, False)
     # invalid ones are left out and equal ones count once
-    members, left_out = members_of(bar(), changes_of({"run.safety": [0.5, 2.0, 0.5]}, False), "run", "impedance")
+    members, left_out = members_of(bar(), variations({"run.safety": [0.5, 2.0, 0.5]}, False), "run", "impedance")
     assert [member.name for member in members] == ["safety=0.5"]
     assert [line.split(":")[0] for line in left_out] == ["safety=2"]
 
@@ -39,7 +39,7 @@ def test_names_are_those_of_folders_and_differ(bar) -> None:
 
 
 def test_keys_depend_on_results_alone(bar) -> None:
-    changes = changes_of({"run.safety": [0.5]}, False)
+    changes = variations({"run.safety": [0.5]}, False)
 
     def key(case, action="run", method="impedance"):
         ((member,), _) = members_of(case, changes, action, method)
@@ -53,5 +53,5 @@ def test_keys_depend_on_results_alone(bar) -> None:
 
 def test_groups_are_the_changes_without_seeds() -> None:
     random = small(GRAINS)
-    members, _ = members_of(random, changes_of({"packing.seed": [1, 2], "run.safety": [0.5]}, False), "run", "ratio")
+    members, _ = members_of(random, variations({"packing.seed": [1, 2], "run.safety": [0.5]}, False), "run", "ratio")
     assert [member.group for member in members] == [{"run.safety": 0.5}] * 2

@@ -11,9 +11,8 @@ from dembound.results.reader import open_record
 from dembound.results.results import Results
 from dembound.running import job, run_case
 from dembound.studies.all_sides import calibrate_all
-from dembound.studies.sweep.members import changes_of, members_of
+from dembound.studies.sweep.members import ENERGY, members_of, unit_of, variations
 from dembound.studies.sweep.perform import ALONE, MEMBERS, OUTCOMES, Outcome, forget_replaced, outcome_in, perform
-from dembound.studies.sweep.values import ENERGY, unit_of
 
 
 def test_values_are_those_of_the_run_alone(rods, task, tmp_path) -> None:
@@ -57,7 +56,7 @@ def test_units_are_those_of_the_last_part() -> None:
 
 
 def test_calibrations_are_those_of_the_case_alone(bar, task) -> None:
-    changes = changes_of({"wave.pulse.amplitude": [0.5]}, False)
+    changes = variations({"wave.pulse.amplitude": [0.5]}, False)
     for method in ("impedance", "homogenised"):
         ((member,), _) = members_of(bar(), changes, "calibrate", method)
         values = perform(task(member, "calibrate", method)).values

@@ -5,7 +5,7 @@ import pytest
 
 from dembound.studies.sweep.members import Member
 from dembound.studies.sweep.perform import Outcome
-from dembound.studies.sweep.statistics import statistic, statistics
+from dembound.studies.sweep.tables import statistic, statistics
 
 
 def test_the_interval_is_students() -> None:

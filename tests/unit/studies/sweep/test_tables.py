@@ -9,10 +9,9 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.plot.sweep import plot_sweep
-from dembound.studies.sweep.members import Member
+from dembound.studies.sweep.members import ENERGY, Member
 from dembound.studies.sweep.perform import Outcome
 from dembound.studies.sweep.tables import Swept, write_tables
-from dembound.studies.sweep.values import ENERGY
 
 SIDE = {"type": "free"}
 

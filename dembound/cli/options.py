@@ -1,0 +1,183 @@
+"""Options that several commands share, as fields of dataclasses, and those of commands that draw histories."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from enum import StrEnum
+from functools import wraps
+from inspect import Parameter, Signature, signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+
+import typer
+
+from dembound.cli.app import Side
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def with_tables(command: Callable[..., None]) -> Callable[..., None]:
+    """A command for typer in which the fields of every dataclass parameter are options.
+
+    The fields are annotated as options of typer. The command gets one object of the class.
+    """
+    hints = get_type_hints(command, include_extras=True)
+    tables: dict[str, type] = {
+        name: hint for name, hint in hints.items() if isinstance(hint, type) and is_dataclass(hint)
+    }
+
+    @wraps(command)
+    def flat(**given: Any) -> None:
+        for name, table in tables.items():
+            given[name] = table(**{field.name: given.pop(field.name) for field in fields(table)})
+        command(**given)
+
+    def parameters() -> Iterator[Parameter]:
+        for name, parameter in signature(command).parameters.items():
+            if name in tables:
+                yield from _options(tables[name])
+            else:
+                yield parameter.replace(annotation=hints[name])
+
+    flat.__signature__ = Signature(list(parameters()))  # type: ignore[attr-defined]  # what typer reads
+    return flat
+
+
+def _options(table: type) -> Iterator[Parameter]:
+    """The fields of a dataclass as parameters by name."""
+    types = get_type_hints(table, include_extras=True)
+    for field in fields(table):
+        default = Parameter.empty if field.default is MISSING else field.default
+        yield Parameter(field.name, Parameter.KEYWORD_ONLY, default=default, annotation=types[field.name])
+
+
+CALIBRATIONS = "calibrations"
+"""Name of results that do not belong to a run."""
+
+SINGLE = ("--field", "--energy")
+"""Options whose pictures show one run."""
+
+
+class Quantity(StrEnum):
+    """Quantities of the monitors."""
+
+    velocity = "velocity"
+    displacement = "displacement"
+    acceleration = "acceleration"
+    stress = "stress"
+
+
+class Component(StrEnum):
+    """Components of the monitors' motion."""
+
+    x = "x"
+    y = "y"
+    both = "both"
+    rotation = "rotation"
+
+
+QuantityOfMonitors = Annotated[
+    Quantity | None,
+    typer.Option(
+        "--quantity",
+        metavar="QUANTITY",
+        help=f"Quantity of the monitors: {', '.join(Quantity)}; by default velocity; acceleration is that of central "
+        "differences of the velocity, stress of bars alone.",
+    ),
+]
+ComponentOfMotion = Annotated[
+    Component | None,
+    typer.Option(
+        "--component", help="Component of the motion, by default x or y, whichever is larger; both: side by side."
+    ),
+]
+Monitors = Annotated[
+    list[str] | None, typer.Option("--monitor", metavar="NAME", help="Show this monitor only. May be repeated.")
+]
+
+
+class SceneField(StrEnum):
+    """Fields of a whole scene; each kind of scene accepts some of them."""
+
+    velocity = "velocity"
+    displacement = "displacement"
+    stress = "stress"
+    damage = "damage"
+    stress_xx = "stress_xx"
+    stress_yy = "stress_yy"
+    stress_xy = "stress_xy"
+    forces = "forces"
+    peak = "peak"
+    unbalanced = "unbalanced"
+    layer = "layer"
+
+
+@dataclass(frozen=True)
+class Plotted:
+    """What a plot shows by its options; without options the histories of all monitors."""
+
+    quantity: Quantity | None
+    component: Component | None
+    monitor: list[str] | None
+    boundary: Side | None
+    energy: bool
+    field: SceneField | None
+    snapshot: int | None
+    table: Path | None
+
+    def problems(self, kind: str, count: int) -> Iterator[str]:
+        """Options that exclude each other, for a number of results of a kind."""
+        pictures = {"--field": self.field, "--energy": self.energy, "--boundary": self.boundary}
+        choices = {"--component": self.component, "--monitor": self.monitor}
+        asked = [option for option, value in pictures.items() if value]
+        chosen = [option for option, value in choices.items() if value]
+        if self.quantity and not self.boundary:  # a side has quantities, too
+            chosen = ["--quantity", *chosen]
+        if kind == CALIBRATIONS:
+            yield from (f"{option}: is for runs, not for calibrations" for option in asked + chosen)
+        else:
+            yield from (f"{option}: is not allowed together with {asked[0]}" for option in asked[1:] + chosen if asked)
+        yield from (f"{option}: shows one run, name one" for option in asked if option in SINGLE and count > 1)
+        if self.snapshot is not None and self.field is None:
+            yield "--snapshot: goes with --field"
+        if self.table is not None and self.field is not None:
+            yield "--table: is of lines, a field has none; run.h5 and the files for ParaView have its values"
+
+    def draw(self, files: Sequence[Path], kind: str) -> Figure:
+        """The picture of results of a kind."""
+        if kind == CALIBRATIONS:
+            from dembound.plot.stability import plot_convergence
+
+            return plot_convergence(files)
+        if self.field is not None:
+            from dembound.kinds import kind_of_record
+
+            return kind_of_record(files[0]).field_picture(files[0], self.field.value, self.snapshot)
+        if self.energy:
+            from dembound.plot.energy import plot_energy
+
+            return plot_energy(files[0])
+        return self._side(files, self.boundary.value) if self.boundary else self._histories(files)
+
+    def _side(self, files: Sequence[Path], side: str) -> Figure:
+        """A side: its particles, or a quantity of the side as a whole."""
+        if self.quantity is None:
+            from dembound.plot.side import plot_boundary
+
+            return plot_boundary(files, side)
+        from dembound.plot.side import plot_side
+
+        return plot_side(files, side, self.quantity.value)
+
+    def _histories(self, files: Sequence[Path]) -> Figure:
+        """The histories of monitors."""
+        from dembound.plot.histories import plot_histories
+
+        return plot_histories(
+            files,
+            component=self.component.value if self.component else None,
+            quantity=(self.quantity or Quantity.velocity).value,
+            monitors=self.monitor or None,
+        )

@@ -1,0 +1,307 @@
+"""Pairs of disks as arrays for the kernels, the forces across them, and the first bonds that break."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.disks.contacts.pair_rows import PairPlan
+from dembound.disks.material.at_rest import StressAtRest, stressed
+from dembound.disks.material.constants import brick_constants
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels.common import CHUNKS
+from dembound.kernels.compiler.lanes import LANES
+from dembound.kernels.compiler.start_strain import began_of
+from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SLID, push
+from dembound.kernels.tables.contacts import Contacts, Limits
+from dembound.motion.kind import Finding
+from dembound.motion.state import Layout, aligned_zeros
+from dembound.motion.trackers import Run
+from dembound.packings.tiling import Assembly
+from dembound.places import is_within
+from dembound.table import EVERYWHERE, Box
+
+PIECE = 2**18
+"""Number of pairs whose stresses are evaluated at once: this limits the temporary arrays of large scenes."""
+
+UNYIELDING = Limits(friction=0.0, tension=np.inf, cohesion=np.inf, tan_fa=0.0, geometry=REFERENCE)
+"""Under the elastic law there are no strength and friction limits."""
+
+
+class Piece(NamedTuple):
+    """k pairs of a list.
+
+    first, second : (k,) particles, numbered as in the scene. bonded : (k,) bool. acting : (k,) bool, see `acting`.
+    vector : (2, k) m from the centre of the first to that of the second, or of its image across a periodic side. near :
+    (k,) part of the vector on the side of the first. force : (2, k) N per metre on the first.
+    """
+
+    first: np.ndarray
+    second: np.ndarray
+    bonded: np.ndarray
+    acting: np.ndarray
+    vector: np.ndarray
+    near: np.ndarray
+    force: np.ndarray
+
+
+def acting(contacts: Contacts, geometry: int) -> np.ndarray:
+    """Whether each pair (b,) has an intact bond or a closed contact.
+
+    geometry : REFERENCE or SLID for the elastic law, under which contacts remain as they are at the start; else those
+    with a force in the last step are closed.
+    """
+    if geometry >= REFERENCE:
+        rest, touch = contacts.constants[:, 2:4].T
+        closed = (touch >= rest)[contacts.contact_type]
+    else:
+        closed = contacts.force[:2].any(axis=0)
+    whether: np.ndarray = (contacts.state == INTACT) | closed
+    return whether
+
+
+def pieces(layout: Layout, contacts: Contacts, displacement: np.ndarray, geometry: int) -> Iterator[Piece]:
+    """The forces of all pairs, piece by piece; the pairs are not changed.
+
+    Parameters
+    ----------
+    layout : the slots of the particles.
+    contacts : the pairs.
+    displacement : (3, n) m and rad.
+    geometry : see kernels/contacts.py. REFERENCE and SLID: forces of the elastic law at the displacements, along the
+    vectors of the start; SLID: of contacts that have slid before. Else the pairs' last forces, along the vectors at the
+    displacements; BONDED: along those of the start where a bond is intact.
+    """
+    u = layout.spread(displacement) if geometry >= REFERENCE else None
+    for begin in range(0, max(1, len(contacts.first)), PIECE):
+        part = _cut(contacts, slice(begin, begin + PIECE))
+        first, second = layout.node[part.first], layout.node[part.second]
+        rows, bonded = part.constants[part.contact_type], part.state == INTACT
+        vector = rows[:, :2].T
+        if u is not None:
+            part = _pushed(part, u, slid=geometry == SLID)
+        else:
+            moved = displacement[:2, second] - displacement[:2, first]
+            vector = vector + (np.where(bonded, 0.0, moved) if geometry == BONDED else moved)
+        near = 0.5 + rows[:, 4] / np.hypot(*vector)
+        yield Piece(first, second, bonded, acting(part, geometry), vector, near, part.force[:2])
+
+
+def contact_columns(found: Iterator[Piece]) -> dict[str, tuple[np.ndarray, str]]:
+    """The b pairs that act as columns of a record, by name: values and unit.
+
+    particles : (b, 2) numbers of first and second. vector : (b, 2) m as in `Piece`. normal_force : (b,) N/m, force
+    along the vector, tension positive. shear_force : (b,) N/m, force on the first along the vector turned by a quarter
+    anticlockwise. bonded : (b,) bool. The force on the first is normal_force·n + shear_force·t with these two unit
+    vectors, that on the second is the opposite.
+    """
+    kept = [_acting_ones(piece) for piece in found]
+    first, second, bonded, vector, force = (np.concatenate(column, axis=-1) for column in zip(*kept, strict=True))
+    along, across = vector, np.stack([-vector[1], vector[0]])
+    length = np.hypot(*vector)
+    return {
+        "particles": (np.stack([first, second], axis=1).astype(np.int32), "1"),
+        "vector": (np.ascontiguousarray(vector.T), "m"),
+        "normal_force": ((force * along).sum(axis=0) / length, "N/m"),
+        "shear_force": ((force * across).sum(axis=0) / length, "N/m"),
+        "bonded": (bonded, "1"),
+    }
+
+
+def _acting_ones(piece: Piece) -> tuple[np.ndarray, ...]:
+    """First, second, bonded, vector and force of the acting pairs."""
+    columns = (piece.first, piece.second, piece.bonded, piece.vector, piece.force)
+    return tuple(column[..., piece.acting] for column in columns)
+
+
+def _cut(contacts: Contacts, piece: slice) -> Contacts:
+    """A slice of the pairs, without the rows of contact ends."""
+    names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place", "kept")
+    columns = {name: getattr(contacts, name)[piece] for name in names}
+    return contacts._replace(**columns, force=contacts.force[:, piece])
+
+
+def _pushed(contacts: Contacts, u: np.ndarray, *, slid: bool) -> Contacts:
+    """Copies of pairs with the forces of the elastic law at displacements u (3, slots)."""
+    count = len(contacts.first)
+    copies = contacts._replace(
+        shear=np.zeros(count),
+        slip=contacts.slip.copy() if slid else np.zeros(count),
+        closed=np.zeros(count, dtype=np.uint8),
+        cracked=np.full(count, -1),
+        force=np.empty((4, count)),
+    )
+    push(u, u, 0.0, 0, copies, UNYIELDING, np.empty((CHUNKS, 4)), 0)  # zero step: at rest
+    return copies
+
+
+BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
+"""Names of the findings about the first broken bonds."""
+
+
+def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:
+    """Time (s) of the step in which the first bonds break, and the mean of their places (m) then; empty without one.
+
+    inside : the part of the scene that counts, by default all. The run's list of broken bonds is emptied, as by every
+    `System.take_cracks`.
+    """
+    cracks = run.system.take_cracks(run.state.step)
+    settled = 0.5 * run.state.datum[:2, cracks.pair].sum(axis=2).T
+    places = cracks.position - settled
+    counted = is_within(inside or EVERYWHERE, places, float(run.scene.size.max()))
+    if not counted.any():
+        return {}
+    step = int(cracks.step[counted].min())
+    x, y = np.mean(places[counted & (cracks.step == step)], axis=0)
+    return {
+        BREAK_TIME: Finding(float(step * run.time_step), "s"),
+        BREAK_X: Finding(float(x), "m"),
+        BREAK_Y: Finding(float(y), "m"),
+    }
+
+
+NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
+"""Constants of a place without a pair: far apart, without stiffness."""
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Pairs: first, second (b,) particles, image (b, 2) int8 whole periods between them, contact_type (b,)."""
+
+    first: np.ndarray
+    second: np.ndarray
+    image: np.ndarray
+    contact_type: np.ndarray
+
+
+class ContactHistory(NamedTuple):
+    """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds.
+
+    kept : None where all bonds may break.
+
+    drag (b, 2), see `Dashed`; None without dashpots, or before they have acted.
+    """
+
+    state: np.ndarray
+    shear: np.ndarray
+    slip: np.ndarray
+    closed: np.ndarray
+    cracked: np.ndarray
+    kept: np.ndarray | None = None
+    place: np.ndarray | None = None
+    drag: np.ndarray | None = None
+
+
+class Placed(NamedTuple):
+    """Pairs in their places.
+
+    arrays, live, image : see `ContactList`. in_rows : (k,) places of pairs in rows of copies, ascending. strays : the
+    contact ends of all other pairs, see `PairList`; None without rows. drag : (places, 2) N, or (0, 2).
+    """
+
+    arrays: Contacts
+    live: np.ndarray
+    image: np.ndarray
+    in_rows: np.ndarray
+    strays: tuple[np.ndarray, np.ndarray, np.ndarray] | None
+    drag: np.ndarray
+
+
+def in_places(
+    pairs: Pairs, history: ContactHistory, slot: np.ndarray, constants: np.ndarray, plan: PairPlan | None
+) -> Placed:
+    """Assign places to pairs, and list the contact ends of each particle.
+
+    slot : (m,) of each particle. constants : (p, 15) of the types of contacts. plan : rows of copies, whose places come
+    first; None: there are none.
+    """
+    first, second = (slot[particles].astype(np.int32) for particles in (pairs.first, pairs.second))
+    in_rows = np.full(len(first), -1)
+    if plan is not None:
+        in_rows = plan.place(pairs.first, pairs.second, pairs.contact_type)
+    order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], second, first, in_rows, in_rows < 0))
+    first, second, in_rows = first[order], second[order], in_rows[order]
+    places = 0 if plan is None else plan.count
+    shared = int(np.count_nonzero(in_rows >= 0))
+    live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
+    count, begin, stop = places + len(order) - shared, int(slot.min()), int(slot.max()) + 1
+    if plan is not None:
+        count = -(-count // LANES) * LANES  # each row of forces is aligned
+    owner = np.concatenate([first, second])
+    end = np.concatenate([2 * live, 2 * live + 1]).astype(np.uint32)
+    start = np.zeros(stop + 1, dtype=np.uint32)
+    np.cumsum(np.bincount(owner - begin, minlength=stop - begin), out=start[begin + 1 :])
+
+    def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
+        """Values of the pairs in their places."""
+        column = aligned_zeros(count, *values.shape[1:], dtype=values.dtype)
+        column[...] = empty
+        column[live] = values
+        return column
+
+    arrays = Contacts(
+        begin=begin,
+        first=placed(first.astype(np.uint32), int(slot[0])),
+        second=placed(second.astype(np.uint32), int(slot[0])),
+        contact_type=placed(pairs.contact_type[order].astype(np.uint32), len(constants)),
+        constants=np.vstack([constants[:, :12], NOTHING]) if plan is not None else constants[:, :12].copy(),
+        began=began_of(constants if plan is None else np.vstack([constants, np.zeros(15)])),
+        state=placed(history.state[order], NONE),
+        shear=placed(history.shear[order]),
+        slip=placed(history.slip[order]),
+        closed=placed(history.closed[order]),
+        cracked=placed(history.cracked[order], -1),
+        place=np.zeros((count, 2)) if history.place is None else placed(history.place[order]),
+        kept=np.zeros(count, dtype=np.uint8) if history.kept is None else placed(history.kept[order]),
+        force=aligned_zeros(4, count),
+        start=start,
+        end=end[np.lexsort((end, owner))],
+    )
+    strays = None if plan is None else _ends_apart(owner, end, 2 * places)
+    drag = np.zeros((0, 2)) if history.drag is None else placed(history.drag[order])
+    return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays, drag)
+
+
+def _ends_apart(owner: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Owners (k,) of ends (e,) from number `first` on, the offsets (k + 1,) of each owner's ends, and these ends."""
+    others = end >= first
+    order = np.lexsort((end[others], owner[others]))
+    slot, start = np.unique(owner[others][order], return_index=True)
+    return slot, np.append(start, len(order)), end[others][order]
+
+
+def plain_contacts(
+    ground: PackedMaterial, assembly: Assembly, slot: np.ndarray, at_rest: StressAtRest | None = None
+) -> Contacts:
+    """The contacts of the elastic law, without history, forces and rows, for its strain energy.
+
+    slot : (n,) in which kernels hold the assembly's particles. at_rest : stress that they begin with; None: none.
+    """
+    plain = brick_constants(ground, gaps_close=False, locked_in=0.0)
+    constants, kind, _ = stressed(ground, plain, assembly, at_rest)
+    first, second = slot[assembly.pairs.T].astype(np.uint32, order="C")
+    nothing = np.zeros(0)
+    return Contacts(
+        begin=int(slot.min()),
+        first=first,
+        second=second,
+        contact_type=kind.astype(np.uint32),
+        constants=np.ascontiguousarray(constants[:, :12]),
+        began=began_of(constants),
+        state=bonds_of(constants, kind),
+        shear=nothing,
+        slip=nothing,
+        closed=np.zeros(0, dtype=np.uint8),
+        cracked=np.zeros(0, dtype=np.int64),
+        place=np.zeros((0, 2)),
+        kept=np.zeros(0, dtype=np.uint8),
+        force=np.zeros((4, 0)),
+        start=first[:0],
+        end=first[:0],
+    )
+
+
+def bonds_of(constants: np.ndarray, contact_type: np.ndarray) -> np.ndarray:
+    """States (b,) of contacts as built: intact where the rows of their types in constants (p, 15) have a bond."""
+    return np.where(constants[contact_type, 7] > 0.0, INTACT, NONE).astype(np.uint8)

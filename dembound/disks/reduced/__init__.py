@@ -1,1 +1,0 @@
-"""A smaller scene stepped in place of a case: one of several identical rows."""

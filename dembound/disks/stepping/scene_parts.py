@@ -1,0 +1,255 @@
+"""The parts of a scene that are stepped: disks, free-field column, continua; their pairs and ties."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.continuum.part import GridPart
+from dembound.disks.body import DiskBody, differs_by_level
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.contacts.dashpots import Dashpots
+from dembound.disks.contacts.layout import with_supports
+from dembound.disks.contacts.row_plan import RowPlan, plan_rows
+from dembound.disks.material.constants import bond_factors, ground_limits
+from dembound.disks.material.layered import LayeredGround
+from dembound.disks.stepping.damped_ground import disk_memories, ties_remembering
+from dembound.disks.stepping.part import DiskPart, FreeFieldSeam
+from dembound.disks.surroundings.continuum import Surroundings
+from dembound.kernels.contacts import UPDATED
+from dembound.kernels.tables.contacts import LaneRows, Limits
+from dembound.kernels.tables.motion import Repeats, WallTies
+from dembound.motion.part import Tie
+from dembound.motion.state import Layout
+from dembound.packings.tiling import Assembly
+
+
+@dataclass(frozen=True)
+class Start:
+    """A body at rest to start from: displacement (3, n) m and rad since it was built, and its contacts.
+
+    contacts : of each part by name, empty if the scene's law has no history. The system that starts from them changes
+    them, so a start can be used only once. has_history : whether they have any history.
+    """
+
+    displacement: np.ndarray
+    contacts: Mapping[str, ContactList] = field(default_factory=dict)
+    has_history: bool = False
+
+    def __post_init__(self) -> None:
+        """Store displacements row after row, as in a record, so that sums over them have the same bits from there."""
+        object.__setattr__(self, "displacement", np.ascontiguousarray(self.displacement))
+
+
+def contact_lists(scene: DiskBody) -> dict[str, ContactList]:
+    """The pairs of each part of a scene by its name, as built and without history."""
+    return {name: _contact_list(scene, name, nodes) for name, nodes in scene.parts.items()}
+
+
+def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
+    """The pairs of one part's particles `nodes`; across its sides a column also has the pairs of the seam."""
+    wide, high = scene.assembly.size.tolist()
+    sides = zip((wide, high), scene.case.periodic, strict=True)
+    along_x, along_y = (length if wraps else None for length, wraps in sides)
+    held = None
+    if scene.seam is not None and name == "column":
+        along_x, held = scene.seam.width, scene.seam.pairs(scene.ground.brick)
+    part = scene.assembly.part(nodes)
+    return ContactList(
+        scene.ground,
+        scene.case.material,
+        part,
+        (along_x, along_y),
+        nodes.start,
+        held,
+        scene.disk_layout,
+        _row_plan(scene, name, part),
+        _layers(scene, part),
+        scene.at_rest,
+        bond_factors(scene.case, scene.ground, part, alike=name == "column"),
+        Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
+        None if scene.intact is None else scene.intact[nodes],
+    )
+
+
+def _layers(scene: DiskBody, part: Assembly) -> tuple[Limits, np.ndarray] | None:
+    """In layered ground the limits of contacts in columns and the friction of each particle; None in other ground."""
+    ground, materials = scene.ground, scene.case.materials
+    if not isinstance(ground, LayeredGround):
+        return None
+    friction = np.array([each.fric for each in materials])[ground.layer_of(part.positions[:, 1])]
+    return ground_limits(ground, materials), friction
+
+
+def _row_plan(scene: DiskBody, name: str, part: Assembly) -> tuple[RowPlan, int] | None:
+    """The rows of copies that a part's particles are held in and their first block; None if held one by one."""
+    rows = scene.rows[list(scene.parts).index(name)]
+    if not isinstance(rows, LaneRows):
+        return None
+    return plan_rows(part, by_level=differs_by_level(scene.case, scene.ground)), int(rows.group_block[0])
+
+
+class WallTie(Tie):
+    """The half bonds between the disks and the continuum.
+
+    Parameters
+    ----------
+    surroundings : the continuum and its half bonds. layout : the slots of all nodes of the scene.
+    """
+
+    def __init__(self, surroundings: Surroundings, layout: Layout) -> None:
+        self._surroundings, self._layout = surroundings, layout
+        self._last: tuple[np.ndarray, WallTies] | None = None
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Disks and nodes of the continuum (k,) that it acts on, ascending."""
+        return self._surroundings.tied
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """The arrays of the tie for the kernels; supported (s,) are all nodes of the support table, ascending."""
+        if self._last is None or self._last[0] is not supported:  # it is asked for at every return of the loop
+            self._last = supported, self._surroundings.ties(self._layout, supported)
+        return self._last[1]
+
+
+class TwinTie(Tie):
+    """Repeats the forces that earlier ties exert on the twins of some disks on these disks.
+
+    Parameters
+    ----------
+    disks : (k,) ascending. twin : (n,) twin of each of the scene's nodes.
+    """
+
+    def __init__(self, disks: np.ndarray, twin: np.ndarray) -> None:
+        self._disks, self._twin = disks, twin
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Disks (k,) that it acts on, ascending."""
+        return self._disks
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """The arrays of the tie for the kernels; supported (s,) are all nodes of the support table, ascending."""
+        return Repeats(*(np.searchsorted(supported, nodes) for nodes in (self._twin[self._disks], self._disks)))
+
+
+def disks_on_foot(scene: DiskBody) -> np.ndarray:
+    """Disks (k,) of the body that have the forces of the foot on their twins in the column, ascending."""
+    if scene.foot is None or scene.seam is None:
+        return np.zeros(0, dtype=np.int64)
+    disks = np.arange(scene.seam.count, scene.disk_count)
+    return disks[np.isin(scene.seam.twin[disks], scene.foot.wall.bonds.particle)]
+
+
+def tied_nodes(scene: DiskBody) -> np.ndarray:
+    """Nodes (k,) of a scene that ties act on."""
+    tied = [np.zeros(0, dtype=np.int64), *(each.tied for each in scene.continua), disks_on_foot(scene)]
+    if scene.seam is not None:
+        tied.append(scene.seam.node)
+    return np.concatenate(tied)
+
+
+def grids(scene: DiskBody, time_step: float, *, damped: bool) -> list[GridPart]:
+    """The continua of a scene, as parts to be stepped by time_step (s); damped : whether their damping acts."""
+    return [
+        GridPart(each.body, time_step, name=name, first_node=each.first, supported=each.wall.nodes, damped=damped)
+        for each, name in ((scene.outside, "continuum"), (scene.foot, "foot"))
+        if each is not None
+    ]
+
+
+def walls(scene: DiskBody) -> list[Tie]:
+    """The ties of a scene to its continua, and the tie that repeats the forces of the column's foot on the body."""
+    walls: list[Tie] = [] if scene.outside is None else [WallTie(scene.outside, scene.layout)]
+    if scene.foot is not None:
+        assert scene.twin is not None
+        foot, repeats = WallTie(scene.foot, scene.layout), TwinTie(disks_on_foot(scene), scene.twin)
+        walls = [foot, repeats, *walls]  # these forces are there before they are repeated
+    return walls
+
+
+class DiskParts:
+    """The parts of disks of a scene, which change their law together.
+
+    Parameters
+    ----------
+    scene : the scene. start : gives the contacts if the scene's law has a history; None: contacts as built.
+    watches : whether the loop returns before a contact leaves the elastic law. time_step : s, for which damped ground
+    remembers forces; None: damping and dashpots are left out, as in a static stage.
+
+    Attributes
+    ----------
+    parts : the free-field column, if there is one, and the body. seams : one if there is a column. contacts : the pairs
+    of each part by name, empty if the scene's law has no history. damped_ties : the memories of ties; None without ties
+    or damping.
+    """
+
+    def __init__(self, scene: DiskBody, start: Start | None, time_step: float | None, *, watches: bool) -> None:
+        lists: Mapping[str, ContactList] = {}
+        if scene.has_history:
+            lists = contact_lists(scene) if start is None else start.contacts
+        supported = scene.layout.slot[np.union1d(scene.supports.node, tied_nodes(scene))]
+        self.parts = tuple(
+            DiskPart(
+                name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
+                lists.get(name), scene.at_rest,
+                None if time_step is None else disk_memories(scene, nodes, rows, supported, time_step),
+            )
+            for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
+        )  # fmt: skip
+        for part in self.parts:
+            part.watches = watches
+            part.dashes = time_step is not None
+        self.contacts = {part.name: part.contacts for part in self.parts if part.contacts is not None}
+        self.seams = () if scene.seam is None else (FreeFieldSeam(scene.seam, self.parts[0]),)
+        self.damped_ties = None if time_step is None else ties_remembering(scene, tied_nodes(scene), time_step)
+
+    @property
+    def law_name(self) -> str:
+        """Name of the law in use, for reports."""
+        return self.parts[-1].law_name
+
+    @property
+    def uses_history(self) -> bool:
+        """Whether the history-dependent law is in use."""
+        return all(part.uses_history for part in self.parts)
+
+    @property
+    def geometry_follows(self) -> bool:
+        """Whether the normals and arms of the history-dependent law follow the motion."""
+        return any(pairs.limits.geometry == UPDATED for pairs in self.contacts.values())
+
+    def adopt(self, displacement: np.ndarray) -> None:
+        """Set all contacts to the state of the elastic law at displacements (3, n)."""
+        for pairs in self.contacts.values():
+            pairs.start_from_displacements(displacement)
+
+    def use_history(self) -> None:
+        """Use the history-dependent law in all parts from now on."""
+        for part in self.parts:
+            part.uses_history = True
+
+    @property
+    def are_damped(self) -> bool:
+        """Whether forces are remembered."""
+        return any(part.memories is not None for part in self.parts)
+
+    def rest_at(self, displacement: np.ndarray, of_ties: np.ndarray) -> None:
+        """Let memories begin at rest at displacements (3, n), with forces of ties (3, n) other than of seams."""
+        for part in self.parts:
+            if part.memories is not None:
+                part.memories.rest_at(part.layout.spread(displacement), part.elastic_forces(displacement))
+        if self.damped_ties is not None:
+            force = of_ties.copy()
+            for tie in self.seams:
+                force[:, tie.nodes] += tie.elastic_forces(displacement)
+            self.damped_ties.rest_at(force)
+
+    def stop_at_breaks(self, stops: bool) -> None:
+        """Set whether the loop returns after a step in which a bond broke."""
+        for part in self.parts:
+            part.stops_at_breaks = stops

@@ -1,0 +1,287 @@
+"""The mesh of the continuum round a body: sizes of elements, and where it begins and ends at free surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.boundaries.edge import SIDES, is_far, normal_axis
+from dembound.casefile.disks import DiskCase
+from dembound.continuum.layer import LONG_WAVES
+from dembound.continuum.medium import Ground, Layered, Medium
+from dembound.continuum.mesh import WHOLE, Mesh
+from dembound.disks.material.free_surface import inset
+from dembound.disks.material.layered import LayeredGround
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.surroundings.edges import ON_IT
+from dembound.disks.surroundings.settings import Settings, least_element, mesh_of, settings_of
+from dembound.errors import CaseError
+from dembound.holes.floor import Floor
+from dembound.packings.tiling import Assembly
+from dembound.table import Box
+
+NARROW = 2.0
+"""Width, in elements, up to which waves only run straight away from a periodic body."""
+
+NO_FLOORS: Mapping[str, Floor] = MappingProxyType({})
+
+
+class ElementSizes(NamedTuple):
+    """Sizes of the elements round a body.
+
+    From a body that is periodic and narrow, no wider than `NARROW` elements or half of the shortest wave, waves run
+    straight away only: one element is as wide as it, and ties have its mean motion. If the body is narrower than the
+    smallest useful element, the continuum is as wide as this, and less thick in proportion. Such a continuum is small,
+    so that its elements may be up to half as high.
+
+    settings : of the continuum. box : (2,) m, size of the body in the continuum. element : largest width and height, m.
+    narrow : along x and y.
+    """
+
+    settings: Settings
+    box: np.ndarray
+    element: tuple[float, float]
+    narrow: tuple[bool, bool]
+
+    @classmethod
+    def of(
+        cls,
+        case: DiskCase,
+        ground: PackedMaterial,
+        body: Assembly,
+        sides: Sequence[str],
+        periodic: tuple[bool, bool],
+    ) -> ElementSizes:
+        """Sizes of the elements of a body with a continuum beyond some sides.
+
+        Raises CaseError if no size is given and nothing in the case makes waves.
+        """
+        diameter, extent = ground.brick.mean_diameter, mass_extent(ground, body)
+        settings = settings_of(case, medium_of(ground), diameter, box_of(body), sides)
+        largest, least = settings.element, least_element(case, diameter)
+        narrow = np.array(periodic) & (extent <= max(NARROW * largest, least) * (1.0 + WHOLE))
+        if narrow.any():
+            settings = settings._replace(absorption=replace(settings.absorption, shift=LONG_WAVES))
+            if not case.outside.element:  # lower ones would only shorten the step
+                settings = settings._replace(element=max(0.5 * largest, min(largest, 2.0 * least)))
+        box = np.where(narrow, np.maximum(extent, least), extent)
+        each = settings.sides(*box.tolist()) if not any(periodic) else [settings.side(side) for side in box.tolist()]
+        width, height = (side if one else own for side, own, one in zip(box.tolist(), each, narrow, strict=True))
+        across, up = narrow.tolist()
+        return cls(settings, box, (width, height), (across, up))
+
+
+class Level(NamedTuple):
+    """The ground beyond a side that is lower than the disks.
+
+    floor : height y of the hole's floor, m. height : floor with tolerance for rounding, m: disks beyond with centres
+    below it exist. mass_end, surface : heights at which the mass of the packing and its continuum end, m.
+    """
+
+    floor: float
+    height: float
+    mass_end: float
+    surface: float
+
+    @classmethod
+    def of(cls, ground: PackedMaterial, body: Assembly, floor: Floor, side: str) -> Level:
+        """The level beyond a side of a body in front of a floor; disks of the body that remain on it count as below."""
+        near, rounding = float(np.abs(ground.brick.vectors[:, 0]).max()), ON_IT * ground.brick.mean_diameter
+        x, y = body.positions.T
+        highest = float(y[x < x.min() + near if side == "left" else x > x.max() - near].max())
+        height = floor.height + float(np.copysign(rounding, highest - floor.height + rounding))
+        mass_end, surface = ground.at(floor.height - near).cut(height - float(body.origin[1]))
+        return cls(floor.height, height, height + mass_end, height + surface)
+
+
+class Rim(NamedTuple):
+    """Where the continuum round a body begins, and where it ends at free surfaces.
+
+    Beyond tied sides it begins where the mass of the packing ends (`Brick.mass_offset`). Free edges lie deeper than
+    those of the body by the depth of the packing's skin there, and bear the mass beyond them.
+
+    box : left, bottom, right and top of the cut-out for the body, m. surface : height of the free surface above a body
+    in the ground, m; None: the body reaches up to the ground's end. skins : depth (m) of free edges below those of the
+    packing, by side. massless : depth of free edges below the end of the mass, by side. levels : lower ground beyond
+    left and right sides.
+    """
+
+    box: Box
+    surface: float | None
+    skins: dict[str, float]
+    massless: dict[str, float]
+    levels: dict[str, Level]
+
+    @classmethod
+    def of(
+        cls,
+        case: DiskCase,
+        ground: PackedMaterial,
+        body: Assembly,
+        sides: Sequence[str],
+        size: ElementSizes,
+        floors: Mapping[str, Floor],
+    ) -> Rim:
+        """The rim of a body with a continuum beyond some sides, and with floors at its left and right side.
+
+        Raises CaseError if no element of the least useful height fits between a body and the surface above it.
+        """
+        low = body.origin + ground.brick.mass_offset
+        mass = [*low.tolist(), *(low + size.box).tolist()]
+        rim, box, skins, massless = box_of(body), [*mass], {}, {}
+        for side in SIDES:
+            if case.side(side).is_free and _is_beside(side, sides):
+                number, outwards = normal_axis(side) + 2 * is_far(side), 1.0 if is_far(side) else -1.0
+                skins[side] = ground.at(box[3 if side == "top" else 1]).skin(side)  # left and right: of what is below
+                box[number] = inset(rim, skins)[number]
+                massless[side] = outwards * (mass[number] - box[number])
+        surface = None
+        if (gap := _gap_above(case, body)) > WHOLE * case.size[1] and "top" in sides:
+            _refuse_thin(gap, least_element(case, ground.brick.mean_diameter))
+            skins["top"] = ground.at(case.box[3]).skin("top")
+            surface = rim[3] + gap - skins["top"]
+            massless["top"] = mass[3] + gap - surface
+        levels = {side: Level.of(ground, body, floor, side) for side, floor in floors.items() if side in sides}
+        left, bottom, right, top = box
+        return cls((left, bottom, right, top), surface, skins, massless, levels)
+
+    @property
+    def ends(self) -> dict[str, float]:
+        """Heights (m) above which no disks are beyond a side, by side."""
+        return {side: level.height for side, level in self.levels.items()}
+
+    @property
+    def tops(self) -> tuple[float, float] | None:
+        """Heights (m) of the free surface beyond the left and the right side; None: as high as the body."""
+        if not self.levels:
+            return None
+        left, right = (self.levels[side].surface if side in self.levels else self.box[3] for side in ("left", "right"))
+        return left, right
+
+
+class Outline(NamedTuple):
+    """The continuum beyond some sides of a body, before anything is tied to it.
+
+    sides : of the body, with a continuum beyond. size : of its elements. rim : where it begins and ends. mesh : its
+    elements, up to the free surface of the ground.
+    """
+
+    sides: tuple[str, ...]
+    size: ElementSizes
+    rim: Rim
+    mesh: Mesh
+
+    @classmethod
+    def of(
+        cls,
+        case: DiskCase,
+        ground: PackedMaterial,
+        body: Assembly,
+        sides: Sequence[str],
+        periodic: tuple[bool, bool],
+        floors: Mapping[str, Floor] = NO_FLOORS,
+    ) -> Outline:
+        """The outline of a body that is periodic along some axes, with floors at its left and right side.
+
+        Raises CaseError for settings with which there is no mesh.
+        """
+        size = ElementSizes.of(case, ground, body, sides, periodic)
+        rim = Rim.of(case, ground, body, sides, size, floors)
+        _refuse_low(rim, min(least_element(case, ground.brick.mean_diameter), case.outside.element or np.inf))
+        mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
+        mesh = mesh_of(
+            size.settings,
+            rim.box,
+            sides,
+            size.element,
+            surface=rim.surface,
+            tops=rim.tops,
+            periodic=periodic,
+            mirrors=mirrors,
+            ground=medium_of(ground),
+        )
+        return cls(tuple(sides), size, rim, mesh)
+
+
+def on_top(mesh: Mesh, at_top: float, at_levels: Mapping[str, float]) -> np.ndarray:
+    """Values (n,) on the top of a mesh for all its nodes; beyond sides in `at_levels` their own values."""
+    left, right, *_ = mesh.sides
+    x, values = mesh.positions[:, 0], np.full(mesh.count, at_top)
+    for side, value in at_levels.items():
+        values[x <= left if side == "left" else x >= right] = value
+    return values
+
+
+def _gap_above(case: DiskCase, body: Assembly) -> float:
+    """Height (m) of the ground above a body, 0 if the ground is the body."""
+    if case.ground.size is None:
+        return 0.0
+    return case.box[3] + 0.5 * float((body.extent - body.size)[1]) - box_of(body)[3]  # with rows that close it
+
+
+def _refuse_thin(gap: float, least: float) -> None:
+    """Raise CaseError for a gap (m) below the free surface in which no useful element fits."""
+    if gap < least:
+        raise CaseError(
+            [
+                f"packing.origin: the disks end {gap:.4g} m below the surface of the ground; they must reach it, or "
+                f"end at least {least:.4g} m below, the smallest useful element"
+            ]
+        )
+
+
+def _refuse_low(rim: Rim, least: float) -> None:
+    """Raise CaseError for ground lower beyond a side if no useful element (m) fits between its heights."""
+    if not rim.levels:
+        return
+    surfaces = {f"the surface beyond the {side} side": level.surface for side, level in rim.levels.items()}
+    highest = max(rim.tops) if rim.tops else rim.box[3]
+    heights = {"the lower side of the disks": rim.box[1], **surfaces}
+    heights |= {"the surface beside the disks": rim.box[3]} if highest == rim.box[3] else {}
+    order = sorted(heights, key=lambda name: heights[name])
+    least_is = f"at least {least:.4g} m above it, the smallest useful element"
+    for low, high in pairwise(order):
+        apart = heights[high] - heights[low]
+        if WHOLE * (rim.box[3] - rim.box[1]) < apart < least:
+            raise CaseError(
+                [
+                    f"hole: {high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}; must be "
+                    f"{'as high, or ' if low in surfaces else ''}{least_is}"
+                ]
+            )
+
+
+def medium_of(ground: PackedMaterial) -> Ground:
+    """The continuum that a packing is equivalent to, with all six constants, by layer."""
+    if isinstance(ground, LayeredGround):
+        media = tuple(homogeneous(each.material) for each in ground.layers)
+        return Layered(media, tuple(each.low for each in ground.layers[1:]))
+    return homogeneous(ground)
+
+
+def homogeneous(ground: PackedMaterial) -> Medium:
+    """The continuum that one material is equivalent to."""
+    c = ground.material_tensor
+    return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])
+
+
+def mass_extent(ground: PackedMaterial, body: Assembly) -> np.ndarray:
+    """Width and height (2,) m of a continuum with the mass of a body."""
+    return body.size + np.where(body.extent > body.size, ground.brick.row_widths, 0.0)
+
+
+def box_of(body: Assembly) -> Box:
+    """Left, bottom, right and top (m) of a body, with rows that close its frame."""
+    low = body.origin + 0.5 * (body.size - body.extent)
+    left, bottom, right, top = np.concatenate([low, low + body.extent]).tolist()
+    return left, bottom, right, top
+
+
+def _is_beside(side: str, sides: Sequence[str]) -> bool:
+    """Whether a side of a body adjoins one of some others, so that it continues along the continuum beyond that."""
+    return any(normal_axis(each) != normal_axis(side) for each in sides)

@@ -1,0 +1,88 @@
+"""Records of the continuum round a body: its nodes, and their motion with and without the ground's own motion.
+
+Beside a free-field column, and where waves come in that the ground has without the body, the continuum is computed with
+the scattered motion only, which is the change by the body. Records have this, and its sum with the ground's motion.
+"""
+
+from functools import cached_property
+
+import numpy as np
+
+from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.surroundings.ground_waves import GroundMotion
+from dembound.disks.surroundings.layered_waves import Undisturbed
+from dembound.motion.recorded_nodes import Beside
+from dembound.packings.column import nearest_in_column
+from dembound.packings.tiling import Assembly
+
+
+class RecordedContinuum(Beside):
+    """The m nodes of the continuum round a body.
+
+    Parameters
+    ----------
+    outside : the continuum.
+    waves : the motion of the ground without the body; None without any.
+    disks : the scene's disks, those of its free-field column first. column : number of column disks, 0 without a
+    column.
+    mass : (n,) kg, of the scene's nodes. diameter : m, mean of the brick's disks.
+    """
+
+    def __init__(
+        self,
+        outside: Surroundings,
+        waves: Undisturbed | None,
+        disks: Assembly,
+        column: int,
+        mass: np.ndarray,
+        diameter: float,
+    ) -> None:
+        self.nodes = outside.nodes
+        self._outside, self._waves = outside, waves
+        self._disks, self._column, self._mass, self._diameter = disks, column, mass, diameter
+
+    @property
+    def columns(self) -> dict[str, tuple[np.ndarray, str]]:
+        """Data of the nodes for the record: mesh, nearest disks of a column, and where the total motion is known."""
+        more: dict[str, tuple[np.ndarray, str]] = {}
+        if self._twin is not None:
+            more["twin"] = (self._twin, "1")
+        if self._is_scattered:
+            below = np.zeros(self._outside.count, dtype=np.bool_) if self._twin is None else self._twin < 0
+            more["total"] = (~below, "1")
+        return self._outside.columns | more
+
+    def motion(self, values: np.ndarray, of: str, time: float) -> dict[str, np.ndarray]:
+        """Motion (m, 3) of the nodes by name, from the motion of all nodes of the scene (n, 3).
+
+        With a scattered motion, names with the prefix "scattered_" contain it, and names without the total motion.
+        """
+        own = values[self.nodes]
+        if not self._is_scattered:
+            return {"": own}
+        total = own.copy()
+        if self._twin is not None:
+            total += self._ground.at_heights(values[: self._column]) * (self._twin >= 0)[:, None]
+        if self._waves is not None:
+            total += self._waves.motion(of, np.array([time]), self._outside.body.mesh.positions)[0]
+        return {"": total, "scattered_": own}
+
+    @property
+    def _is_scattered(self) -> bool:
+        """Whether the continuum has the scattered motion only, without the ground's own motion."""
+        return self._column > 0 or self._waves is not None
+
+    @cached_property
+    def _twin(self) -> np.ndarray | None:
+        """Disk (m,) of the free-field column nearest to each node, modulo its width; None without a column.
+
+        −1 for nodes below the ground that the column represents.
+        """
+        return nearest_in_column(self._disks, self._outside.body.mesh.positions) if self._column > 0 else None
+
+    @cached_property
+    def _ground(self) -> GroundMotion:
+        """The ground's motion at the nodes, from the motion of the column."""
+        column = slice(0, self._column)
+        up, heights = self._disks.positions[column, 1], self._outside.body.mesh.positions[:, 1]
+        return GroundMotion(up, self._mass[column], self._diameter, heights)

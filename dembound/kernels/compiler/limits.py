@@ -1,0 +1,78 @@
+"""Limits of contacts and bonds, the same for all, by type of contact or by bond, see `Limits`."""
+
+from typing import Any
+
+import numpy as np
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba import types
+from numba.core.imputils import lower_builtin
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+
+from dembound.kernels.compiler.lanes import LANES, lanes, load
+from dembound.kernels.tables import Limits
+
+
+def in_columns(limits: np.ndarray, geometry: int) -> Limits:
+    """Limits (p, 4) of rows of constants as columns: friction, tension, cohesion and tan_fa."""
+    friction, tension, cohesion, tan_fa = np.ascontiguousarray(limits.T)
+    return Limits(friction, tension, cohesion, tan_fa, geometry)
+
+
+def limit_of(limit: Any, contact_type: Any) -> Any:
+    """One of the limits for a type of contact: a number for all types, or its row of a column (p,).
+
+    Compiled code for numbers is the number itself.
+    """
+    return limit if isinstance(limit, float) else limit[contact_type]
+
+
+@infer_global(limit_of)
+class _Typing(AbstractTemplate):
+    def generic(self, args: Any, kws: Any) -> Any:
+        return signature(types.float64, *args)
+
+
+@lower_builtin(limit_of, types.Any, types.Any)
+def _limit_of(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    limit, contact_type = args
+    if not isinstance(sig.args[0], types.Array):
+        return limit
+    column = context.make_array(sig.args[0])(context, builder, limit)
+    return builder.load(builder.gep(column.data, [contact_type]))
+
+
+def factor_of(factor: Any, c: Any) -> Any:
+    """The factor of the strengths of the bond of pair c, see `Limits`; compiled code for a number is 1.0."""
+    return factor if isinstance(factor, float) else factor[c]
+
+
+def factors_of(factor: Any, c: Any) -> Any:
+    """The factors of the eight pairs from c on in lanes; compiled code for a number is 1.0, see `factor_of`."""
+    return factor if isinstance(factor, float) else load(factor, c)
+
+
+def _is_factor(function: Any, of_column: Any, loaded: Any) -> None:
+    """Replace a function in compiled code: 1.0 for numbers, and for columns what `loaded` reads from a place."""
+
+    class Typing(AbstractTemplate):
+        def generic(self, args: Any, kws: Any) -> Any:
+            return signature(of_column if isinstance(args[0], types.Array) else types.float64, *args)
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        if not isinstance(sig.args[0], types.Array):
+            return context.get_constant(types.float64, 1.0)
+        column = context.make_array(sig.args[0])(context, builder, args[0])
+        return loaded(builder, builder.gep(column.data, [args[1]]))
+
+    infer_global(function)(Typing)
+    lower_builtin(function, types.Any, types.Any)(lower)
+
+
+_is_factor(factor_of, types.float64, lambda builder, place: builder.load(place))
+_is_factor(
+    factors_of,
+    lanes,
+    lambda builder, place: builder.load(
+        builder.bitcast(place, ir.VectorType(ir.DoubleType(), LANES).as_pointer()), align=8
+    ),
+)

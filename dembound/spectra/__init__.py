@@ -1,1 +1,0 @@
-"""Spectra of histories, as functions of arrays: Fourier amplitudes, transfer functions, response spectra."""

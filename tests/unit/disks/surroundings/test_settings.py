@@ -1,0 +1,172 @@
+"""The settings of a continuum that a case gives, and those chosen from its waves and loads."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from disk_systems import LAMB
+
+from dembound.continuum import sizing
+from dembound.continuum.layer import Absorption
+from dembound.continuum.medium import Medium
+from dembound.disks.surroundings.settings import (
+    Buried,
+    buried,
+    lasting_time,
+    mesh_of,
+    near_fields,
+    settings_of,
+    signals_of,
+)
+from dembound.errors import CaseError
+from dembound.kinds import with_changes
+
+ROCK = Medium.isotropic(2500.0, 1000.0, 500.0)
+BOX = (0.0, 0.0, 40.0, 20.0)
+SIDES = ("left", "right", "bottom")
+PULSE = {"type": "cosine", "amplitude": 1.0, "period": 0.5}
+STAYS = {"type": "constant", "amplitude": 1.0, "rise": 0.5, "start": 2.0}
+
+
+@pytest.fixture
+def case(bar):
+    """Lamb's problem, changed."""
+
+    def changed(**changes):
+        load = LAMB["load"][0] | changes.pop("load", {})
+        loads = [{key: value for key, value in load.items() if value is not None}]
+        return bar(LAMB | {"wave": {"pulse": PULSE}, "load": loads, "run.duration": 12.0} | changes)
+
+    return changed
+
+
+def chosen(case, diameter: float = 1.0, sides=SIDES):
+    return settings_of(case, ROCK, diameter, BOX, sides)
+
+
+def test_settings_left_out_are_those_of_the_waves(case) -> None:
+    found = chosen(case())
+
+    assert found.element == pytest.approx(sizing.element_size(signals_of(case()), ROCK, 4, 1e-3))
+    assert (found.margin, found.layers) == (1, 3)
+    assert found.absorption == Absorption(pytest.approx(1e-4), 0.3, 0.1)
+    assert chosen(case(outside={"accuracy": 1e-2})).absorption.reflection == pytest.approx(1e-3)
+
+
+def test_elements_are_small_beside_a_load_or_a_hole_and_never_too_small(case) -> None:
+    """A load 1.5 m from the left side, a hole 2 m from the bottom; no such distance counts at a free side."""
+    near = case(load={"position": [1.5, 9.5]})
+    hole = {"name": "h", "type": "circle", "centre": [20.0, 5.0], "radius": 3.0}
+
+    def gaps(case, sides=SIDES):
+        return [(field.source, pytest.approx(field.gap)) for field in near_fields(case, ROCK, BOX, sides)]
+
+    assert gaps(near) == [("force", gap) for gap in (1.5, 38.5, 9.5)]
+    assert gaps(case(), ("top",)) == [("force", 0.5)]
+    assert gaps(case(hole=[hole]), ("bottom", "right"))[:2] == [("waves", 2.0), ("waves", 17.0)]
+    region = {"position": None, "region": [4.0, 18.0, 10.0, 20.0]}
+    assert gaps(case(load=region), ("left",)) == [("force", 7.0)]
+    blast = case(hole=[hole], load={"position": None, "force": None, "hole": "h", "pressure": 1e6})
+    assert gaps(blast, ("bottom",)) == [("pressure", 2.0)]
+    assert chosen(blast, 0.1).element == pytest.approx(2.0 * 5.0 * (1e-3 / 2e-2) ** 0.2)
+    assert chosen(near).element == pytest.approx(5.0)  # 1.25 diameters between nodes
+    random = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
+    assert chosen(case(packing=random, load={"position": [1.5, 9.5]})).element == pytest.approx(11.2)
+
+
+def test_a_whole_number_of_elements_fits(case) -> None:
+    found = chosen(case())._replace(element=9.0, least=0.0)
+
+    assert [found.side(length) for length in (40.0, 9.0, 9.1, 3.0)] == [8.0, 9.0, 4.55, 3.0]
+    # but not more than are useful
+    assert [found._replace(least=6.0).side(length) for length in (40.0, 9.1, 12.0, 3.0)] == [8.0, 9.1, 6.0, 3.0]
+
+
+def test_what_makes_waves(case) -> None:
+    assert [(each.wave.type, each.is_force) for each in signals_of(case())] == [("cosine", True)]
+    steady = signals_of(case(load={"wave": None}))
+    assert [(each.wave.type, each.is_force) for each in steady] == [("cosine", False), ("constant", True)]
+    assert sizing.jumps(steady[1])
+    driven = {"left": {"type": "velocity", "wave_p": "pulse"}, "right": {"type": "outside"}}
+    both = signals_of(case(boundary=driven))
+    assert [(each.wave.type, each.is_force) for each in both] == [("cosine", False), ("cosine", True)]
+
+
+def test_without_anything_that_moves_the_size_has_to_be_given(case) -> None:
+    with pytest.raises(CaseError, match=r"outside.element: is absent, but the case has no wave"):
+        chosen(replace(case(), load=(), wave={}))
+    assert chosen(replace(case(outside={"element": 8.0}), load=(), wave={})).element == 8.0
+
+
+def test_without_waves_the_size_suits_the_holes(case) -> None:
+    """A quarter of the body where nothing is; near a hole as if its wall were pressed, as it moves when it is freed."""
+    still = {"load": {"wave": None, "position": None, "force": None, "acceleration": [0.0, -9.81]}, "wave": {}}
+    still["static"] = {"boundary": {"bottom": {"type": "fixed"}}}
+    assert chosen(case(**still)).element == 5.0
+    hole = {"name": "h", "type": "circle", "centre": [20.0, 5.0], "radius": 3.0}
+    assert chosen(case(hole=[hole | {"centre": [20.0, 3.0]}], **still), 0.1).element == pytest.approx(6.0 * 0.05**0.2)
+
+
+def test_a_load_that_stays_needs_a_margin(case) -> None:
+    stays = case(wave={"pulse": STAYS})
+
+    assert lasting_time(case()) == 0.0
+    assert lasting_time(stays) == 10.0
+    assert lasting_time(case(load={"wave": None})) == 12.0
+    inner = sizing.inner_length(10.0, 1000.0, 0.3, 1e-3)
+    for sides in (SIDES, ("right",)):
+        found = chosen(stays, sides=sides)
+        less, enough = (mesh_of(found._replace(margin=found.margin - each), BOX, sides).inner for each in (1, 0))
+        assert less < inner <= enough
+        assert found.layers == sizing.layer_count(4, 5e-4)
+
+
+def test_elements_lie_where_there_are_sides(case) -> None:
+    found = chosen(case())._replace(element=10.0, margin=2, layers=3)
+    mesh = mesh_of(found, BOX, ("right", "bottom"))
+
+    assert mesh.cells == (4 + 5, 2 + 5)
+    assert mesh.origin == (0.0, -50.0)
+    left, right, lower, upper = mesh.sides
+    assert (left, lower, right, upper) == BOX
+    assert mesh.layer == (0, 3, 3, 0)
+    assert mesh.axes[0].thickness == (0.0, 30.0)
+    assert math.isclose(mesh.inner, 60.0)
+
+
+def test_elements_of_flat_ground_are_about_as_wide_as_high(case) -> None:
+    """With those of at most 6 m, 8 m of height are two rows of 4 m; other ground keeps what divides its sides."""
+    found = chosen(case())._replace(element=6.0, least=0.0)
+    assert found.sides(240.0, 8.0) == (4.0, 4.0)
+    assert found.sides(8.0, 240.0) == (4.0, 4.0)
+    assert found.sides(39.0, 8.0) == (39.0 / 7.0, 4.0)  # 4.9 times as wide as high
+    assert found._replace(least=5.0).sides(240.0, 8.0) == (240.0 / 40.0, 8.0)
+    mesh = mesh_of(found, (0.0, 0.0, 240.0, 8.0), SIDES)
+    assert {(width, height) for width, height in mesh.shapes.tolist()} == {(4.0, 4.0)}
+
+
+HOLE = {"name": "hole", "type": "circle", "centre": [20.0, 8.0], "radius": 4.0}
+
+
+def test_layers_begin_farther_beside_deep_ground(case) -> None:
+    """Beside a hole 132 m below the surface, 20 m from the sides, S waves of half the speed of P waves."""
+    everywhere = {side: {"type": "outside"} for side in (*SIDES, "top")}
+    placed = {"ground.size": [100.0, 240.0], "packing.origin": [30.0, 100.0], "boundary": everywhere, "load": []}
+    deep = with_changes(case(), placed | {"hole": [HOLE | {"centre": [50.0, 108.0]}], "outside.element": 5.0})
+    box = (30.0, 100.0, 70.0, 120.0)
+    sources = buried(deep, box, (*SIDES, "top"))
+    assert sources == [Buried(132.0, 20.0, (40.0, 20.0))] * 2
+    found = settings_of(deep, ROCK, 1.0, box, (*SIDES, "top"))
+    errors = [sources[0].error(found, ROCK, margin) for margin in (found.margin - 1, found.margin)]
+    assert errors[1] <= 1e-3 < errors[0]
+    # cos θ = 0.75/2 · 1: 53.4 m from the hole, less 20 m of disks and 0.4 of three elements
+    assert found.margin == math.ceil((132.0 * 0.375 / math.sqrt(1.0 - 0.375**2) - 20.0 - 0.4 * 15.0) / 5.0)
+    assert settings_of(with_changes(deep, {"outside.margin": 2}), ROCK, 1.0, box, SIDES).margin == 2
+
+
+def test_without_a_surface_or_sides_nothing_comes_back(case) -> None:
+    found = case(hole=[HOLE])
+    assert len(buried(found, BOX, SIDES)) == 4  # the hole and the load, on two sides
+    assert len(buried(found, BOX, ("left",))) == 2
+    assert buried(found, BOX, (*SIDES, "top")) == []
+    assert buried(found, BOX, ("bottom",)) == []

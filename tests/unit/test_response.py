@@ -1,0 +1,85 @@
+"""Response spectra beside closed forms and another program."""
+
+import numpy as np
+import pytest
+
+from dembound import spectra
+from dembound.spectra import FINER, relative_displacement, response_spectrum, slope, usual_periods
+
+OMEGA, DAMPING, STEP = 2.0 * np.pi / 0.5, 0.05, 0.01
+
+
+def test_a_step_of_acceleration_has_the_exact_response():
+    time = STEP * np.arange(500)
+    # exact at any step, and after a thousandth of a period no digits are lost: errors are those of 1 − e^(λh), 1e-16/λh
+    for fraction, tolerance in ((1.0, 1e-13), (1e-3, 1e-11)):
+        found = relative_displacement(np.full(500, 3.0), fraction * STEP, OMEGA, DAMPING)
+        at, damped = fraction * time, OMEGA * np.sqrt(1.0 - DAMPING**2)
+        ring = np.cos(damped * at) + DAMPING / np.sqrt(1.0 - DAMPING**2) * np.sin(damped * at)
+        expected = -3.0 / OMEGA**2 * (1.0 - np.exp(-DAMPING * OMEGA * at) * ring)
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=tolerance * 3.0 / OMEGA**2)
+
+
+def test_a_harmonic_base_has_its_amplification():
+    time = STEP * np.arange(6000)
+    for ratio in (0.3, 1.0, 2.0):
+        drive = ratio * OMEGA
+        found = np.abs(relative_displacement(np.sin(drive * time), STEP, OMEGA, DAMPING)[4000:]).max()
+        expected = 1.0 / OMEGA**2 / np.hypot(1.0 - ratio**2, 2.0 * DAMPING * ratio)
+        # straight lines between samples are lower by (ωh)²/12; of crests samples miss up to (ωh)²/8
+        assert found == pytest.approx(expected, rel=(drive * STEP) ** 2 * (1 / 12 + 1 / 8))
+
+
+def test_the_spectrum_is_the_largest_response_also_after_the_record():
+    pulse = np.sin(np.pi * np.arange(21) / 20.0) ** 2  # 0.2 s, and then free
+    periods = np.array([20.0])
+    found = response_spectrum(pulse, STEP, periods, damping=0.0)
+    # a slow undamped oscillator has an impulse, u = ∫a dt/ω, ∫a dt = 0.1 m/s; less by (ω·0.1)²/6 < 2e-4, as it lasts,
+    # by 1e-3 as the jump of its curvature at both ends is not band-limited
+    assert found.displacement[0] == pytest.approx(0.1 * 20.0 / (2.0 * np.pi), rel=1.2e-3)
+    assert found.period == pytest.approx(periods)
+    assert found.pseudo_velocity == pytest.approx(2.0 * np.pi / 20.0 * found.displacement)
+    assert found.pseudo_acceleration == pytest.approx((2.0 * np.pi / 20.0) ** 2 * found.displacement)
+
+
+def test_usual_periods_are_from_eight_samples_to_the_record_or_to_ten_seconds():
+    periods = usual_periods(1000, STEP)
+    assert (periods[0], periods[-1]) == pytest.approx((8 * STEP, 1000 * STEP))
+    assert usual_periods(100_000, STEP)[-1] == pytest.approx(10.0)
+    assert usual_periods(1000, 2.0)[-1] == pytest.approx(160.0)  # else they would run backwards
+
+
+def test_short_periods_are_those_of_a_finer_record(monkeypatch):
+    # noise of all frequencies, the worst a record can be; 20 samples in place of one: crests are missed by at most
+    # 1 − cos(π/40) = 0.3 %, and straight lines take at most (π/40)²/3 = 0.2 %
+    noise = np.random.default_rng(4).standard_normal(1000) * np.sin(np.pi * np.arange(1000) / 1000.0) ** 2
+    periods = STEP * np.array([2.0, 2.7, 3.6, 5.0, 7.0, 8.0, 10.0])
+    found = response_spectrum(noise, STEP, periods).pseudo_acceleration
+    monkeypatch.setattr(spectra, "FINER", 100)
+    np.testing.assert_allclose(found, response_spectrum(noise, STEP, periods).pseudo_acceleration, rtol=5e-3)
+
+
+def test_slopes_of_eight_samples_in_a_period_are_right():
+    phase = 2.0 * np.pi / 8.0 * np.arange(64)
+    found = slope(np.sin(phase), STEP)[4:-4]
+    expected = np.cos(phase)[4:-4] * 2.0 * np.pi / (8.0 * STEP)
+    # the next term of the series is (2π/8)⁸/630 = 2.3e-4
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=2.3e-4 * np.abs(expected).max())
+    np.testing.assert_allclose(slope(0.3 * np.arange(5.0), 1.0), 0.3)  # too few for it
+
+
+def record() -> np.ndarray:
+    """Noise of a Gaussian band below 10 Hz or so under half a sine squared, 8 s."""
+    count = 800
+    band = np.exp(-((np.fft.rfftfreq(count, STEP) / 8.0) ** 2))
+    noise = np.fft.irfft(band * np.fft.rfft(np.random.default_rng(5).standard_normal(count)), count)
+    return noise * np.sin(np.pi * np.arange(count) / count) ** 2
+
+
+def test_spectra_are_those_of_another_program():
+    # by pyrotd 0.6.1, `calc_spec_accels` with max_freq_ratio = 200 after 31 times its length of zeros, as its record is
+    # periodic; samples miss crests by (2πh/T)²/8, at T = 0.05 s and h = 0.001 s 0.2 % at most, on average a third of it
+    found = response_spectrum(record(), STEP, np.array([0.05, 0.1, 0.2, 0.5, 1.0, 2.0]))
+    pyrotd = [0.75036269, 1.26220263, 2.4346898, 0.91279857, 0.71352009, 0.81979178]
+    np.testing.assert_allclose(found.pseudo_acceleration, pyrotd, rtol=1e-3)
+    assert FINER == 10
