@@ -22,7 +22,6 @@ from collections.abc import Sequence
 from contextlib import chdir
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 
@@ -77,9 +76,6 @@ RUNS = ("build", "settle", "step", "record")
 SHADES = 8
 """Red, green and blue of a picture are rounded to multiples of this, which halves its file."""
 
-LINE = 100
-"""Characters of a line of Python."""
-
 
 @dataclass(frozen=True)
 class Measured:
@@ -120,60 +116,30 @@ class Example:
         """Whether one of its commands writes a movie, to NAME.gif."""
         return any(command.startswith("dembound movie ") for command in self.commands)
 
-    def python(self) -> str:
-        """The case, its run and its estimate from Python."""
-        arguments = ["", f'    "{self.name}",']
-        for key, value in tomllib.loads(self.tables).items():
-            arguments.append(f"    {key}={as_python(value, 4, len(key) + 1)},")
-        made = "import dembound\n\ncase = dembound.case(" + "\n".join(arguments) + "\n)\n"
-        return f'{made}results = dembound.run(case, "results")\nprint(dembound.estimate("results/{self.name}").worst())'
-
     def page(self, measured: Measured) -> str:
         """The page of the example."""
-        copied = f"dembound cases copy gallery/{self.name}"
-        tabs = {
-            "TOML": ("toml", self.tables),
-            "Python": ("python", self.python()),
-            "Command line": ("sh", "\n".join((copied, *self.commands))),
-        }
-        moving = f"![{self.title}: velocity at all snapshots, moving](../pictures/gallery_{self.name}.gif)\n\n"
-        shown = "\n".join(f":::{{tab-item}} {tab}\n```{of}\n{code}\n```\n:::" for tab, (of, code) in tabs.items())
+        commands = "\n".join((f"dembound cases copy gallery/{self.name}", *self.commands))
+        moving = f"![The same, moving](../pictures/gallery_{self.name}.gif)\n\n"
         return (
             f"# {self.title}\n\n{self.text}\n\n![{measured.drawn}](../pictures/gallery_{self.name}.png)\n\n"
-            f"{moving if self.has_movie else ''}| computed | run time | predicted error |\n|---|---|---|\n"
-            f"| {measured.size} | {measured.seconds:.2g} s | {measured.error} |\n\n::::{{tab-set}}\n{shown}\n::::\n"
+            f"{moving if self.has_movie else ''}{measured.size}, {measured.seconds:.2g} s; "
+            f"predicted error: {measured.error}.\n\n```sh\n{commands}\n```\n\n"
+            f"```{{literalinclude}} ../../cases/gallery/{self.name}.toml\n"
+            ":language: toml\n:start-at: title =\n```\n"
         )
-
-
-def as_python(value: Any, indent: int = 0, before: int = 0) -> str:
-    """A value of TOML as Python, in lines of at most `LINE` characters after `indent` blanks and `before` others."""
-    if isinstance(value, bool | float):
-        short = f"{value:g}".replace("e+0", "e").replace("e-0", "e-")
-        return short if "e" in short and float(short) == value else repr(value)
-    if not isinstance(value, dict | list):
-        return json.dumps(value, ensure_ascii=False)
-    opened, closed = "{}" if isinstance(value, dict) else "[]"
-    keys = [f"{json.dumps(key)}: " for key in value] if isinstance(value, dict) else [""] * len(value)
-    items = list(zip(keys, value.values() if isinstance(value, dict) else value, strict=True))
-    line = ", ".join(key + as_python(each, -10_000) for key, each in items)
-    if indent + before + len(line) + 3 <= LINE:
-        return f"{opened}{line}{closed}"
-    inner = indent + 4
-    rows = [f"{' ' * inner}{key}{as_python(each, inner, len(key))}," for key, each in items]
-    return "\n".join([opened, *rows, " " * indent + closed])
 
 
 def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
     """The page of all examples, cards by topic, and the list of pages."""
     parts = [
-        "# Gallery\n\nEvery picture is a case that runs in seconds: `dembound cases copy gallery/p_pulse`, then the "
-        "commands of its page.\nRun times are those of one core, compiled, without pictures. Errors are those that "
-        "`dembound estimate` predicts.\n"
+        "# Gallery\n\nEvery picture is a case that runs in seconds, by the commands of its page; from Python, "
+        '`dembound.run(dembound.load("p_pulse.toml"), "results")`.\nRun times are those of one core, compiled, '
+        "without pictures; errors are those that `dembound estimate` predicts.\n"
     ]
     for topic, names in TOPICS.items():
         parts.append(f"## {topic}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n")
         for name in names:
-            picture = f"[![{measured[name].drawn}](../pictures/gallery_{name}.png)]({name}.md)"
+            picture = f"[![{name}](../pictures/gallery_{name}.png)]({name}.md)"
             parts.append(f":::{{grid-item-card}}\n{picture}\n\n[{examples[name].title}]({name}.md)\n:::\n")
         parts.append("::::\n")
     parts.append("```{toctree}\n:hidden:\n\n" + "\n".join(examples) + "\n```\n")

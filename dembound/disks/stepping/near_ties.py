@@ -170,6 +170,6 @@ def near_tie_warnings(scene: DiskBody, summary: Mapping[str, Any], cracks: Array
         if events:
             time, (x, y), what = min(events, key=lambda event: event[0])
             yield (
-                f"boundary.{side}: {what} t = {time:.4g} s near ({x:.4g}, {y:.4g}) m, within {TIE_DISTANCE:g} diameters "
-                "of the ties to the continuum, which stays elastic; take a larger packing.size"
+                f"boundary.{side}: {what} t = {time:.4g} s near ({x:.4g}, {y:.4g}) m, within {TIE_DISTANCE:g} "
+                "diameters of the ties to the continuum, which stays elastic; take a larger packing.size"
             )
