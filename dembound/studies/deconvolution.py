@@ -3,8 +3,8 @@
 What runs up below the free surface is half of its motion, early by the way up; from what runs up at the plane where the
 wave enters, the incident wave follows as in disks/incident_wave.py: in the same ground, or in the rock of the side.
 Undamped ground only delays and adds, so that this is computed for all frequencies of the record. Waves that damped
-ground weakens on their way up must be larger below, the more so the higher their frequency: beyond the band of the record,
-where it has little but noise, they are not magnified further than within it.
+ground weakens on their way up must be larger below, the more so the higher their frequency: beyond the band of the
+record, where it has little but noise, they are not magnified further than within it.
 """
 
 import math

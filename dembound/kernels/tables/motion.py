@@ -199,11 +199,11 @@ class WallTies(NamedTuple):
 
     Ties are in B blocks of eight (kernels/compiler/lanes.py), T = 8B of them with those of no stiffness that fill the
     last block of each element. points : tuple of N numbers, so that N is part of the type. start : (e + 1,) blocks of
-    each element. node : (e, N²) its nodes, row by row, and line, theirs in the support table. reach : (e, 4) first and end
-    column, first and end row of the nodes that the ties act on. particle, particle_line : (T,) of the particle; twin
-    (T,) in the free-field column, −1 for none. along, up : (B·N·8,) values of the element's shape functions along x and
-    y at the tie's point; along_slope, up_slope their derivatives, 1/m. corrector : (B·12·8,) m and rad, motion x, y,
-    rotation of the bond's middle beyond that of the point, each per unit gradient xx, yy, xy, yx. normal : (2T,)
+    each element. node : (e, N²) its nodes, row by row, and line, theirs in the support table. reach : (e, 4) first and
+    end column, first and end row of the nodes that the ties act on. particle, particle_line : (T,) of the particle;
+    twin (T,) in the free-field column, −1 for none. along, up : (B·N·8,) values of the element's shape functions along
+    x and y at the tie's point; along_slope, up_slope their derivatives, 1/m. corrector : (B·12·8,) m and rad, motion x,
+    y, rotation of the bond's middle beyond that of the point, each per unit gradient xx, yy, xy, yx. normal : (2T,)
     components x, then y, from the particle to the point; arm (T,) m. stiffness : (3T,) N/m, N/m and N·m of the half
     bonds. lag : η, s. moved (2N²,), reaction (2N²·8,), field (48,), own (24,) : work space.
     """
