@@ -19,15 +19,14 @@ class Holding(Keeping):
         None,
         unit="m",
         means="place",
-        help="range [x0, x1] of a bottom or top side, [y0, y1] of a left or right one; the side's particles centred "
-        "there or at its ends are held, others are free; absent: all are held",
+        help="range [x0, x1] of a bottom or top, [y0, y1] of a left "
+        "or right side in which it holds particles, others are free; absent: all",
     )
 
     reactions: Literal["kept", "none"] = quantity(
         "kept",
         unit="1",
-        help='of a static side: "kept": its reactions act on as constant forces; "none": they end when the run begins, '
-        "so that the support is taken away",
+        help='of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away',
     )
 
     @field_validator("within")

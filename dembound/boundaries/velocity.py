@@ -23,8 +23,8 @@ MOTIONS: Mapping[Component, Motion] = {"normal": "p", "shear": "s"}
 class Velocity(Holding, Driven):
     """A rigid platen that moves with the given waves.
 
-    A component that it holds and that has no wave does not move; a component that it does not hold is free, and so is
-    rotation. By default it is a grip that holds both; one that holds "normal" alone is a smooth platen.
+    A held component without a wave does not move; one that is not held is free, and so is rotation: by default a grip,
+    with "normal" alone a smooth platen.
     """
 
     for_bars: ClassVar[bool] = True

@@ -157,7 +157,7 @@ class BearingDashpots(Dashpots):
         None,
         unit="1",
         help="whether a bottom has springs on the motion relative to the ground beyond it, which bear what its weight "
-        "at rest does not; a table gives their factors alpha_n and alpha_s; absent: where the side has an intact zone",
+        "at rest does not; or a table of their factors alpha_n and alpha_s; absent: where the side has an intact zone",
     )
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:

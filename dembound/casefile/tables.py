@@ -80,8 +80,8 @@ class Run(Table):
     until: Literal["duration", "silent", "peak"] = quantity(
         "duration",
         unit="1",
-        help='when it ends; "silent": before its duration if all monitors are silent; "peak": if the forces on all '
-        "sides whose motion a wave prescribes have passed their peaks",
+        help='when it ends: "duration"; "silent", if all monitors are so before; "peak", if '
+        "the forces on all sides that a wave moves have passed their peaks",
     )
     silent_level: float = quantity(
         1e-3,
@@ -102,7 +102,7 @@ class Run(Table):
         0.7,
         unit="1",
         means="share",
-        help="share of its peak, both counted from the force at the start, below which a side's force has fallen",
+        help="share of its peak, from the force at the start, below which a side's force has fallen",
         gt=0.0,
         lt=1.0,
     )
@@ -178,7 +178,7 @@ class Output(Table):
     )
     peaks: bool = quantity(False, unit="1", help="whether the largest speed of every particle in the run is kept")
     load_factor: bool = quantity(
-        False, unit="1", help="whether the factor of the waves is found up to which the elastic law of disks holds"
+        False, unit="1", help="whether the factor of the waves is found up to which the elastic law holds"
     )
     estimate: bool = quantity(False, unit="1", help="whether the errors of the run are estimated when it is over")
     pictures: bool = quantity(True, unit="1", help="whether pictures are drawn when the run is over")

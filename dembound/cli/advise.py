@@ -42,9 +42,7 @@ Error = Annotated[
         "--error",
         metavar="ERROR",
         help="Largest error of velocity and displacement at all monitors, RMS over RMS, such as 1% or 0.01. "
-        "Sides, their distance, the box of disks, the diameter of a lattice, elements beyond it, the law where nothing "
-        "opens, of a bar spacing, time step and absorbing ends, and an end once monitors are silent are chosen as "
-        "cheaply as this allows; waves, stiffness, loads, holes and monitors remain.",
+        "Sides, box, disks, elements, law, step and end are chosen as cheaply as this allows.",
     ),
 ]
 Keep = Annotated[
@@ -60,8 +58,8 @@ Of = Annotated[
     Truth | None,
     typer.Option(
         "--of",
-        help="Errors of these disks, which then are the material, or of the rock, for which they are a grid; by "
-        "default of the disks where the packing is random or bonds may break.",
+        help="Errors of these disks as the material, or of the rock, for which they are a grid; by default of the "
+        "disks where the packing is random or bonds may break.",
     ),
 ]
 Seeds = Annotated[
@@ -76,8 +74,7 @@ Longest = Annotated[
         "--longest",
         min=0.0,
         metavar="SECONDS",
-        help="CPU seconds that the steps of a choice may take: by default 60, or 64 times those of the case if that is "
-        "more. The search may take a fifth of it.",
+        help="CPU seconds that the steps of a choice may take; by default 60, or 64 times those of the case.",
     ),
 ]
 

@@ -65,8 +65,8 @@ def calibrate_sides(
         CalibrationMethod,
         typer.Option(
             metavar="METHOD",
-            help="impedance: solve for β, check it, and keep the matched β where the side returns less with it; "
-            "ratio: multiply by M_out/M_in, as published; homogenised: the matched β, no run.",
+            help="impedance: solve for β, or keep the matched β where it returns less; ratio: multiply by M_out/M_in, "
+            "as published; homogenised: the matched β, no run.",
         ),
     ] = CalibrationMethod.impedance,
     start: Annotated[float | None, typer.Option(help="First β; by default the case's own.")] = None,

@@ -52,9 +52,8 @@ def chart(
         ChartReference | None,
         typer.Option(
             metavar="REFERENCE",
-            help="Reference of the errors: exact, an exact solution; extended, the same scene so large that nothing "
-            "returns; finer, of bars, finite differences at Courant number 1 and a finer spacing; finest, the choice "
-            "with the most nodes times steps. By default the first that the case allows.",
+            help="Reference of the errors: exact, a solution; extended, a scene so large that nothing returns; finer, "
+            "of bars; finest, the choice with the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[

@@ -83,8 +83,7 @@ QuantityOfMonitors = Annotated[
     typer.Option(
         "--quantity",
         metavar="QUANTITY",
-        help=f"Quantity of the monitors: {', '.join(Quantity)}; by default velocity; acceleration is that of central "
-        "differences of the velocity, stress of bars alone.",
+        help=f"Quantity of the monitors: {', '.join(Quantity)}; by default velocity; stress of bars alone.",
     ),
 ]
 ComponentOfMotion = Annotated[

@@ -37,8 +37,8 @@ def plot(
     boundary: Annotated[
         Side | None,
         typer.Option(
-            help="Show this side's diameters and peak velocities instead; with --quantity stress or displacement that "
-            "of the side as a whole."
+            help="Show this side's diameters and peak velocities instead, "
+            "with --quantity stress or displacement its mean."
         ),
     ] = None,
     energy: Annotated[bool, typer.Option("--energy", help="Show the energy ledger of one run instead.")] = False,
@@ -46,15 +46,15 @@ def plot(
         SceneField | None,
         typer.Option(
             metavar="FIELD",
-            help=f"Show the scene of one run instead, its disks coloured by this: {', '.join(SceneField)}; forces: "
-            "force chains, contacts as lines; of a bar it over place and time, stress, damage and motion.",
+            help=f"Show the scene of one run instead, coloured by this: {', '.join(SceneField)}; forces: contacts as "
+            "lines; of a bar over place and time.",
         ),
     ] = None,
     snapshot: Annotated[
         int | None,
         typer.Option(
-            help="With --field: number of the snapshot, −1 the last; by default the one where the field is largest, of "
-            "a bar all."
+            help="With --field: number of the snapshot, −1 the last; by default that of the largest values, "
+            "of a bar all."
         ),
     ] = None,
     table: Annotated[

@@ -135,8 +135,7 @@ def signals(
         typer.Option(
             metavar="WHAT",
             help="fourier: amplitude spectra; transfer: their ratios to --reference or to free-field twins; response: "
-            "response spectra, 5 % damping; section: histories at their distances along a line of monitors; hodograph: "
-            "motion in the plane.",
+            "spectra with 5 % damping; section: histories at their distances; hodograph: motion in the plane.",
         ),
     ] = Shown.fourier,
     output: Annotated[Path, PICTURE] = Path("signals.png"),

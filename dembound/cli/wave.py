@@ -69,8 +69,8 @@ class ProcessingOptions:
         Baseline | None,
         _step(
             metavar="KIND",
-            help="mean: remove that of the samples before the motion, if there are any, else of all; linear: a fitted "
-            "line; zero-velocity: the mean, and then the velocity left at the end; none. By default mean.",
+            help="mean: remove that before the motion, else of all; linear: a fitted line; zero-velocity: the mean, "
+            "and then the velocity left at the end; none. By default mean.",
         ),
     ] = None
     taper: Annotated[
@@ -164,8 +164,8 @@ def wave(
         list[Kind] | None,
         typer.Option(
             "--as",
-            help="Kind of wave that a component becomes by --deconvolve, once for each in their order; by default that "
-            "of the case's only wave.",
+            help="Kind of wave that a component becomes by --deconvolve, once for each in their order; by default the "
+            "case's only one.",
         ),
     ] = None,
     damping: Annotated[

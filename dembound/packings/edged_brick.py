@@ -13,10 +13,7 @@ from dembound.table import quantity
 
 
 class EdgedBrick(DensePacking):
-    """Pattern B with rows of equal disks on x = 0 and y = 0 of every brick, and at the right and top edge of the scene.
-
-    The rows share the disk at the origin and are held on their lines while the core is packed around them.
-    """
+    """Pattern B with rows of equal disks on x = 0 and y = 0 of every brick, and at the right and top of the scene."""
 
     regular_sides: ClassVar[tuple[str, ...]] = ("left", "right", "bottom", "top")
 

@@ -15,8 +15,7 @@ ROUNDING = 1e-12
 class Constant(Shape):
     """v = M from `rise` seconds after the start on; during the rise v = M[s − sin(2πs)/2π], s = t/rise.
 
-    The ramp's acceleration is one Hann lobe, so velocity and acceleration are continuous. rise = 0 is a step: at its
-    time v is the mean M/2 of before and after, as in sums of forces over time steps.
+    rise = 0 is a step: at its time v is M/2.
     """
 
     stays: ClassVar[bool] = True

@@ -40,8 +40,8 @@ class FileWave(Wave):
     """Velocities from a file, between its samples as `interpolation` says, zero outside; times count from `start`.
 
     Columns are separated by blanks, in a .csv file by commas, or by semicolons, with which numbers may have decimal
-    commas. A header line and text after # are skipped; other units in the header than s and m/s, or of a load Pa, N or
-    m/s² for its pressure, force or acceleration, are warned of.
+    commas. A header line and text after # are skipped; a header with other units than s and m/s, or Pa, N or m/s² of a
+    load, is warned of.
 
     Notes
     -----
@@ -58,8 +58,8 @@ class FileWave(Wave):
     path: str = quantity(
         ...,
         unit="1",
-        help="text file of two columns, time (s) and velocity (m/s), for a load the factor of its pressure, "
-        "force or acceleration; path relative to the folder of the case",
+        help="text file, relative to the folder of the case, of time (s) and velocity (m/s), or the factor of a load; "
+        "columns are separated by blanks or semicolons, in a .csv file by commas",
         min_length=1,
     )
     scale: NonZero = quantity(1.0, unit="1", means="factor", help="factor of the file's values")
@@ -67,9 +67,9 @@ class FileWave(Wave):
     interpolation: Literal["band_limited", "lines"] | None = quantity(
         None,
         unit="1",
-        help="what joins the samples: straight lines, or the band-limited function through even samples, which keeps "
-        "frequencies up to 0.4 of the sampling rate; by default band_limited for a record (at least 20 even samples, 6 "
-        "changes of sign, ends within 2 % of the peak), else lines",
+        help='"lines" between samples, or the "band_limited" function through even samples, with frequencies up to 0.4 '
+        "of the sampling rate; absent: band_limited for a record (20 even samples, 6 changes of sign, ends within 2 % "
+        "of the peak)",
     )
 
     _samples: Polyline = PrivateAttr()

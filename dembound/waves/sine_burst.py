@@ -16,8 +16,7 @@ MOST_CYCLES = 1_000_000
 class SineBurst(Shape):
     """v = M w(t) sin 2πft for n cycles, w = ½(1 − cos 2πft/n) when tapered, else 1. No net displacement.
 
-    With the taper, velocity and acceleration start and end at zero, and the spectrum is narrower; the amplitude M is
-    then the crest of the envelope, and the velocity itself is slightly smaller.
+    With the taper M is the crest of the envelope; that of the velocity is slightly smaller.
     """
 
     type: Literal["sine_burst"]

@@ -105,8 +105,8 @@ class Wave(Table, ABC):
     motion: Literal["incident", "outcrop", "within"] | None = quantity(
         None,
         unit="1",
-        help='what moves so: the "incident" wave below; a free "outcrop" of the rock, twice as fast; or the side, '
-        '"within" the ground; absent: incident, at sides of prescribed velocity within',
+        help='what moves so: the "incident" wave; a free "outcrop" of the rock, twice as '
+        'fast; the ground at the side, "within"; absent: incident, at sides of prescribed velocity within',
     )
 
     @property

@@ -24,19 +24,31 @@ from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.static import Static
 from dembound.casefile.disks.targets import Scatter
 from dembound.casefile.tables import Chart, ChartChoice, Output, Sweep
-from dembound.table import Table, name_of
+from dembound.table import LARGEST_WHOLE, Table, name_of
 
 Type = type[Table]
 
 
 class Row(NamedTuple):
-    """A key of a table: its name, allowed values, unit, default and meaning, as they are printed."""
+    """A key of a table: its name, unit, allowed values, default ("required" if it must be given) and meaning.
+
+    Allowed values are empty where the default is true or false.
+    """
 
     key: str
-    values: str
     unit: str
+    values: str
     default: str
     meaning: str
+
+    def __str__(self) -> str:
+        """The row as an item of a list; values that the meaning names, and > 0 of a unit, are left out."""
+        required = self.default == "required"
+        equal = f" = {self.default}" if self.default and not required else ""
+        named = self.values if not all(each in self.meaning for each in self.values.split(", ")) else ""
+        limits = "" if self.unit and named == "> 0" else named
+        what = ", ".join(filter(None, (self.unit, limits, "required" if required else "")))
+        return f"- `{self.key}`{equal}{f' ({what})' if what else ''}: {self.meaning}"
 
 
 @dataclass(frozen=True)
@@ -48,29 +60,33 @@ class Part:
     heading : its heading, from which its anchor follows.
     tables : the table, or the types of it.
     base : what types have in common, whose sentence begins the part; None: one table.
-    within : a table whose keys are not repeated; None: none.
+    within : the part whose table has keys of the same meaning, which are not explained again; None: none.
     more : a text below the sentence. guide : the page of docs that tells how to use it; empty for none.
     """
 
     heading: str
     tables: Sequence[Type]
     base: Type | None = None
-    within: Type | None = None
+    within: "Part | None" = None
     more: str = ""
     guide: str = ""
 
 
+MATERIAL = Part("`[material]`", (Material,), guide="tasks/cracks")
+RUN = Part("`[run]`", (DiskRun,))
+BAR = Part("`[bar]`", (Bar,), guide="tasks/bars")
+
 DISKS = (
     Part("`[packing]`", packings.TYPES, packings.Packing),
     Part("`[ground]`", (Ground,), guide="tasks/absorb_waves"),
-    Part("`[material]`", (Material,), guide="tasks/cracks"),
+    MATERIAL,
     Part(
         "`[material.pb_scatter]`",
         (Scatter,),
         more='In the line of its key: `pb_scatter = {type = "weibull", shape = 5.0}`.',
         guide="tasks/cracks",
     ),
-    Part("`[[layer]]`", (Layer,)),
+    Part("`[[layer]]`", (Layer,), within=MATERIAL, guide="tasks/layers"),
     Part("`[damping]`", (Damping,), guide="tasks/damping"),
     Part("`[motion]`", (Motion,)),
     Part("`[reduce]`", (Reduce,), guide="evidence/reductions"),
@@ -95,7 +111,7 @@ DISKS = (
     Part("`[[load]]`", (Load,), guide="tasks/blasts"),
     Part("`[[hole]]`", holes.TYPES, holes.Hole, guide="tasks/holes_and_stress"),
     Part("`[[monitor]]`", (Monitor,)),
-    Part("`[run]`", (DiskRun,)),
+    RUN,
     Part("`[output]`", (Output,), guide="tasks/show_results"),
     Part("`[chart]`", (Chart,), guide="tasks/trust_a_result"),
     Part("`[[chart.choice]]`", (ChartChoice,)),
@@ -104,55 +120,29 @@ DISKS = (
 """The tables of a case of disks."""
 
 BARS = (
-    Part("`[bar]`", (Bar,), guide="tasks/bars"),
-    Part("`[[bar.range]]`", (BarRange,)),
+    BAR,
+    Part("`[[bar.range]]`", (BarRange,), within=BAR),
     Part("`[method]`", methods.TYPES, methods.Method, guide="tasks/bars"),
     Part("`[[load]]` of a bar", (BarLoad,)),
     Part("`[[monitor]]` of a bar", (BarMonitor,)),
-    Part("`[run]` of a bar", (BarRun,), within=DiskRun, more="The keys of [`[run]`](#run), and:"),
+    Part("`[run]` of a bar", (BarRun,), within=RUN),
 )
 """The tables of a case of a bar that are not those of disks."""
 
 RULES = """# The case file
 
-All tables and keys of a case. A case is a TOML file; `dembound new FILE` writes a commented one, `dembound check FILE`
-prints facts, warnings and all mistakes without running it.
-
-```toml
-[packing]
-pattern = "A"
-size = [20.0, 10.0]
-radius = 0.5
-
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-
-[boundary.left]
-type = "viscous_input"
-wave_p = "pulse"
-
-[boundary.right]
-type = "viscous"
-
-[wave.pulse]
-type = "ricker"
-amplitude = 0.1
-frequency = 8.0
-
-[run]
-duration = 0.5
-```
+All tables and keys of a case, a TOML file. `dembound new FILE` writes a commented one, `dembound check FILE` prints
+facts, warnings and all mistakes without running it.
 
 - **Units** are SI, angles degrees. Two dimensions mean a thickness of 1 m: forces are per metre.
 - **Signs**: velocities are positive along +x and +y on every side; tension is positive, a pressure pushes.
 - **Names** of loads, holes and monitors consist of A–Z, a–z, 0–9, `_`, `-` and `.` (not first).
 - **Sizes**: numbers are 0 or between 1e-30 and 1e30; a scene has at most 5e8 disks, a random brick 1e6, a bar 2e6
   spacings, a case 1,000 monitors.
-- **Keys** without default (–) may be left out. Unknown keys and tables are refused.
-- `--set KEY=VALUE` changes a key for one command: `--set run.duration=0.2`, `--set load.blow.pressure=5e6`; layers,
-  loads, holes and monitors go by their names or numbers.
-- `dembound schema` writes this page for editors, which complete and check cases with it.
+- **Keys**: `seed` = 0 has a default, (m) is a positive number in metres. What is not required may be left out; unknown
+  keys and tables are refused.
+- `--set load.blow.pressure=5e6` changes a key for one command; layers, loads, holes and monitors go by their names or
+  numbers. `dembound schema` writes this page for editors.
 - Z is Zhou et al. (2018), L is Lu & Wang (2016).
 
 At the top level a case may have a `title`, one line for pictures and reports.
@@ -176,31 +166,38 @@ def case_file() -> str:
     ends = [f'[`"{name_of(table)}"`](#boundary-{name_of(table)})' for table in boundaries.TYPES if table.for_bars]
     bars = [_part(part) for part in BARS]
     bars.insert(3, BAR_ENDS.format(types=", ".join(ends)))
-    lists = [
-        f"{noun}: " + ", ".join(f"[{part.heading.split(' of ')[0]}](#{_slug(part.heading)})" for part in parts) + "."
-        for noun, parts in (("Disks", DISKS), ("Bars", BARS))
-    ]
-    return GENERATED + "\n".join([RULES, "\n\n".join(lists), "", *map(_part, DISKS), BAR_RULES, *bars]).rstrip() + "\n"
+    return GENERATED + "\n".join([RULES, *map(_part, DISKS), BAR_RULES, *bars]).rstrip() + "\n"
 
 
 def _part(part: Part) -> str:
-    """A part: the sentence, the keys of several types, and each type; or the keys of the one table."""
+    """A part: the sentence, the keys of several types, and the first sentence of each; or the keys of the one table."""
     given = {table: _rows(table) for table in part.tables}
-    inherited = set(_rows(part.within)) if part.within else set()
-    guide = f"How to use it: [{part.guide.split('/')[-1].replace('_', ' ')}](../{part.guide}.md)." if part.guide else ""
-    texts = [f"## {part.heading}", _sentence(part.base or part.tables[0]), part.more, guide]
+    guide = f"Guide: [{part.guide.split('/')[-1].replace('_', ' ')}](../{part.guide}.md)." if part.guide else ""
+    texts: list[str] = [f"## {part.heading}", _sentence(part.base or part.tables[0]), part.more, guide]
     if part.base is None:
-        return joined([*texts, _keys(row for row in given[part.tables[0]] if row not in inherited)])
+        rows = given[part.tables[0]]
+        known = _rows(part.within.tables[0]) if part.within else []
+        names = {row.key for row in known}
+        shared = [row for row in rows if row in known or (row.key in names and row.default != "required")]
+        if part.within and shared:
+            texts.append(f"As in [{part.within.heading}](#{_slug(part.within.heading)}): {_named(shared)}.")
+        return joined([*texts, _keys(row for row in rows if row not in shared)])
     count = Counter(row for rows in given.values() for row in rows)
-    common = [row for row in count if count[row] > 1]
-    if common:
-        texts += ["Keys of several types:", _keys(common)]
+    of_all = [row for row in count if count[row] == len(given)]
+    of_several = [row for row in count if 1 < count[row] < len(given)]
+    for head, rows in (("Keys of all types:", of_all), ("Keys of several types:", of_several)):
+        texts += [head, _keys(rows)] if rows else []
     for table, rows in given.items():
-        shared = [row.key for row in rows if row in common]
-        also = f"Keys above: {', '.join(shared)}." if shared else ""
-        own = [row for row in rows if row not in common]
-        texts += [f'### {part.heading} `"{name_of(table)}"`', _sentence(table), also, _keys(own)]
+        shared = [row for row in rows if row in of_several]
+        also = f"Also {_named(shared)}." if shared else ""
+        own = [row for row in rows if count[row] == 1]
+        texts += [f'### {part.heading} `"{name_of(table)}"`', _sentence(table).split("\n\n")[0], also, _keys(own)]
     return joined(texts)
+
+
+def _named(rows: Iterable[Row]) -> str:
+    """The names of keys."""
+    return ", ".join(f"`{row.key}`" for row in rows)
 
 
 def _slug(heading: str) -> str:
@@ -232,9 +229,9 @@ def _rows(table: Type) -> list[Row]:
     required = schema.get("required", [])
     return [
         Row(
-            f"`{key}`",
+            key,
+            "" if value.get("unit", "1") == "1" else value["unit"],
             _values(value),
-            "–" if value.get("unit", "1") == "1" else value["unit"],
             "required" if key in required else _default(value.get("default")),
             _quoted(value["description"]),
         )
@@ -248,9 +245,9 @@ KEYS = {table.key_of(name) for part in (*DISKS, *BARS) for table in part.tables 
 
 
 def _default(value: Any) -> str:
-    """A default value as TOML; – for none."""
+    """A default value as TOML; empty for none."""
     if value is None or value in ([], {}):
-        return "–"
+        return ""
     if isinstance(value, list):
         texts = (f'"{each}"' if isinstance(each, str) else f"{each:g}" for each in value)
         return f"`[{', '.join(texts)}]`"
@@ -275,35 +272,31 @@ def _values(schema: Mapping[str, Any]) -> str:
         return "tables" if inner == "table" else f"list of {inner}"
     if kind in ("number", "integer"):
         return _range(schema, "whole number" if kind == "integer" else "number")
-    return {"boolean": "`true`, `false`", "string": "text"}[kind]
+    return {"boolean": "" if isinstance(schema.get("default"), bool) else "true or false", "string": ""}[kind]
 
 
 def _plural(values: str) -> str:
     """The values of several numbers, from those of one."""
     noun, found, limits = values.rpartition("number")
-    return f"{noun}numbers {limits if found else values}".replace("numbers ,", "numbers").strip()
+    return f"{noun}numbers {limits.strip() if found else values}".strip()
 
 
 def _range(schema: Mapping[str, Any], noun: str) -> str:
     """The limits of a number."""
-    signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
-    limits = [f"{sign} {_number(schema[name])}" for name, sign in signs.items() if name in schema]
-    return ", ".join(([noun] if noun != "number" or not limits else []) + limits)
+    schema = {name: value for name, value in schema.items() if value != LARGEST_WHOLE}
+    if "minimum" in schema and "maximum" in schema:
+        limits = [f"{_number(schema['minimum'])}–{_number(schema['maximum'])}"]
+    else:
+        signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
+        limits = [f"{sign} {_number(schema[name])}" for name, sign in signs.items() if name in schema]
+    return " ".join(([noun] if noun != "number" or not limits else []) + ([", ".join(limits)] if limits else []))
 
 
 def _number(value: float) -> str:
     """A limit, short."""
-    return (
-        "2⁶³ − 1" if value == 2**63 - 1 else f"{value:,}" if isinstance(value, int) else f"{value:g}".replace("-", "−")
-    )
+    return f"{value:,}" if isinstance(value, int) else f"{value:g}".replace("-", "−")
 
 
 def _keys(rows: Iterable[Row]) -> str:
-    """A table of keys; empty without any."""
-    return _table(("key", "values", "unit", "default", "meaning"), rows)
-
-
-def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table in Markdown; empty without rows."""
-    lines = ["| " + " | ".join(cell.replace("|", r"\|") for cell in row) + " |" for row in rows]
-    return "\n".join(["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads), *lines]) if lines else ""
+    """A list of keys; empty without any."""
+    return "\n".join(map(str, rows))

@@ -89,7 +89,7 @@ def test_every_dataset_of_a_record_stands_in_the_reference(tables, tmp_path) -> 
     rows = page.split("\n## `run.h5`\n")[1].split("\n## ")[0]
     words = {word for code in re.findall(r"`([^`]+)`", page) for word in re.findall(r"\w+", code)}
     named = [path.split("/") for path in found if not path.startswith("inputs/")]  # whose names are numbers
-    assert not [path for path in named if path[-1] not in words or (path[1:] and f"\n| `{path[0]}/" not in rows)]
+    assert not [path for path in named if path[-1] not in words or (path[1:] and f"\n- `{path[0]}/" not in rows)]
 
 
 def test_exit_codes_of_help_and_errors_are_the_same():
@@ -112,7 +112,7 @@ def test_spacings_per_wavelength_are_those_that_are_computed():
 
 def test_all_that_a_run_spends_time_on_stands_in_the_reference():
     text = (ROOT / "docs" / "reference" / "results.md").read_text()
-    (line,) = (line for line in text.splitlines() if line.startswith("| `seconds` |"))
+    (line,) = (line for line in text.splitlines() if line.startswith("- `seconds`:"))
     assert not [section for section in SECTIONS if f"`{section}`" not in line]
 
 

@@ -13,8 +13,7 @@ from dembound.table import LARGEST, SMALLEST, FileName, Table, quantity
 class BarRange(Table):
     """A part of a bar with its own length, spacing and material; keys that are left out have the value in `[bar]`.
 
-    At an interface the range is bonded to the one on its left, or both only touch: a contact pushes, and opens where it
-    would have to pull.
+    A contact at an interface opens where it would have to pull.
     """
 
     name: FileName = quantity(..., unit="1", help="name of the range in messages and results")
@@ -87,19 +86,17 @@ ROUNDING = 1e-9
 class Bar(Table):
     """A straight bar that moves along its axis, with nodes at x = 0, Δx, … L, and its material.
 
-    The two nodes at the ends have half a volume. The section is given by its area or by the
-    diameter of a round bar, the stiffness by wave speed c = √(E/ρ) or Young's modulus E, the strength by the stress or
-    the stretch at which a bond breaks, s₀ = σ_t/E. Without a strength nothing breaks.
+    The two nodes at the ends have half a volume. The strength is given by the stress or the stretch at which a bond
+    breaks, s₀ = σ_t/E; without one nothing breaks.
 
-    A bar with ranges is a row of uniform bars. The bar's own keys are defaults for its ranges; its length is that of
-    all ranges and gaps together.
+    A bar with ranges is a row of uniform bars, for which its own keys are defaults.
     """
 
     length: float = quantity(
         None,
         unit="m",
         means="length",
-        help="length L of the bar; may be left out in a bar with ranges, whose length is that of all",
+        help="length L; with ranges it is that of all with their gaps, and may be left out",
         gt=0.0,
     )
     spacing: float = quantity(

@@ -14,8 +14,7 @@ LEAST_RATIO = 1.5
 class Damping(Table):
     """How `material.quality_factor` damps: Q is nearly constant over a band of frequencies, the same for P and S.
 
-    Every disk and node remembers past forces by a few relaxation mechanisms. The stiffness of damped ground grows with
-    the frequency, so that wave speeds hold at one frequency. Rayleigh damping has the given Q at two frequencies only.
+    The stiffness of damped ground grows with the frequency, so that wave speeds hold at one frequency.
     """
 
     type: Literal["quality", "rayleigh"] = quantity(

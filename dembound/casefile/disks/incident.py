@@ -32,8 +32,8 @@ class Motion(Table):
 class IncidentWave(Table):
     """A plane wave that enters the disks at an angle, with its reflections at the free surface and at joints of layers.
 
-    For sides of type "outside". At a point the incident wave, without reflections, has the velocity of its wave: along
-    its direction (P), or to the right of its direction (SV), which is +x where it runs straight up.
+    For sides of type "outside". At a point the incident wave, without reflections, has the velocity of its wave along
+    its direction (P), or to the right of it (SV).
     """
 
     type: Literal["sv", "p"] = quantity(..., unit="1", help="kind of wave: SV or P")

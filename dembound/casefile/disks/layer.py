@@ -39,9 +39,8 @@ def _as_in_material(key: str) -> Any:
 class Layer(Table):
     """A horizontal layer of the ground, from the surface down in the order of the file.
 
-    A key that is absent is as in [material], which gives all that has no key here. A layer that gives one of the keys
-    for stiffness (wave speeds, targets, `emod` and `pb_emod`) takes none of them from [material], which needs none, nor
-    a density, if every layer has its own.
+    Absent keys are those of [material]. A layer that gives one of the keys for stiffness (wave speeds, targets, `emod`
+    and `pb_emod`) takes none of them from there. Where every layer gives them or the density, [material] need not.
     """
 
     name: FileName | None = quantity(None, unit="1", help="name in results; absent: its number, from 1 at the surface")

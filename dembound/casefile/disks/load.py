@@ -17,20 +17,20 @@ ACTIONS = ("force", "acceleration", "pressure")
 class Load(Table):
     """A load on particles: one of `force`, `acceleration` and `pressure`.
 
-    A force acts on one particle or on those of a rectangle. An acceleration acts on the same or, without a place, on
-    all particles, like gravity. A pressure acts in a hole, or on sides as by a membrane through the centres of their
-    outer particles, which it follows in the run; it ends where a boundary of the run prescribes the motion of the side.
+    A force acts on one particle or on those of a rectangle, in proportion to their area; on the free surface of a
+    continuum it is a uniform traction. An acceleration acts on the same or, without a place, on all particles. A
+    pressure acts in a hole, or on sides as by a membrane through the centres of their outer particles, which it
+    follows, except where a boundary of the run prescribes the motion.
 
-    A force is split among the particles of its region in proportion to their area; on the free surface of a continuum
-    it is a uniform traction. A pressure pushes the wall of a hole away from it. A wave's values, taken as pure numbers,
-    are the time factor; without one the load is steady and acts from the static stage on.
+    A wave's values, taken as pure numbers, are the time factor; without one the load is steady and acts from the static
+    stage on.
     """
 
     name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
     force: Vector | None = quantity(
         None,
         unit="N/m",
-        help="force [fx, fy] per metre of thickness on all its particles together; needs position or region",
+        help="force [fx, fy] on all its particles together; needs position or region",
     )
     acceleration: Vector | None = quantity(None, unit="m/s²", help="force [ax, ay] per mass of each particle")
     position: Vector | None = quantity(None, unit="m", means="place", help="where; the nearest particle is loaded")
@@ -38,8 +38,7 @@ class Load(Table):
         None,
         unit="m",
         means="place",
-        help="rectangle [x0, y0, x1, y1]; particles centred in it or on its edge are loaded, or the "
-        "continuum's surface in it",
+        help="rectangle [x0, y0, x1, y1] of loaded particles, or of the continuum's surface",
     )
     pressure: float | None = quantity(
         None,

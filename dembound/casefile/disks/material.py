@@ -34,14 +34,11 @@ def with_history() -> str:
 class Material(Table):
     """Density, and contacts and bonds by PFC's names; stiffness is given, or follows from wave speeds or targets.
 
-    Targets are elastic constants of the body: `young` and `poisson`, `bulk` and `shear`, or both wave speeds. Moduli
-    and `kratio` = `pb_kratio` are then found so that the packing has them. A `p_wave_speed` alone is made stiffness by
-    Z eqs 9-11; an `s_wave_speed` alone scales it so that S waves have that speed; `emod` and `pb_emod` give it.
-    With the law "elastic" contacts neither open nor slip, and bonds do not break. "linearpbond" is PFC's: linear
-    contacts without tension and with Coulomb friction, and parallel bonds that break for good. Only history-dependent
-    laws have `locked_in` (which needs a static stage), `geometry`, `elastic_start`, and the dashpots `dp_nratio` and
-    `dp_sratio`, c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂); `pb_ten`, `pb_coh`, `pb_fa` and
-    `pb_scatter` are for these laws and for `output.load_factor`.
+    Targets are `young` and `poisson`, `bulk` and `shear`, or both wave speeds of the body: moduli and `kratio` =
+    `pb_kratio` are found so that the packing has them. From a `p_wave_speed` alone they follow by Z eqs 9-11, an
+    `s_wave_speed` alone scales them. Under the law "elastic" contacts neither open nor slip and bonds do not break;
+    "linearpbond" is PFC's, and alone has `locked_in`, `geometry`, `elastic_start` and the dashpots c = 2β√(m_c k), m_c
+    = m₁m₂/(m₁ + m₂). Strengths are for it and for `output.load_factor`.
     """
 
     density: float = quantity(
@@ -84,7 +81,7 @@ class Material(Table):
     along: Literal["isotropic", "x", "y"] = quantity(
         "isotropic",
         unit="1",
-        help='what has the targets: "isotropic", the mean over directions; "x", "y": waves or a test along it',
+        help='direction with the targets: "isotropic", the mean over all; "x", "y": waves or a test along it',
     )
     emod: float | None = quantity(
         None, unit="Pa", means="modulus", help="modulus E_c of the contacts; 0 in pattern A only", ge=0.0
@@ -113,7 +110,7 @@ class Material(Table):
         0.0,
         unit="1",
         means="share",
-        help="normal dashpot of closed contacts over the critical one of two disks; it does not pull (PFC's dp_mode 1)",
+        help="normal dashpot of closed contacts over the critical one; it does not pull (PFC's dp_mode 1)",
         ge=0.0,
         le=1.0,
     )
@@ -136,7 +133,7 @@ class Material(Table):
     law: LawName = quantity(
         "elastic",
         unit="1",
-        help='"elastic": linear; "linearpbond": PFC\'s, contacts open and slip, bonds break for good',
+        help='"elastic": linear; "linearpbond": contacts open and slip, bonds break for good',
     )
     pb_ten: float | None = quantity(
         None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0

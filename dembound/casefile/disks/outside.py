@@ -14,7 +14,7 @@ CONTINUUM = ".continuum"
 class OutsideTable(Table):
     """The continuum beyond sides of type "outside", of spectral elements; keys left out follow from `accuracy`.
 
-    Keys are then chosen from the waves and loads of the case. The outer elements absorb.
+    Its outer elements absorb.
     """
 
     order: int = quantity(
@@ -43,8 +43,7 @@ class OutsideTable(Table):
         None,
         unit="1",
         means="count",
-        help="elements that absorb, one behind the other, and five wider ones more left and right of layers; absent: "
-        "from accuracy",
+        help="elements that absorb, one behind the other, five wider ones more beside layers; absent: from accuracy",
         ge=2,
         le=MOST_ELEMENTS,
     )

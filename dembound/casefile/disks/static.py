@@ -27,10 +27,9 @@ MOST_STEPS = 100_000_000
 class Static(Table):
     """The damped stage before the run, which brings the body to rest under steady loads and a given stress.
 
-    Its supports replace the boundaries of the sides during the stage; their reactions then act as constant forces.
-    It needs a `stress`, a steady load or `material.locked_in`; the body must be held along every axis on which a steady
-    load acts. Under `k0`, and under a stress beside periodic, free-field and outside sides, contacts begin with the
-    forces of that stress; otherwise forces on the sides make it.
+    It needs a `stress`, a steady load or `material.locked_in`, and a support along every axis on which a steady load
+    acts; reactions of supports then act as constant forces. Under `k0`, and under a stress beside periodic, free-field
+    and outside sides, contacts begin with the forces of that stress; otherwise forces on the sides make it.
     """
 
     stress: tuple[float, float, float] | None = quantity(
@@ -43,7 +42,7 @@ class Static(Table):
         None,
         unit="1",
         means="ratio of stresses",
-        help="stress along x over that along y due to weight, a load with an acceleration; absent: what settling makes",
+        help="stress along x over that along y due to weight; absent: what settling makes",
         ge=0.0,
         le=5.0,
     )
@@ -51,8 +50,8 @@ class Static(Table):
         None,
         unit="1",
         means="rest",
-        help="mean unbalanced force over mean contact force at which the stage is over; "
-        "absent: 1e-5, and 1e-7 once contacts slide or open or bonds break",
+        help="mean unbalanced over mean contact force at its end; absent: "
+        "1e-5, and 1e-7 once contacts slide or open or bonds break",
         gt=0.0,
         lt=1.0,
     )
