@@ -5,13 +5,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from dembound.motion.resources import motion_bytes, thread_count_for
 
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.casefile import Case
 from dembound.casefile.tables import Run
 from dembound.continuum.part import GridBody, GridPart
 from dembound.motion.part import System
-from dembound.motion.resources import motion_bytes, thread_count_for
 from dembound.motion.scene import Scene
 from dembound.motion.stability import largest_eigenvalue
 from dembound.motion.state import Layout
