@@ -131,18 +131,19 @@ def material(
         return
     if given := [*(["--seeds"] if seeds != SEEDS else []), *loading.given]:
         raise CaseError([f"{', '.join(given)}: for tests of samples, give --ucs or --tension"])
-    from dembound.disks.reports.micro_macro import describe_materials, material_rows, packing_line
+    from dembound.disks.reports.micro_macro import describe_materials, material_rows, materials_of, packing_line
     from dembound.disks.scene import build
 
-    found = describe_materials(build(load_disks(case, changes)))
+    scene = build(load_disks(case, changes))
+    found = describe_materials(scene)
     if as_json:
         for line in json.dumps(found, indent=2, allow_nan=False).splitlines():
             out.print(line, soft_wrap=True)
         return
-    for each in found:
-        if each["layer"]:
-            out.print(f"layer {each['layer']}")
-        out.print(packing_line(each))
+    for each, own in zip(found, materials_of(scene), strict=True):
+        if own.layer:
+            out.print(f"layer {own.layer}")
+        out.print(packing_line(own.ground))
         for title, rows in material_rows(each):
             out.print()
             print_rows(title, rows)

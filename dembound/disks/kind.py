@@ -20,7 +20,8 @@ from dembound.disks.reduced import reduced
 from dembound.disks.reports.facts import disk_facts
 from dembound.disks.reports.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh
 from dembound.disks.reports.summary import asked_stress, describe_static, disk_outcome, summarise_disks
-from dembound.disks.reports.warnings import disk_warnings, warnings_after_disks
+from dembound.disks.reports.warnings import disk_warnings
+from dembound.disks.reports.warnings_after import warnings_after_disks
 from dembound.disks.rest.settled import Settled, settling_keys
 from dembound.disks.rest.stage import require_stages, settle, stage_names
 from dembound.disks.rotating_pressure import Membranes
