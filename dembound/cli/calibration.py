@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -22,6 +21,7 @@ from dembound.cli.app import (
     writable,
 )
 from dembound.cli.console import compact_table, out
+from dembound.cli.options import leave
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
@@ -34,19 +34,12 @@ CALIBRATED = "_calibrated"
 OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
 
 
-class WaveType(StrEnum):
-    """Kinds of waves to calibrate for."""
-
-    p = "p"
-    s = "s"
+WaveType = Literal["p", "s"]
+"""Kinds of waves to calibrate for."""
 
 
-class CalibrationMethod(StrEnum):
-    """Ways to find β."""
-
-    impedance = "impedance"
-    ratio = "ratio"
-    homogenised = "homogenised"
+CalibrationMethod = Literal["impedance", "ratio", "homogenised"]
+"""Ways to find β."""
 
 
 @app.command("calibrate")
@@ -68,7 +61,7 @@ def calibrate_sides(
             help="impedance: solve for β, check it, and keep the matched β where the side returns less with it; "
             "ratio: multiply by M_out/M_in, as published; homogenised: the matched β, no run.",
         ),
-    ] = CalibrationMethod.impedance,
+    ] = "impedance",
     start: Annotated[float | None, typer.Option(help="First β; by default the case's own.")] = None,
     tolerance: Annotated[float, typer.Option(help="Largest |M_out/M_in − 1| to accept.", min=1e-9)] = 1e-3,
     full: Annotated[bool, typer.Option("--full", help="Use the whole scene instead of a short strip.")] = False,
@@ -99,7 +92,7 @@ def calibrate_sides(
     _one_or_all(boundary, every, wave)
     prepare_computing(threads)
     loaded = load_disks(case, changes, name)
-    options: dict[str, Any] = {"method": method.value, "start": start, "tolerance": tolerance, "full": full}
+    options: dict[str, Any] = {"method": method, "start": start, "tolerance": tolerance, "full": full}
     plain = loaded.name.removesuffix(CALIBRATED)
     folder = output / f"{plain}_calibration"
     target = calibrated or case.with_name(f"{plain}{CALIBRATED}.toml")
@@ -113,7 +106,7 @@ def calibrate_sides(
         one = calibrate(
             loaded,
             boundary.value,
-            motion=wave.value if wave else None,  # type: ignore[arg-type]
+            motion=wave,
             report=_print_pass,
             **options,
         )
@@ -131,7 +124,7 @@ def _factors(case: DiskCase, boundary: Side | None, wave: WaveType | None) -> li
 
     if boundary is None:
         return [f"boundary.{side}.beta_{motion}" for side, motion in factors_of(case)]
-    motion = calibrated_motion(case, boundary.value, wave.value if wave else None)  # type: ignore[arg-type]
+    motion = calibrated_motion(case, boundary.value, wave)
     return [f"boundary.{boundary.value}.beta_{motion}"]
 
 
@@ -194,7 +187,6 @@ def _leave_summary(
     """Write the summary and a picture of the passes; records : one of each."""
     from dembound.files import remove
     from dembound.plot.stability import plot_convergence
-    from dembound.plot.style import save
     from dembound.results.text_files import write_json
 
     write_json(folder / "summary.json", summary)
@@ -202,8 +194,7 @@ def _leave_summary(
     picture = folder / "convergence.png"
     remove(picture)  # one of an earlier calibration with another method
     if found[0].beta:
-        save(plot_convergence(records), picture)
-        out.print(f"wrote {picture}")
+        leave(plot_convergence(records), picture)
 
 
 def _print_pass(found: Calibration, of: str = "") -> None:

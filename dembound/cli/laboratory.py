@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -30,11 +29,8 @@ SAMPLES = "Samples and loading"
 """Panel of the help."""
 
 
-class EndsKind(StrEnum):
-    """How platens hold the ends."""
-
-    smooth = "smooth"
-    grips = "grips"
+EndsKind = Literal["smooth", "grips"]
+"""How platens hold the ends."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +47,7 @@ class LoadingOptions:
     ] = None
     ends: Annotated[
         EndsKind, typer.Option(help="Platens hold the normal motion only, or all.", rich_help_panel=SAMPLES)
-    ] = EndsKind.smooth
+    ] = "smooth"
     damp: Annotated[
         float, typer.Option(min=0.0, help="Local damping; strengths depend on it.", rich_help_panel=SAMPLES)
     ] = 0.7
@@ -69,7 +65,7 @@ class LoadingOptions:
         from dembound.studies.laboratory.sample import sample_of
 
         size = self.width, self.height
-        return sample_of(case, test, *size, ends=self.ends.value, damp=self.damp, rate=self.rate)
+        return sample_of(case, test, *size, ends=self.ends, damp=self.damp, rate=self.rate)
 
     def options(self, *, anew: bool = False) -> Options:
         """Options of the sweep over seeds; raises CaseError for processes beside a scheduler."""

@@ -13,7 +13,7 @@ from dembound.cli.app import MORE, PICTURE, Cases, Output, PictureTitle, Setting
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import err, out, print_rows
 from dembound.cli.laboratory import LoadingOptions
-from dembound.cli.options import with_tables
+from dembound.cli.options import leave, with_tables
 from dembound.cli.sweep import FAILED, shown
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
@@ -162,7 +162,6 @@ def packing(
     """Draw one side of the packing of each case, or one brick (PNG)."""
     from dembound.disks.scene import build
     from dembound.plot.packing import plot_brick, plot_patterns
-    from dembound.plot.style import save
 
     loaded = [load_disks(path, changes) for path in cases]
     if brick:
@@ -176,8 +175,7 @@ def packing(
                 for name, scene in scenes.items()
             }
         )
-    save(figure, output, title)
-    out.print(f"wrote {output}")
+    leave(figure, output, title)
 
 
 def _edge_of(scene: DiskScene, side: str) -> Edge:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -46,11 +45,8 @@ MOST_WARNINGS = 10
 """Largest number of distinct warnings of members that are printed."""
 
 
-class SweepAction(StrEnum):
-    """The action for every member."""
-
-    run = "run"
-    calibrate = "calibrate"
+SweepAction = Literal["run", "calibrate"]
+"""The action for every member."""
 
 
 @app.command("sweep")
@@ -98,8 +94,8 @@ def sweep(
     loaded = load_case(case, changes, name)
     table = loaded.sweep
     options = Options(
-        action=action.value if action else table.action,
-        method=method.value if method else table.method,
+        action=action or table.action,
+        method=method or table.method,
         processes=processes or table.processes,
         scheduler=scheduler,
         anew=anew,
