@@ -187,17 +187,8 @@ def run_bytes(case: DiskCase, scenes: Sequence[SceneSizes], before: SceneSizes |
 
 def scene_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Bytes of a scene, with the arrays of the law of a continuum."""
-    beyond = z.grid is not None
-    return total(
-        z.counts,
-        "scene",
-        steady=bool(case.load),
-        in_rows=z.in_rows,
-        one_by_one=not z.in_rows,
-        mesh=beyond,
-        layers=beyond,
-        half_bonds=beyond,
-    )
+    rows = {"in_rows": z.in_rows, "one_by_one": not z.in_rows}
+    return total(z.counts, "scene", "mesh", "layers", "half_bonds", steady=bool(case.load), **rows)
 
 
 def pairs_bytes(case: DiskCase, z: SceneSizes) -> float:
@@ -233,11 +224,10 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
     fields = total(whole.counts, "fields", contact_count=has_history)
     if case.output.stress:
         fields = max(fields, total(counts, "stress", "stress_field"))
-    beyond = whole.grid is not None
     kept = [
-        (fields + total(whole.counts, mesh_fields=beyond)) * bool(case.output.snapshots),
+        (fields + total(whole.counts, "mesh_fields")) * bool(case.output.snapshots),
         total(counts, "saved", saved_pairs=has_history) * (case.run.checkpoint > 0.0),
-        total(whole.counts, mesh_header=beyond),
+        total(whole.counts, "mesh_header"),
     ]
     return moving + pairs + max(kept)
 
@@ -251,23 +241,18 @@ def _settling_bytes(case: DiskCase, z: SceneSizes) -> float:
 
 def storage_of(case: DiskCase, z: SceneSizes) -> Storage:
     """Bytes on disk of the results of a scene."""
-    counts, output, has_history = z.counts, case.output, _has_history(case)
-    numbers = has_history + output.peaks + bool(case.layer)
-    vtu = total(counts, "vtu", numbers=numbers, tensors=output.stress, vtu_forces=output.contacts)
-    vtkhdf = total(counts, "vtkhdf", numbers=has_history, tensors=output.stress, vtkhdf_forces=output.contacts)
-    record = total(counts, "snapshot", coordination=has_history, tensors=output.stress, forces=output.contacts)
-    saved = total(
-        counts,
-        *("saved", "state", "layers"),
-        saved_pairs=has_history,
-        state_history=has_history,
-        state_settled=case.static is not None,
-    )
-    fixed = for_paraview(output.paraview, 0.0, total(counts, "vtkhdf_header", numbers=bool(case.layer)))
+    counts, output, has_history, layered = z.counts, case.output, _has_history(case), bool(case.layer)
+    fields = {"tensors": output.stress, "numbers": has_history}
+    numbers = has_history + output.peaks + layered
+    vtu = total(counts, "vtu", vtu_forces=output.contacts, **fields | {"numbers": numbers})
+    vtkhdf = total(counts, "vtkhdf", vtkhdf_forces=output.contacts, **fields)
+    record = total(counts, "snapshot", tensors=output.stress, coordination=has_history, forces=output.contacts)
+    fixed = for_paraview(output.paraview, 0.0, total(counts, "vtkhdf_header", numbers=layered))
+    stages = {"saved_pairs": has_history, "state_history": has_history, "state_settled": case.static is not None}
     return Storage(
-        header=total(counts, "header", numbers=bool(case.layer)) + fixed,
+        header=total(counts, "header", numbers=layered) + fixed,
         snapshot=record + for_paraview(output.paraview, vtu, vtkhdf),
-        checkpoint=saved,
+        checkpoint=total(counts, "saved", "state", "layers", **stages),
     )
 
 
