@@ -21,8 +21,9 @@ from dembound.cli.app import (
     writable,
 )
 from dembound.cli.console import compact_table, out
-from dembound.cli.options import leave
+from dembound.cli.options import leave, with_tables
 from dembound.errors import CaseError
+from dembound.studies.asked import Calibrating
 
 if TYPE_CHECKING:
     from dembound.casefile.disks import DiskCase
@@ -38,13 +39,11 @@ WaveType = Literal["p", "s"]
 """Kinds of waves to calibrate for."""
 
 
-CalibrationMethod = Literal["impedance", "ratio", "homogenised"]
-"""Ways to find β."""
-
-
 @app.command("calibrate")
+@with_tables
 def calibrate_sides(
     case: OneCase,
+    *,
     boundary: Annotated[
         Side | None, typer.Option("--boundary", "-b", help="Side to calibrate; required without --all.")
     ] = None,
@@ -54,17 +53,7 @@ def calibrate_sides(
     wave: Annotated[
         WaveType | None, typer.Option(help="P or S; by default the wave that runs towards this side, else P.")
     ] = None,
-    method: Annotated[
-        CalibrationMethod,
-        typer.Option(
-            metavar="METHOD",
-            help="impedance: solve for β, check it, and keep the matched β where the side returns less with it; "
-            "ratio: multiply by M_out/M_in, as published; homogenised: the matched β, no run.",
-        ),
-    ] = "impedance",
-    start: Annotated[float | None, typer.Option(help="First β; by default the case's own.")] = None,
-    tolerance: Annotated[float, typer.Option(help="Largest |M_out/M_in − 1| to accept.", min=1e-9)] = 1e-3,
-    full: Annotated[bool, typer.Option("--full", help="Use the whole scene instead of a short strip.")] = False,
+    how: Calibrating,
     output: Output = Path("results"),
     calibrated: Annotated[
         Path | None,
@@ -92,24 +81,17 @@ def calibrate_sides(
     _one_or_all(boundary, every, wave)
     prepare_computing(threads)
     loaded = load_disks(case, changes, name)
-    options: dict[str, Any] = {"method": method, "start": start, "tolerance": tolerance, "full": full}
     plain = loaded.name.removesuffix(CALIBRATED)
     folder = output / f"{plain}_calibration"
     target = calibrated or case.with_name(f"{plain}{CALIBRATED}.toml")
     text = text_for(target, case, loaded, changes)
     _require_no_other(target, text, _factors(loaded, boundary, wave))
     if boundary is None:
-        found = calibrate_all(loaded, report=_print_pass_of_side, **options)
+        found = calibrate_all(loaded, how, report=_print_pass_of_side)
         _print_table(found)
         _leave_all(found, folder)
     else:
-        one = calibrate(
-            loaded,
-            boundary.value,
-            motion=wave,
-            report=_print_pass,
-            **options,
-        )
+        one = calibrate(loaded, boundary.value, how, motion=wave, report=_print_pass)
         _print_result(one)
         found = [one]
         _leave(one, folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}"))

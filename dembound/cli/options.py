@@ -13,6 +13,7 @@ import typer
 
 from dembound.cli.app import Side, writable
 from dembound.cli.console import out
+from dembound.studies.asked import Asked
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
 def with_tables(command: Callable[..., None]) -> Callable[..., None]:
     """A command for typer in which the fields of every dataclass parameter are options.
 
-    The fields are annotated as options of typer. The command gets one object of the class.
+    The fields are annotated as options of typer, or as `Asked` where they are those of a study. The command gets one
+    object of the class.
     """
     hints = get_type_hints(command, include_extras=True)
     tables: dict[str, type] = {
@@ -50,7 +52,17 @@ def _options(table: type) -> Iterator[Parameter]:
     types = get_type_hints(table, include_extras=True)
     for field in fields(table):
         default = Parameter.empty if field.default is MISSING else field.default
-        yield Parameter(field.name, Parameter.KEYWORD_ONLY, default=default, annotation=types[field.name])
+        annotation = types[field.name]
+        kind, option = get_args(annotation)
+        if isinstance(option, Asked):
+            annotation = Annotated[kind, _as_option(field.name, option, is_flag=kind is bool)]
+        yield Parameter(field.name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
+
+def _as_option(name: str, asked: Asked, *, is_flag: bool) -> Any:
+    """The option of a field of a study; a flag has no opposite."""
+    names = (f"--{name.replace('_', '-')}",) if is_flag else ()
+    return typer.Option(*names, help=asked.help, metavar=asked.metavar, min=asked.least, rich_help_panel=asked.panel)
 
 
 def leave(figure: Figure, picture: Path, title: str | None = None, table: Path | None = None) -> None:

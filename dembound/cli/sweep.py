@@ -21,10 +21,10 @@ from dembound.cli.app import (
     load_case,
     require_one_place,
 )
-from dembound.cli.calibration import CalibrationMethod
 from dembound.cli.console import INTERVAL, err, out, print_rows
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
+from dembound.studies.asked import Method
 from dembound.words import in_one_unit
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def sweep(
         SweepAction | None, typer.Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
     ] = None,
     method: Annotated[
-        CalibrationMethod | None,
+        Method | None,
         typer.Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`."),
     ] = None,
     processes: Annotated[
